@@ -1,0 +1,36 @@
+//! What everything else works on: a [`Model`] is one triangle [`Mesh`] with its
+//! [`Material`]s and [`Image`]s, in one frame, whatever the file it came from.
+//!
+//! Conventions, for every room of the house:
+//! * right-handed, +Y up; lengths in the file's unit until [`Placement`] puts a
+//!   pair into the common frame;
+//! * texture coordinates as in glTF: `(0, 0)` is the outer corner of the first
+//!   texel of the first row, `v` grows downwards (OBJ's are flipped on reading);
+//! * images are 8-bit RGBA, row 0 on top.
+
+mod image;
+mod material;
+mod mesh;
+mod placement;
+
+pub use glam;
+pub use image::Image;
+pub use material::{AlphaMode, Material, TextureSlot, UvTransform, Wrap};
+pub use mesh::Mesh;
+pub use placement::{Bounds, Placement};
+
+/// A textured model: one mesh, and what its triangles' materials name.
+///
+/// Contract: every `Mesh::triangle_materials` entry indexes `materials`, and
+/// every [`TextureSlot::image`] indexes `images`. There is at least one material.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Model {
+    /// A name to show to people, usually the file's.
+    pub name: String,
+    /// All triangles of the model, node transforms applied.
+    pub mesh: Mesh,
+    /// Materials, at least one.
+    pub materials: Vec<Material>,
+    /// Images, each decoded once.
+    pub images: Vec<Image>,
+}
