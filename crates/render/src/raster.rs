@@ -1,0 +1,203 @@
+//! Rasterisation: which triangle is seen at each sample.
+//!
+//! Homogeneous (2D) rasterisation after Olano and Greer 1997: with the columns of
+//! M the three vertices (X, Y, W), `s = M⁻¹ (x, y, 1)ᵀ` holds the barycentrics
+//! divided by depth. A sample is inside where all three are ≥ 0, so triangles
+//! that cross the camera's plane need no clipping; `Σ s = 1/W` orders by nearness.
+//! There is no gradient here: visibility is piecewise constant. What moves with
+//! the vertices is in `interpolate.rs` (inside) and `antialias.rs` (silhouettes).
+//!
+//! Contract: two-sided, nothing is culled; samples lie at pixel + 0.5 + offset;
+//! on equal depth the first triangle wins, so the result is deterministic.
+
+use crate::camera::{Camera, Projection};
+use glam::{DVec3, Vec3};
+
+/// No triangle is seen here.
+pub const NOTHING: u32 = u32::MAX;
+
+/// A triangle on the screen: the three planes of s = M⁻¹ (x, y, 1)ᵀ.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ScreenTriangle {
+    /// Rows of M⁻¹: coefficients of x, y and 1 for each corner.
+    pub planes: [DVec3; 3],
+    /// Coefficients of the quantity that is larger where the surface is nearer.
+    pub nearness: DVec3,
+    /// Pixel bounds (x0, y0, x1, y1); x1 < x0 when the triangle cannot be seen.
+    bounds: [f32; 4],
+}
+
+/// All triangles of a mesh, on the screen of one camera.
+#[derive(Clone, Debug, Default)]
+pub struct ScreenTriangles {
+    /// In the mesh's order.
+    pub triangles: Vec<ScreenTriangle>,
+}
+
+/// What each sample of a square image sees.
+#[derive(Clone, Debug, Default)]
+pub struct Visibility {
+    /// Samples along a side.
+    pub size: usize,
+    /// size² triangle indices, [`NOTHING`] where nothing is seen.
+    pub triangle: Vec<u32>,
+    nearness: Vec<f32>,
+}
+
+/// Points nearer to the camera's plane than this are behind it.
+const NEAR: f64 = 1e-4;
+
+impl ScreenTriangles {
+    /// Projects every vertex once and sets up every triangle.
+    pub fn new(positions: &[Vec3], triangles: &[[u32; 3]], camera: &Camera, size: usize) -> Self {
+        let points: Vec<_> = positions.iter().map(|&p| camera.project(p, size)).collect();
+        let orthographic = matches!(camera.projection, Projection::Orthographic(_));
+        let triangles = triangles
+            .iter()
+            .map(|corners| {
+                let p = corners.map(|i| points[i as usize]);
+                let v = p.map(|q| q.homogeneous);
+                let hidden = ScreenTriangle { bounds: [0.0, 0.0, -1.0, -1.0], ..Default::default() };
+                if p.iter().all(|q| q.depth < NEAR) {
+                    return hidden;
+                }
+                let cofactors = [v[1].cross(v[2]), v[2].cross(v[0]), v[0].cross(v[1])];
+                let determinant = v[0].dot(cofactors[0]);
+                // A triangle seen exactly edge-on covers nothing.
+                if determinant == 0.0 || !determinant.is_finite() {
+                    return hidden;
+                }
+                let planes = cofactors.map(|c| c / determinant);
+                let nearness = if orthographic {
+                    -(planes[0] * p[0].depth + planes[1] * p[1].depth + planes[2] * p[2].depth)
+                } else {
+                    planes[0] + planes[1] + planes[2]
+                };
+                let bounds = if p.iter().any(|q| q.depth < NEAR) {
+                    [0.0, 0.0, size as f32, size as f32]
+                } else {
+                    let xs = v.map(|q| (q.x / q.z) as f32);
+                    let ys = v.map(|q| (q.y / q.z) as f32);
+                    [
+                        xs[0].min(xs[1]).min(xs[2]),
+                        ys[0].min(ys[1]).min(ys[2]),
+                        xs[0].max(xs[1]).max(xs[2]),
+                        ys[0].max(ys[1]).max(ys[2]),
+                    ]
+                };
+                ScreenTriangle { planes, nearness, bounds }
+            })
+            .collect();
+        Self { triangles }
+    }
+}
+
+impl ScreenTriangle {
+    /// s at this point of the screen: barycentrics divided by depth.
+    #[inline]
+    pub fn at(&self, x: f64, y: f64) -> [f64; 3] {
+        self.planes.map(|p| p.x * x + p.y * y + p.z)
+    }
+}
+
+/// Finds the nearest triangle at each sample `(column + 0.5 + offset.0, row + 0.5
+/// + offset.1)`; `seen` is reused between calls.
+pub fn rasterise(screen: &ScreenTriangles, size: usize, offset: (f32, f32), seen: &mut Visibility) {
+    seen.size = size;
+    seen.triangle.clear();
+    seen.triangle.resize(size * size, NOTHING);
+    seen.nearness.clear();
+    seen.nearness.resize(size * size, f32::NEG_INFINITY);
+    let (cx, cy) = (0.5 + offset.0, 0.5 + offset.1);
+    let last = size as f32 - 1.0;
+    for (index, triangle) in screen.triangles.iter().enumerate() {
+        let [x0, y0, x1, y1] = triangle.bounds;
+        let (column0, column1) = ((x0 - cx).ceil().max(0.0), (x1 - cx).floor().min(last));
+        let (row0, row1) = ((y0 - cy).ceil().max(0.0), (y1 - cy).floor().min(last));
+        if !(column0 <= column1 && row0 <= row1) {
+            continue;
+        }
+        let inverse_slope = triangle.planes.map(|p| 1.0 / p.x);
+        for row in row0 as usize..=row1 as usize {
+            let y = row as f64 + f64::from(cy);
+            let (mut first, mut end) = (f64::from(column0), f64::from(column1));
+            for (plane, inverse) in triangle.planes.iter().zip(inverse_slope) {
+                // The sign of x where this plane crosses zero bounds the span.
+                let rest = plane.y * y + plane.z;
+                if plane.x > 0.0 {
+                    first = first.max((-rest * inverse - f64::from(cx)).ceil());
+                } else if plane.x < 0.0 {
+                    end = end.min((-rest * inverse - f64::from(cx)).floor());
+                } else if rest < 0.0 {
+                    end = -1.0;
+                }
+            }
+            if first > end {
+                continue;
+            }
+            let (first, end) = (first as usize, end as usize);
+            let n = triangle.nearness;
+            let start = (n.x * (first as f64 + f64::from(cx)) + n.y * y + n.z) as f32;
+            let step = n.x as f32;
+            let range = row * size + first..row * size + end + 1;
+            let nearness = &mut seen.nearness[range.clone()];
+            let seen = &mut seen.triangle[range];
+            for (i, (z, t)) in nearness.iter_mut().zip(seen).enumerate() {
+                let here = start + step * i as f32;
+                if here > *z {
+                    *z = here;
+                    *t = index as u32;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera() -> Camera {
+        Camera::towards_origin(Vec3::Z, 3.5, Projection::Perspective(0.4))
+    }
+
+    fn see(positions: &[Vec3], triangles: &[[u32; 3]], camera: &Camera, size: usize) -> Visibility {
+        let mut seen = Visibility::default();
+        let screen = ScreenTriangles::new(positions, triangles, camera, size);
+        rasterise(&screen, size, (0.0, 0.0), &mut seen);
+        seen
+    }
+
+    /// Protects against cracks and double cover between neighbours: a square of
+    /// two triangles covers exactly its pixels.
+    #[test]
+    fn two_triangles_tile_a_square() {
+        let p = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)].map(|(x, y)| Vec3::new(x, y, 0.0));
+        for projection in [Projection::Orthographic(1.0), Projection::Perspective(1.0 / 3.5)] {
+            let camera = Camera::towards_origin(Vec3::Z, 3.5, projection);
+            let seen = see(&p, &[[0, 1, 2], [0, 2, 3]], &camera, 64);
+            assert_eq!(seen.triangle.iter().filter(|&&t| t != NOTHING).count(), 32 * 32);
+        }
+    }
+
+    /// Protects the depth order, from both sides: nothing is culled.
+    #[test]
+    fn the_nearer_triangle_wins_from_both_sides() {
+        let quad = |z: f32| [(-9.0, -9.0), (9.0, -9.0), (0.0, 9.0)].map(|(x, y)| Vec3::new(x, y, z));
+        let p: Vec<_> = quad(-0.5).into_iter().chain(quad(0.5)).collect();
+        let front = see(&p, &[[0, 1, 2], [3, 4, 5]], &camera(), 8);
+        assert!(front.triangle.iter().all(|&t| t == 1));
+        let behind = Camera::towards_origin(-Vec3::Z, 3.5, Projection::Perspective(0.4));
+        assert!(see(&p, &[[0, 1, 2], [3, 4, 5]], &behind, 8).triangle.iter().all(|&t| t == 0));
+    }
+
+    /// Protects triangles that reach behind the camera, which would wrap around
+    /// with a plain division by depth.
+    #[test]
+    fn a_triangle_through_the_camera_plane_is_cut_there() {
+        let p = [Vec3::new(-50.0, -1.0, -10.0), Vec3::new(50.0, -1.0, -10.0), Vec3::new(0.0, -1.0, 20.0)];
+        let seen = see(&p, &[[0, 1, 2]], &camera(), 32);
+        assert!(seen.triangle[..16 * 32].iter().all(|&t| t == NOTHING), "nothing above the horizon");
+        assert!(seen.triangle[31 * 32..].iter().all(|&t| t == 0), "the floor fills the last row");
+    }
+}
