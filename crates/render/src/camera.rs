@@ -90,8 +90,7 @@ impl Camera {
             Projection::Orthographic(h) => (f64::from(h), false),
         };
         let scale = half / half_width;
-        let mut g =
-            self.right.as_dvec3() * (scale * gradient.x) - self.up.as_dvec3() * (scale * gradient.y);
+        let mut g = self.right.as_dvec3() * (scale * gradient.x) - self.up.as_dvec3() * (scale * gradient.y);
         if perspective {
             g -= self.back.as_dvec3() * (half * (gradient.x + gradient.y) + gradient.z);
         }

@@ -23,7 +23,13 @@ pub struct TangentLight {
 
 /// Forward: interpolated normal and tangent to [`TangentLight`].
 #[inline]
-pub fn tangent_light(normal: Vec3, tangent: Vec3, handedness: f32, to_light: Vec3, facing: f32) -> TangentLight {
+pub fn tangent_light(
+    normal: Vec3,
+    tangent: Vec3,
+    handedness: f32,
+    to_light: Vec3,
+    facing: f32,
+) -> TangentLight {
     let bitangent = normal.cross(tangent) * handedness;
     let (t, b, n) = (tangent, bitangent, normal);
     TangentLight {

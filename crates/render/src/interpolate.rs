@@ -93,7 +93,10 @@ mod tests {
                     lo[k][axis] -= 1e-2;
                     hi[k][axis] += 1e-2;
                     let numeric = (value(&hi) - value(&lo)) / 2e-2;
-                    assert!((numeric - f64::from(analytic[axis])).abs() < 2e-3, "{k} {axis} {numeric} {analytic}");
+                    assert!(
+                        (numeric - f64::from(analytic[axis])).abs() < 2e-3,
+                        "{k} {axis} {numeric} {analytic}"
+                    );
                 }
             }
         }

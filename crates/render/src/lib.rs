@@ -17,5 +17,6 @@ pub mod frame;
 pub mod interpolate;
 pub mod mip;
 pub mod raster;
+pub mod scene;
 pub mod shade;
 pub mod texture;

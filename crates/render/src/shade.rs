@@ -94,15 +94,8 @@ impl Shading for Lambert {
             map_normal: dk_dm * to_k,
             surface: TangentLight {
                 light: m * (to_k / square.max(1e-20).sqrt()),
-                gram: [
-                    m.x * m.x,
-                    m.y * m.y,
-                    m.z * m.z,
-                    2.0 * m.x * m.y,
-                    2.0 * m.x * m.z,
-                    2.0 * m.y * m.z,
-                ]
-                .map(|d| d * to_q),
+                gram: [m.x * m.x, m.y * m.y, m.z * m.z, 2.0 * m.x * m.y, 2.0 * m.x * m.z, 2.0 * m.y * m.z]
+                    .map(|d| d * to_q),
             },
         }
     }

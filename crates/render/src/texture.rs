@@ -235,8 +235,10 @@ mod tests {
                 cell(uv.x - h, w) != cell(uv.x + h, w) || cell(uv.y - h, hh) != cell(uv.y + h, hh)
             });
             if !kink {
-                let nx = (dot(p.fetch(uv + Vec2::X * h, lod)) - dot(p.fetch(uv - Vec2::X * h, lod))) / (2.0 * h);
-                let ny = (dot(p.fetch(uv + Vec2::Y * h, lod)) - dot(p.fetch(uv - Vec2::Y * h, lod))) / (2.0 * h);
+                let nx =
+                    (dot(p.fetch(uv + Vec2::X * h, lod)) - dot(p.fetch(uv - Vec2::X * h, lod))) / (2.0 * h);
+                let ny =
+                    (dot(p.fetch(uv + Vec2::Y * h, lod)) - dot(p.fetch(uv - Vec2::Y * h, lod))) / (2.0 * h);
                 assert!((nx - to_uv.x).abs() < 5e-3 * nx.abs().max(1.0), "{nx} {to_uv}");
                 assert!((ny - to_uv.y).abs() < 5e-3 * ny.abs().max(1.0), "{ny} {to_uv}");
             }
