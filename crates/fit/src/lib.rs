@@ -1,1 +1,30 @@
-//! Not yet written.
+//! The fit: which textures make the low-poly look like the high-poly.
+//!
+//! Geometry and texture coordinates stand still here, so a view's samples never
+//! change: where each pixel falls on the texture and how the light meets it there
+//! is worked out once, and every iteration only re-reads that list.
+//!
+//! ```text
+//! views → reference ─┐
+//!                    ├→ samples → color ⇄ normal → quantise → gutter
+//! start (projection) ┘              │        │
+//!                                   └ stencil, conjugate_gradient
+//! ```
+//!
+//! `schedule` walks that way; `watch` is how it reports and is stopped.
+
+pub mod atlas;
+pub mod canvas;
+pub mod color;
+pub mod conjugate_gradient;
+pub mod gutter;
+pub mod membrane;
+pub mod normal;
+pub mod reference;
+pub mod quantise;
+pub mod samples;
+pub mod schedule;
+pub mod start;
+pub mod stencil;
+pub mod views;
+pub mod watch;

@@ -154,6 +154,59 @@ impl Scene {
         ScreenTriangles::new(&self.mesh.positions, &self.mesh.triangles, camera, size)
     }
 
+    /// Albedo and unit normal of a point on the surface, textures included.
+    ///
+    /// `width` is how wide an area to average over, in the mesh's unit.
+    pub fn look(&self, triangle: usize, weights: [f32; 3], width: f32) -> (Vec3, Vec3) {
+        let mesh = &self.mesh;
+        let corners = mesh.triangles[triangle].map(|i| i as usize);
+        let surface = &self.surfaces[mesh.triangle_materials[triangle] as usize];
+        let fetch = |map: &Map| {
+            let uvs = self.map_uvs(map, corners);
+            let pyramid = &self.pyramids[map.pyramid];
+            let area = self.face_normals[triangle].length().max(1e-20);
+            let density = ((uvs[1] - uvs[0]).perp_dot(uvs[2] - uvs[0]).abs() / area).sqrt();
+            let along = Vec2::new(density * width, 0.0);
+            Vec3::from(pyramid.fetch(interpolate(uvs, weights), pyramid.lod(along, along)))
+        };
+        let normal = interpolate(corners.map(|i| mesh.normals[i]), weights);
+        let mapped = match &surface.normal {
+            Some(map) if !mesh.tangents.is_empty() => {
+                let tangent = interpolate(corners.map(|i| mesh.tangents[i].truncate()), weights);
+                let m = fetch(map) * Vec3::new(surface.normal_scale, surface.normal_scale, 1.0);
+                let bitangent = normal.cross(tangent) * mesh.tangents[corners[0]].w;
+                tangent * m.x + bitangent * m.y + normal * m.z
+            }
+            _ => normal,
+        };
+        (self.albedo(surface, corners, weights, fetch), mapped.normalize_or(Vec3::Z))
+    }
+
+    /// A map's texture coordinates at three vertices.
+    fn map_uvs(&self, map: &Map, corners: [usize; 3]) -> [Vec2; 3] {
+        let set = if map.slot.uv_set == 1 { &self.mesh.uvs1 } else { &self.mesh.uvs };
+        let uvs = corners.map(|i| set.get(i).copied().unwrap_or_default());
+        if map.moved { uvs.map(|uv| map.slot.transform.apply(uv)) } else { uvs }
+    }
+
+    /// Factor × texture × vertex colour.
+    fn albedo(
+        &self,
+        surface: &Surface,
+        corners: [usize; 3],
+        weights: [f32; 3],
+        fetch: impl Fn(&Map) -> Vec3,
+    ) -> Vec3 {
+        let mut color = surface.factor;
+        if let Some(map) = &surface.color {
+            color *= fetch(map);
+        }
+        if !self.mesh.colors.is_empty() {
+            color *= interpolate(corners.map(|i| self.mesh.colors[i]), weights).truncate();
+        }
+        color
+    }
+
     /// Light that leaves the surface towards the camera at one sample.
     ///
     /// `footprint` scales the pixel over which textures are filtered: 1 for one
@@ -172,23 +225,13 @@ impl Scene {
         let corners = mesh.triangles[triangle].map(|i| i as usize);
         let surface = &self.surfaces[mesh.triangle_materials[triangle] as usize];
         let fetch = |map: &Map| {
-            let set = if map.slot.uv_set == 1 { &mesh.uvs1 } else { &mesh.uvs };
-            let mut uvs = corners.map(|i| set.get(i).copied().unwrap_or_default());
-            if map.moved {
-                uvs = uvs.map(|uv| map.slot.transform.apply(uv));
-            }
+            let uvs = self.map_uvs(map, corners);
             let pyramid = &self.pyramids[map.pyramid];
             let along = |w: [f32; 3]| -> Vec2 { interpolate(uvs, w) };
             let lod = pyramid.lod(along(b.per_x) * footprint, along(b.per_y) * footprint);
             Vec3::from(pyramid.fetch(along(b.weights), lod))
         };
-        let mut color = surface.factor;
-        if let Some(map) = &surface.color {
-            color *= fetch(map);
-        }
-        if !mesh.colors.is_empty() {
-            color *= interpolate(corners.map(|i| mesh.colors[i]), b.weights).truncate();
-        }
+        let color = self.albedo(surface, corners, b.weights, fetch);
         let point = interpolate(corners.map(|i| mesh.positions[i]), b.weights);
         let to_light = camera.view_direction(point);
         let facing = if to_light.dot(self.face_normals[triangle]) < 0.0 { -1.0 } else { 1.0 };

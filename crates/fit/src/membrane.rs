@@ -1,0 +1,103 @@
+//! What texels do where few views or none have a say: keep the start's detail and
+//! let its level follow their neighbours in the chart (a membrane in the gradient
+//! domain, Pérez et al. 2003, "Poisson Image Editing").
+//!
+//! Energy: `λ Σ_edges |(xᵢ − xⱼ) − (pᵢ − pⱼ)|² + μ Σ |xᵢ − pᵢ|²`, p the start, edges
+//! between side neighbours of the same chart. Quadratic, so its Hessian and its
+//! gradient at x are exact: both are added to the solver's rows.
+
+use crate::atlas::{Atlas, NO_CHART, neighbours};
+use crate::canvas::Canvas;
+use crate::stencil::{Block, Row};
+use parbake_model::glam::Vec4;
+use rayon::prelude::*;
+
+/// Strengths, as shares of the samples' mean pull on a texel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Membrane {
+    /// λ: of differences between neighbours.
+    pub stiffness: f32,
+    /// μ: of the value itself.
+    pub tether: f32,
+}
+
+/// The samples' mean pull: trace of the centre block over the texels that have one.
+pub fn mean_pull<B: Block>(rows: &[Row<B>]) -> f32 {
+    let (sum, count) = rows
+        .iter()
+        .map(|r| f64::from(r.centre.trace()))
+        .filter(|&t| t > 0.0)
+        .fold((0.0, 0usize), |(s, n), t| (s + t, n + 1));
+    if count == 0 { 1.0 } else { (sum / (3 * count) as f64) as f32 }
+}
+
+/// Adds the membrane's Hessian and its pull at the state `x` towards `start`.
+pub fn add_membrane<B: Block>(
+    rows: &mut [Row<B>],
+    atlas: &Atlas,
+    x: &Canvas,
+    start: &Canvas,
+    membrane: &Membrane,
+) {
+    let scale = mean_pull(rows);
+    let (stiffness, tether) = (membrane.stiffness * scale, membrane.tether * scale);
+    let size = atlas.size;
+    rows.par_iter_mut().enumerate().for_each(|(i, row)| {
+        let label = atlas.label[i];
+        let offset = |j: usize| -> Vec4 { x.texels[j] - start.texels[j] };
+        let mut edges = 0.0;
+        let mut pull = offset(i) * tether;
+        if label != NO_CHART {
+            let sides = neighbours(i, size);
+            for (k, &j) in sides[..4].iter().enumerate() {
+                if atlas.label[j] != label {
+                    continue;
+                }
+                edges += 1.0;
+                pull += (offset(i) - offset(j)) * stiffness;
+                // West, east, above, below: the row keeps east and south.
+                match k {
+                    1 => row.east.add(&B::identity(-stiffness)),
+                    3 => row.south.add(&B::identity(-stiffness)),
+                    _ => {}
+                }
+            }
+        }
+        if label != NO_CHART || row.centre.trace() > 0.0 {
+            row.centre.add(&B::identity(edges * stiffness + tether));
+            row.right -= pull;
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conjugate_gradient::{Effort, solve};
+    use crate::stencil::{Diagonal, Stencil};
+
+    /// Protects the seamless fill: an unseen stretch between two fixed ends keeps
+    /// the start's detail and blends the ends' levels.
+    #[test]
+    fn unseen_texels_keep_detail_and_blend_levels() {
+        let size = 8;
+        let label = (0..64).map(|i| if i / 8 == 2 && i % 8 < 7 { 0 } else { NO_CHART }).collect();
+        let atlas = Atlas { size, label, covered: vec![true; 64] };
+        let mut start = Canvas::solid(size, Vec4::ZERO);
+        start.texels[16 + 3] = Vec4::splat(0.5);
+        let x = start.clone();
+        let mut rows = vec![Row::<Diagonal>::default(); 64];
+        for (end, target) in [(16, 1.0), (22, 2.0)] {
+            rows[end].centre = Diagonal::identity(1e4);
+            rows[end].right = Vec4::new(1e4 * target, 1e4 * target, 1e4 * target, 0.0);
+        }
+        add_membrane(&mut rows, &atlas, &x, &start, &Membrane { stiffness: 1e-3, tether: 0.0 });
+        let matrix = Stencil { size, rows };
+        let (step, _) = solve(&matrix, &matrix.right(), None, &Effort { steps: 200, tolerance: 1e-9 });
+        let value = |i: usize| start.texels[16 + i].x + step[16 + i].x;
+        for i in 0..7 {
+            let level = 1.0 + i as f32 / 6.0 + if i == 3 { 0.5 } else { 0.0 };
+            assert!((value(i) - level).abs() < 0.02, "{i} {} {level}", value(i));
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! Where each pixel of the training views falls on the low-poly's texture, how the
+//! light meets it there, and what the high-poly shows in its place.
+//!
+//! Forward: `raster → interpolate → frame` of the low-poly, once a pixel; what is
+//! left for the solvers is a bilinear fetch and the shading. Samples are binned by
+//! texture tile (a stable counting sort a view, then views in order within a
+//! tile), so that bands of the texture can be summed by many threads without
+//! atomics and always in the same order, and each band's texels stay in cache.
+//!
+//! Contract: the low-poly has normals, tangents and texture coordinates (wrapped by
+//! repetition); fetches are bilinear on the finest level.
+
+use crate::canvas::{BAND, bands};
+use crate::reference::Reference;
+use crate::watch::{Stage, Watch};
+use parbake_model::Mesh;
+use parbake_model::glam::{Vec2, Vec3, Vec4};
+use parbake_render::display::Display;
+use parbake_render::frame::{TangentLight, tangent_light};
+use parbake_render::interpolate::{barycentrics, interpolate};
+use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// What a pixel of the low-poly shall look like where the high-poly leaves the
+/// pixel, or part of it, empty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Beyond {
+    /// Nothing is asked of such pixels.
+    Ignore,
+    /// The high-poly before a background of this linear light.
+    Background([f32; 3]),
+}
+
+/// One pixel of a training view, as the texture sees it: 56 bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Upper left texel of the bilinear fetch.
+    pub texel: u32,
+    /// Fractions towards the right and lower texels, in 65536ths.
+    pub fraction: [u16; 2],
+    /// How the light meets the surface.
+    pub light: TangentLight,
+    /// Wanted display value of red, green and blue, in 65535ths of 1.
+    pub target: [u16; 3],
+    /// How much this sample counts, in 65535ths.
+    pub weight: u16,
+}
+
+/// All samples, by band of the texture.
+#[derive(Clone, Debug, Default)]
+pub struct SampleSet {
+    /// Texels along a side of the texture.
+    pub size: usize,
+    /// Samples whose fetch begins in this band, in a fixed order.
+    pub bands: Vec<Vec<Sample>>,
+}
+
+impl Sample {
+    /// Fractions as numbers in [0, 1).
+    #[inline]
+    pub fn fractions(&self) -> (f32, f32) {
+        (f32::from(self.fraction[0]) * (1.0 / 65536.0), f32::from(self.fraction[1]) * (1.0 / 65536.0))
+    }
+
+    /// Wanted display value.
+    #[inline]
+    pub fn target(&self) -> Vec4 {
+        let [r, g, b] = self.target.map(|t| f32::from(t) * (1.0 / 65535.0));
+        Vec4::new(r, g, b, 0.0)
+    }
+
+    /// Weight, 0 … 1.
+    #[inline]
+    pub fn weight(&self) -> f32 {
+        f32::from(self.weight) * (1.0 / 65535.0)
+    }
+}
+
+impl SampleSet {
+    /// How many samples there are.
+    pub fn len(&self) -> usize {
+        self.bands.iter().map(Vec::len).sum()
+    }
+
+    /// True when no view saw anything.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// Texels along a tile's width; its height is [`BAND`].
+const TILE: usize = 32;
+
+struct Layout {
+    size: usize,
+    tiles_across: usize,
+}
+
+impl Layout {
+    fn tiles(&self) -> usize {
+        self.tiles_across * bands(self.size)
+    }
+
+    fn tile(&self, texel: usize) -> usize {
+        (texel / self.size / BAND) * self.tiles_across + texel % self.size / TILE
+    }
+}
+
+/// One view's samples in tile order, and where each tile's begin.
+struct Sorted {
+    samples: Vec<Sample>,
+    begin: Vec<u32>,
+}
+
+/// Collects the samples of all references on a texture of `texture_size`².
+pub fn collect_samples(
+    low: &Mesh,
+    references: &[Reference],
+    reference_size: usize,
+    texture_size: usize,
+    display: &Display,
+    beyond: Beyond,
+    watch: &impl Watch,
+) -> SampleSet {
+    let layout = Layout { size: texture_size, tiles_across: texture_size.div_ceil(TILE) };
+    let face_normals: Vec<Vec3> = (0..low.triangles.len()).map(|t| low.area_normal(t)).collect();
+    let done = AtomicUsize::new(0);
+    let views: Vec<Sorted> = references
+        .par_iter()
+        .map(|reference| {
+            let samples =
+                view_samples(low, &face_normals, reference, reference_size, texture_size, display, beyond);
+            watch.progress(Stage::Sampling, done.fetch_add(1, Ordering::Relaxed) + 1, references.len());
+            sort(samples, &layout)
+        })
+        .collect();
+    let bands = (0..bands(texture_size))
+        .into_par_iter()
+        .map(|band| {
+            let tiles = band * layout.tiles_across..(band + 1) * layout.tiles_across;
+            let of = |v: &Sorted, tile: usize| v.begin[tile] as usize..v.begin[tile + 1] as usize;
+            let count =
+                views.iter().map(|v| of(v, tiles.end - 1).end - of(v, tiles.start).start).sum::<usize>();
+            let mut out = Vec::with_capacity(count);
+            for tile in tiles {
+                for view in &views {
+                    out.extend_from_slice(&view.samples[of(view, tile)]);
+                }
+            }
+            out
+        })
+        .collect();
+    SampleSet { size: texture_size, bands }
+}
+
+fn sort(samples: Vec<Sample>, layout: &Layout) -> Sorted {
+    let mut begin = vec![0u32; layout.tiles() + 1];
+    for s in &samples {
+        begin[layout.tile(s.texel as usize) + 1] += 1;
+    }
+    for i in 1..begin.len() {
+        begin[i] += begin[i - 1];
+    }
+    let mut next = begin.clone();
+    let mut sorted = vec![Sample::default(); samples.len()];
+    for s in samples {
+        let place = &mut next[layout.tile(s.texel as usize)];
+        sorted[*place as usize] = s;
+        *place += 1;
+    }
+    Sorted { samples: sorted, begin }
+}
+
+fn view_samples(
+    low: &Mesh,
+    face_normals: &[Vec3],
+    reference: &Reference,
+    size: usize,
+    texture_size: usize,
+    display: &Display,
+    beyond: Beyond,
+) -> Vec<Sample> {
+    let camera = &reference.view.camera;
+    let jitter = reference.view.jitter;
+    let screen = ScreenTriangles::new(&low.positions, &low.triangles, camera, size);
+    let mut seen = Visibility::default();
+    rasterise(&screen, size, (jitter[0], jitter[1]), &mut seen);
+    let mut out = Vec::with_capacity(size * size / 3);
+    for (index, &triangle) in seen.triangle.iter().enumerate() {
+        if triangle == NOTHING {
+            continue;
+        }
+        let Some(target) = target(reference.pixels[index].map(f32::from), display, beyond) else {
+            continue;
+        };
+        let at = (
+            (index % size) as f64 + 0.5 + f64::from(jitter[0]),
+            (index / size) as f64 + 0.5 + f64::from(jitter[1]),
+        );
+        let b = barycentrics(&screen.triangles[triangle as usize], at.0, at.1).weights;
+        let corners = low.triangles[triangle as usize].map(|i| i as usize);
+        let uv: Vec2 = interpolate(corners.map(|i| low.uvs[i]), b);
+        let point = interpolate(corners.map(|i| low.positions[i]), b);
+        let normal = interpolate(corners.map(|i| low.normals[i]), b);
+        let tangent = interpolate(corners.map(|i| low.tangents[i].truncate()), b);
+        let to_light = camera.view_direction(point);
+        let facing = if to_light.dot(face_normals[triangle as usize]) < 0.0 { -1.0 } else { 1.0 };
+        let (texel, fraction) = place(uv, texture_size);
+        let handedness = low.tangents[corners[0]].w;
+        out.push(Sample {
+            texel,
+            fraction,
+            light: tangent_light(normal, tangent, handedness, to_light, facing),
+            target,
+            weight: u16::MAX,
+        });
+    }
+    out
+}
+
+/// The upper left texel of a coordinate's fetch, and the fractions.
+fn place(uv: Vec2, size: usize) -> (u32, [u16; 2]) {
+    let along = |t: f32| {
+        let x = t * size as f32 - 0.5;
+        let first = x.floor();
+        ((first as i64).rem_euclid(size as i64) as u32, ((x - first) * 65536.0).min(65535.0) as u16)
+    };
+    let ((x, fx), (y, fy)) = (along(uv.x), along(uv.y));
+    (y * size as u32 + x, [fx, fy])
+}
+
+/// What the display shall show; `None` when nothing is asked of this pixel.
+fn target(pixel: [f32; 4], display: &Display, beyond: Beyond) -> Option<[u16; 3]> {
+    let [r, g, b, coverage] = pixel;
+    let rest = 1.0 - coverage;
+    let light = match beyond {
+        Beyond::Ignore if rest > 1e-3 => return None,
+        Beyond::Ignore => [r, g, b],
+        // The background is light that has passed the gain already.
+        Beyond::Background(light) => {
+            [r + light[0] * rest / display.gain, g + light[1] * rest / display.gain, b + light[2] * rest / display.gain]
+        }
+    };
+    Some(light.map(|x| (display.encode(x.max(0.0)).min(1.0) * 65535.0 + 0.5) as u16))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects the wrap of fetches that straddle the texture's border.
+    #[test]
+    fn places_wrap_around() {
+        assert_eq!(place(Vec2::new(0.0, 0.0), 4), (15, [32768, 32768]));
+        assert_eq!(place(Vec2::new(0.375, 0.125), 4), (1, [0, 0]));
+        assert_eq!(place(Vec2::new(-0.875, 1.125), 4), (0, [0, 0]));
+    }
+
+    /// Protects the two ways of treating what lies beyond the silhouette.
+    #[test]
+    fn a_half_covered_pixel_is_ignored_or_blended() {
+        let display = Display { gain: 1.0, curve: parbake_render::display::Curve::Linear };
+        let pixel = [0.25, 0.25, 0.25, 0.5];
+        assert_eq!(target(pixel, &display, Beyond::Ignore), None);
+        let white = target(pixel, &display, Beyond::Background([1.0; 3]));
+        assert_eq!(white, Some([49151; 3]));
+    }
+}

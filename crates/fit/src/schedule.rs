@@ -1,0 +1,225 @@
+//! The order of the fit: colours and normals in turn, each with the other held, then
+//! the normals rounded to what a file holds and the colours solved once more against
+//! those, so that rounding costs as little as it can.
+//!
+//! Every step first measures the loss of the state that it found; the best state is
+//! kept, so a run that is stopped, or a step that goes wrong, never ends worse.
+
+use crate::atlas::{Atlas, NO_CHART};
+use crate::canvas::{Canvas, block};
+use crate::color::{Problem, color_step, loss};
+use crate::conjugate_gradient::Effort;
+use crate::gutter;
+use crate::membrane::Membrane;
+use crate::normal::normal_step;
+use crate::quantise::{color_canvas, color_image, normal_canvas, normal_image};
+use crate::samples::SampleSet;
+use crate::start::Start;
+use crate::watch::{Stage, Watch};
+use parbake_model::Image;
+use parbake_render::display::Display;
+use std::time::Instant;
+
+/// How much work the fit does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Schedule {
+    /// Times that colours and normals take turns.
+    pub rounds: usize,
+    /// Gauss–Newton steps of the colours in each round.
+    pub color_steps: usize,
+    /// Levenberg–Marquardt steps of the normals in each round; 0 keeps the start's.
+    pub normal_steps: usize,
+    /// Steps of the colours after the normals were rounded.
+    pub final_steps: usize,
+    /// Limits of the linear solver.
+    pub effort: Effort,
+    /// What holds colours that few views see.
+    pub color_membrane: Membrane,
+    /// What holds normals that few views see.
+    pub normal_membrane: Membrane,
+    /// First damping of the normals, a share of the samples' mean pull.
+    pub damping: f32,
+}
+
+impl Default for Schedule {
+    fn default() -> Self {
+        Self {
+            rounds: 3,
+            color_steps: 1,
+            normal_steps: 2,
+            final_steps: 2,
+            effort: Effort { steps: 40, tolerance: 1e-3 },
+            color_membrane: Membrane { stiffness: 3e-3, tether: 1e-5 },
+            normal_membrane: Membrane { stiffness: 1e-2, tether: 1e-3 },
+            damping: 0.02,
+        }
+    }
+}
+
+/// What moved in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Move {
+    /// Nothing: the projected start.
+    Start,
+    /// Colours.
+    Color,
+    /// Normals.
+    Normal,
+    /// Both textures, to eight bits.
+    Rounding,
+}
+
+/// The loss after a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LossPoint {
+    /// What moved.
+    pub moved: Move,
+    /// Seconds since the fit began.
+    pub seconds: f64,
+    /// Mean squared display difference over all samples and channels.
+    pub mean_square: f64,
+}
+
+/// Fitted textures, and how they came about.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// Base colour.
+    pub color: Image,
+    /// Tangent-space normals.
+    pub normal: Image,
+    /// Loss of the start and after each step.
+    pub losses: Vec<LossPoint>,
+    /// Texels on the surface.
+    pub covered: usize,
+    /// Those among them that no view saw.
+    pub unseen: usize,
+    /// True when it was asked to stop early.
+    pub stopped: bool,
+}
+
+struct Log {
+    begin: Instant,
+    terms: f64,
+    losses: Vec<LossPoint>,
+    best: Option<(f64, Canvas, Canvas)>,
+}
+
+impl Log {
+    /// Notes the loss of this state, and the state itself if it is the best so far.
+    fn note(&mut self, moved: Move, loss: f64, color: &Canvas, normal: &Canvas) {
+        let seconds = self.begin.elapsed().as_secs_f64();
+        self.losses.push(LossPoint { moved, seconds, mean_square: loss / self.terms });
+        if self.best.as_ref().is_none_or(|b| loss < b.0) {
+            self.best = Some((loss, color.clone(), normal.clone()));
+        }
+    }
+}
+
+/// Fits both textures. `srgb` tells whether the colour file holds sRGB of the albedo.
+pub fn fit_textures(
+    samples: &SampleSet,
+    atlas: &Atlas,
+    start: &Start,
+    display: Display,
+    srgb: bool,
+    schedule: &Schedule,
+    watch: &impl Watch,
+) -> Fitted {
+    let weight: f64 = samples.bands.iter().flatten().map(|s| f64::from(s.weight())).sum();
+    let mut log =
+        Log { begin: Instant::now(), terms: (3.0 * weight).max(1e-9), losses: Vec::new(), best: None };
+    let problem = |membrane| Problem { samples, atlas, display, membrane, effort: schedule.effort };
+    let color_problem = problem(schedule.color_membrane);
+    let normal_problem = problem(schedule.normal_membrane);
+    let (mut color, mut normal) = (start.color.clone(), start.normal.clone());
+    let (mut color_rows, mut normal_rows) = (Vec::new(), Vec::new());
+    let total = schedule.rounds * (schedule.color_steps + schedule.normal_steps) + schedule.final_steps;
+    let (mut done, mut last, mut damping, mut stopped) = (0, Move::Start, schedule.damping, false);
+    let mut advance = |stopped: &mut bool| {
+        watch.progress(Stage::Solve, done, total);
+        done += 1;
+        *stopped = *stopped || watch.should_stop();
+        !*stopped
+    };
+    for _ in 0..schedule.rounds {
+        for _ in 0..schedule.color_steps {
+            if !advance(&mut stopped) {
+                break;
+            }
+            let before = color.clone();
+            let (loss, _) = color_step(&color_problem, &mut color, &normal, &start.color, &mut color_rows);
+            log.note(last, loss, &before, &normal);
+            last = Move::Color;
+        }
+        let mut previous: Option<(f64, Canvas)> = None;
+        for _ in 0..schedule.normal_steps {
+            if !advance(&mut stopped) {
+                break;
+            }
+            let before = normal.clone();
+            let (loss, _) =
+                normal_step(&normal_problem, &color, &mut normal, &start.normal, damping, &mut normal_rows);
+            log.note(last, loss, &color, &before);
+            last = Move::Normal;
+            match previous {
+                // The step before made it worse: take it back and tread more carefully.
+                Some((was, ref kept)) if loss > was => {
+                    normal = kept.clone();
+                    damping *= 8.0;
+                }
+                _ => {
+                    damping *= 0.5;
+                    previous = Some((loss, before));
+                }
+            }
+        }
+    }
+    if !samples.is_empty() && !stopped {
+        log.note(last, loss(&color_problem, &color, &normal), &color, &normal);
+    }
+    if let Some((_, c, n)) = log.best.take() {
+        (color, normal) = (c, n);
+    }
+
+    let seen = seen(samples);
+    let known: Vec<bool> =
+        atlas.label.iter().zip(&seen).map(|(&label, &seen)| label != NO_CHART || seen).collect();
+    gutter::fill(&mut normal, &known);
+    let normal_picture = normal_image("normal", &normal);
+    let rounded = normal_canvas(&normal_picture);
+    for _ in 0..schedule.final_steps {
+        if samples.is_empty() || !advance(&mut stopped) {
+            break;
+        }
+        let before = color.clone();
+        let (loss, _) = color_step(&color_problem, &mut color, &rounded, &start.color, &mut color_rows);
+        log.note(last, loss, &before, &rounded);
+        last = Move::Color;
+    }
+    gutter::fill(&mut color, &known);
+    let color_picture = color_image("base color", &color, srgb);
+    if !samples.is_empty() {
+        let written = color_canvas(&color_picture, srgb);
+        log.note(Move::Rounding, loss(&color_problem, &written, &rounded), &written, &rounded);
+    }
+    watch.progress(Stage::Solve, total, total);
+    Fitted {
+        color: color_picture,
+        normal: normal_picture,
+        losses: log.losses,
+        covered: atlas.covered.iter().filter(|&&c| c).count(),
+        unseen: atlas.covered.iter().zip(&seen).filter(|(c, s)| **c && !**s).count(),
+        stopped,
+    }
+}
+
+/// Texels that at least one sample reads.
+fn seen(samples: &SampleSet) -> Vec<bool> {
+    let mut seen = vec![false; samples.size * samples.size];
+    for sample in samples.bands.iter().flatten() {
+        for texel in block(sample.texel as usize, samples.size) {
+            seen[texel] = true;
+        }
+    }
+    seen
+}
