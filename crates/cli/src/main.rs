@@ -1,1 +1,38 @@
-fn main() {}
+//! The `parbake` command: reads arguments, draws progress, writes files. All work
+//! is the library's.
+
+mod arguments;
+mod bake;
+mod demo;
+mod evaluate;
+mod failure;
+mod options_file;
+mod progress;
+mod simplify;
+
+use arguments::{Arguments, Command};
+use clap::{CommandFactory, FromArgMatches};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let matches = Arguments::command().get_matches();
+    let arguments = match Arguments::from_arg_matches(&matches) {
+        Ok(arguments) => arguments,
+        Err(error) => error.exit(),
+    };
+    let given = matches.subcommand().map(|(_, m)| m);
+    let outcome = match (&arguments.command, given) {
+        (Command::Bake(command), Some(given)) => bake::run(command, given),
+        (Command::Demo(command), Some(given)) => demo::run(command, given),
+        (Command::Eval(command), _) => evaluate::run(command),
+        (Command::Simplify(command), _) => simplify::run(command),
+        _ => Ok(failure::Ending::Finished),
+    };
+    match outcome {
+        Ok(ending) => ending.exit_code(),
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            failure.exit_code()
+        }
+    }
+}

@@ -1,1 +1,30 @@
-//! Not yet written.
+//! Parbake's doors: OBJ, glTF and pictures in, GLB, OBJ and PNG out.
+//!
+//! Readers turn any file into a [`Model`](parbake_model::Model) that keeps the
+//! model's contract or into a [`FileError`] that names the file and the place;
+//! they never panic and reserve no memory that a file only claims to need
+//! ([`Limits`]). What is odd but can be lived with becomes a warning.
+
+mod atomic;
+mod context;
+mod error;
+mod finish;
+mod gltf;
+mod image_in;
+mod image_out;
+mod limits;
+mod model_in;
+mod model_out;
+mod obj;
+mod resources;
+mod unit;
+
+pub use atomic::write_atomically;
+pub use error::{FileError, Place};
+pub use gltf::{glb_bytes, read_gltf_bytes, write_glb};
+pub use image_in::{decode_image, read_image};
+pub use image_out::encode_png;
+pub use limits::Limits;
+pub use model_in::{Loaded, read_geometry, read_model};
+pub use obj::{read_obj_bytes, write_obj};
+pub use resources::{Folder, NoResources, Resources};

@@ -37,11 +37,8 @@ impl Atlas {
     pub fn new(map: &TexelMap, charts: &[u32], rings: usize) -> Self {
         let size = map.size;
         let covered: Vec<bool> = map.triangle.iter().map(|&t| t != u32::MAX).collect();
-        let mut label: Vec<u32> = map
-            .triangle
-            .iter()
-            .map(|&t| charts.get(t as usize).copied().unwrap_or(NO_CHART))
-            .collect();
+        let mut label: Vec<u32> =
+            map.triangle.iter().map(|&t| charts.get(t as usize).copied().unwrap_or(NO_CHART)).collect();
         let mut border: Vec<usize> = (0..label.len()).filter(|&i| label[i] != NO_CHART).collect();
         for _ in 0..rings {
             let mut grown = Vec::new();

@@ -20,6 +20,10 @@ use rayon::prelude::*;
 /// The least z of a mapped normal: it stays on its side of the surface.
 const LEAST_Z: f32 = 0.02;
 
+/// The longest change of a normal in one step: beyond it the linear model of the
+/// cosine says little.
+const LONGEST: f32 = 0.3;
+
 /// One step; returns the loss before it and what the linear solver did.
 /// `damping` is a share of the samples' mean pull.
 pub fn normal_step(
@@ -59,10 +63,16 @@ pub fn normal_step(
     );
     let extra = damping * mean_pull(rows);
     add_membrane(rows, problem.atlas, normal, start, &problem.membrane);
-    rows.par_iter_mut().filter(|r| r.centre.trace() > 0.0).for_each(|r| r.centre.add(&Symmetric::identity(extra)));
+    rows.par_iter_mut()
+        .filter(|r| r.centre.trace() > 0.0)
+        .for_each(|r| r.centre.add(&Symmetric::identity(extra)));
     let matrix = Stencil { size, rows: std::mem::take(rows) };
     let (step, outcome) = solve(&matrix, &matrix.right(), None, &problem.effort);
-    normal.texels.par_iter_mut().zip(&step).for_each(|(m, step)| *m = upright(*m + *step));
+    normal.texels.par_iter_mut().zip(&step).for_each(|(m, step)| {
+        let length = step.length();
+        let limit = (LONGEST / length.max(1e-9)).min(1.0);
+        *m = upright(*m + *step * limit);
+    });
     *rows = matrix.rows;
     (losses.iter().sum(), outcome)
 }

@@ -28,9 +28,8 @@ pub fn color_image(name: &str, canvas: &Canvas, srgb: bool) -> Image {
 
 /// The albedo that a reader of [`color_image`] finds.
 pub fn color_canvas(image: &Image, srgb: bool) -> Canvas {
-    let table: Vec<f32> = (0..=255u32)
-        .map(|i| if srgb { decode_srgb(i as f32 / 255.0) } else { i as f32 / 255.0 })
-        .collect();
+    let table: Vec<f32> =
+        (0..=255u32).map(|i| if srgb { decode_srgb(i as f32 / 255.0) } else { i as f32 / 255.0 }).collect();
     let texels = image
         .pixels
         .iter()
@@ -73,10 +72,8 @@ mod tests {
     /// Protects what is written from drifting away from what was fitted.
     #[test]
     fn rounding_is_within_half_a_step() {
-        let canvas = Canvas {
-            size: 2,
-            texels: (0..4).map(|i| Vec4::new(0.1 * i as f32, 0.37, 0.9, 0.0)).collect(),
-        };
+        let canvas =
+            Canvas { size: 2, texels: (0..4).map(|i| Vec4::new(0.1 * i as f32, 0.37, 0.9, 0.0)).collect() };
         for srgb in [false, true] {
             let back = color_canvas(&color_image("", &canvas, srgb), srgb);
             for (a, b) in canvas.texels.iter().zip(&back.texels) {

@@ -69,8 +69,8 @@ fn render(high: &Scene, shading: &impl Shading, view: &View, sampling: &Sampling
     let share = 1.0 / (samples * samples) as f32;
     let footprint = (filter / samples as f32).max(1.0 / 16.0);
     for sample in 0..samples * samples {
-        let shift = [sample % samples, sample / samples]
-            .map(|i| filter * ((i as f32 + 0.5) / samples as f32 - 0.5));
+        let shift =
+            [sample % samples, sample / samples].map(|i| filter * ((i as f32 + 0.5) / samples as f32 - 0.5));
         let offset = (view.jitter[0] + shift[0], view.jitter[1] + shift[1]);
         rasterise(&screen, size, offset, &mut seen);
         for (index, (&triangle, pixel)) in seen.triangle.iter().zip(&mut sum).enumerate() {

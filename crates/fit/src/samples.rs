@@ -28,8 +28,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub enum Beyond {
     /// Nothing is asked of such pixels.
     Ignore,
-    /// The high-poly before a background of this linear light.
-    Background([f32; 3]),
+    /// The high-poly before a background of this linear light, counting this much
+    /// (0 … 1) against a pixel that the high-poly fills.
+    Background([f32; 3], f32),
 }
 
 /// One pixel of a training view, as the texture sees it: 56 bytes.
@@ -191,7 +192,8 @@ fn view_samples(
         if triangle == NOTHING {
             continue;
         }
-        let Some(target) = target(reference.pixels[index].map(f32::from), display, beyond) else {
+        let pixel = reference.pixels[index].map(f32::from);
+        let Some((target, weight)) = target(pixel, display, beyond) else {
             continue;
         };
         let at = (
@@ -213,7 +215,7 @@ fn view_samples(
             fraction,
             light: tangent_light(normal, tangent, handedness, to_light, facing),
             target,
-            weight: u16::MAX,
+            weight,
         });
     }
     out
@@ -230,19 +232,25 @@ fn place(uv: Vec2, size: usize) -> (u32, [u16; 2]) {
     (y * size as u32 + x, [fx, fy])
 }
 
-/// What the display shall show; `None` when nothing is asked of this pixel.
-fn target(pixel: [f32; 4], display: &Display, beyond: Beyond) -> Option<[u16; 3]> {
+/// Less than this share of a pixel beyond the silhouette is rounding.
+const UNCOVERED: f32 = 1e-3;
+
+/// What the display shall show and how much that counts; `None` when nothing is
+/// asked of this pixel.
+fn target(pixel: [f32; 4], display: &Display, beyond: Beyond) -> Option<([u16; 3], u16)> {
     let [r, g, b, coverage] = pixel;
     let rest = 1.0 - coverage;
-    let light = match beyond {
-        Beyond::Ignore if rest > 1e-3 => return None,
-        Beyond::Ignore => [r, g, b],
-        // The background is light that has passed the gain already.
-        Beyond::Background(light) => {
-            [r + light[0] * rest / display.gain, g + light[1] * rest / display.gain, b + light[2] * rest / display.gain]
+    let (light, weight) = match beyond {
+        _ if rest < UNCOVERED => ([r, g, b], 1.0),
+        Beyond::Ignore => return None,
+        Beyond::Background(behind, weight) => {
+            // The background is light that has passed the gain already.
+            let behind = behind.map(|x| x * rest / display.gain);
+            ([r + behind[0], g + behind[1], b + behind[2]], weight)
         }
     };
-    Some(light.map(|x| (display.encode(x.max(0.0)).min(1.0) * 65535.0 + 0.5) as u16))
+    let shown = light.map(|x| (display.encode(x.max(0.0)).min(1.0) * 65535.0 + 0.5) as u16);
+    Some((shown, (weight.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16))
 }
 
 #[cfg(test)]
@@ -263,7 +271,7 @@ mod tests {
         let display = Display { gain: 1.0, curve: parbake_render::display::Curve::Linear };
         let pixel = [0.25, 0.25, 0.25, 0.5];
         assert_eq!(target(pixel, &display, Beyond::Ignore), None);
-        let white = target(pixel, &display, Beyond::Background([1.0; 3]));
-        assert_eq!(white, Some([49151; 3]));
+        let white = target(pixel, &display, Beyond::Background([1.0; 3], 0.5));
+        assert_eq!(white, Some(([49151; 3], 32768)));
     }
 }

@@ -31,8 +31,11 @@ pub struct Schedule {
     pub normal_steps: usize,
     /// Steps of the colours after the normals were rounded.
     pub final_steps: usize,
-    /// Limits of the linear solver.
+    /// Limits of the linear solver: few steps, since the next linearisation asks
+    /// for something else anyway, and stopping early regularises.
     pub effort: Effort,
+    /// Its limits in the final steps.
+    pub final_effort: Effort,
     /// What holds colours that few views see.
     pub color_membrane: Membrane,
     /// What holds normals that few views see.
@@ -48,10 +51,11 @@ impl Default for Schedule {
             color_steps: 1,
             normal_steps: 2,
             final_steps: 2,
-            effort: Effort { steps: 40, tolerance: 1e-3 },
+            effort: Effort { steps: 6, tolerance: 0.05 },
+            final_effort: Effort { steps: 30, tolerance: 1e-3 },
             color_membrane: Membrane { stiffness: 3e-3, tether: 1e-5 },
             normal_membrane: Membrane { stiffness: 1e-2, tether: 1e-3 },
-            damping: 0.02,
+            damping: 8.0,
         }
     }
 }
@@ -131,6 +135,7 @@ pub fn fit_textures(
     let problem = |membrane| Problem { samples, atlas, display, membrane, effort: schedule.effort };
     let color_problem = problem(schedule.color_membrane);
     let normal_problem = problem(schedule.normal_membrane);
+    let final_problem = Problem { effort: schedule.final_effort, ..problem(schedule.color_membrane) };
     let (mut color, mut normal) = (start.color.clone(), start.normal.clone());
     let (mut color_rows, mut normal_rows) = (Vec::new(), Vec::new());
     let total = schedule.rounds * (schedule.color_steps + schedule.normal_steps) + schedule.final_steps;
@@ -192,7 +197,7 @@ pub fn fit_textures(
             break;
         }
         let before = color.clone();
-        let (loss, _) = color_step(&color_problem, &mut color, &rounded, &start.color, &mut color_rows);
+        let (loss, _) = color_step(&final_problem, &mut color, &rounded, &start.color, &mut color_rows);
         log.note(last, loss, &before, &rounded);
         last = Move::Color;
     }

@@ -214,8 +214,7 @@ impl<B: Block> Stencil<B> {
             let above = if row == 0 { size * (size - 1) } else { here - size };
             let below = block(here, size)[2];
             let (own, upper) = (&self.rows[here..here + size], &self.rows[above..above + size]);
-            let (x1, x0, x2) =
-                (&x[here..here + size], &x[above..above + size], &x[below..below + size]);
+            let (x1, x0, x2) = (&x[here..here + size], &x[above..above + size], &x[below..below + size]);
             for (i, out) in out.iter_mut().enumerate() {
                 let west = if i == 0 { size - 1 } else { i - 1 };
                 let east = if i + 1 == size { 0 } else { i + 1 };

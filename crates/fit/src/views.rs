@@ -62,7 +62,8 @@ pub fn view_pool(count: usize, rig: &Rig, seed: u64) -> Vec<View> {
     let stride = stride(count);
     (0..count)
         .map(|i| {
-            let jitter = [0, 1].map(|k| unit_interval(seed ^ (0x5EED << 32) ^ (2 * i as u64 + k)) as f32 - 0.5);
+            let jitter =
+                [0, 1].map(|k| unit_interval(seed ^ (0x5EED << 32) ^ (2 * i as u64 + k)) as f32 - 0.5);
             let direction = directions[i * stride % count];
             View { camera: Camera::towards_origin(direction, rig.radius, rig.projection), jitter }
         })

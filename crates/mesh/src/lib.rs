@@ -1,1 +1,37 @@
-//! Not yet written.
+//! Parbake's geometry: what is done to meshes before, around and after rendering.
+//!
+//! ```text
+//! normals → tangents            what a surface needs before it can be shaded
+//! charts, texel_map             which point of the surface a texel shows
+//! projection                    where that point lies on the detailed model
+//! simplify, subdivide           coarser and finer copies of a mesh
+//! weld, vertices, union_find    what these share
+//! demo                          the built-in pair of models
+//! ```
+//!
+//! Contract, for every file: any mesh that keeps [`parbake_model::Mesh`]'s
+//! contract is taken, however degenerate its triangles, non-manifold its edges or
+//! many its charts; results do not depend on the number of threads.
+
+mod bvh;
+pub mod charts;
+pub mod demo;
+pub mod normals;
+pub mod projection;
+pub mod simplify;
+pub mod subdivide;
+pub mod tangents;
+pub mod texel_map;
+mod union_find;
+pub mod vertices;
+pub mod weld;
+
+pub use charts::{charts, texel_charts};
+pub use demo::{demo_low, demo_model};
+pub use normals::{ensure_normals, smooth_normals};
+pub use projection::{HighSurface, SurfacePoint};
+pub use simplify::{SimplifyOptions, simplify};
+pub use subdivide::subdivide;
+pub use tangents::compute_tangents;
+pub use texel_map::{TexelMap, texel_map};
+pub use weld::weld_by_position;

@@ -1,1 +1,44 @@
-//! Not yet written.
+//! Parbake makes a small 3D model look like a big one.
+//!
+//! It takes a detailed textured model (the high-poly) and a coarse one with texture
+//! coordinates (the low-poly), renders both, and moves the coarse one's textures
+//! until the pictures agree.
+//!
+//! ```no_run
+//! use parbake::{BakeOptions, Limits, bake, read_model, write_glb};
+//! # fn main() -> Result<(), parbake::BakeError> {
+//! let limits = Limits::default();
+//! let high = read_model("high.obj".as_ref(), &limits)?.model;
+//! let low = read_model("low.obj".as_ref(), &limits)?.model;
+//! let baked = bake(&high, &low, &BakeOptions::default(), &())?;
+//! write_glb("baked.glb".as_ref(), &baked.model)?;
+//! # Ok(())
+//! # }
+//! ```
+
+mod bake;
+mod error;
+mod evaluate;
+mod html;
+mod memory;
+mod message;
+mod models;
+mod options;
+mod pair;
+mod report;
+mod threads;
+
+pub use bake::{Baked, bake};
+pub use error::BakeError;
+pub use evaluate::{EvaluateOptions, Evaluation, ViewFigures, evaluate};
+pub use html::html_report;
+pub use memory::peak_memory;
+pub use message::{Message, Stage, Watcher};
+pub use models::{demo_pair, simplified, subdivided};
+pub use options::{Backdrop, BakeOptions, Convention, Plan, Preset};
+pub use parbake_files::{
+    FileError, Limits, Loaded, read_model, write_atomically as write_file, write_glb, write_obj,
+};
+pub use parbake_model::Model;
+pub use report::{BakeReport, LossStep, StageTime};
+pub use threads::{join, with_threads};

@@ -5,18 +5,31 @@
 //! ```text
 //! camera → raster → interpolate → frame ─┐
 //!                        └→ uv → texture ┴→ shade → antialias → background → display → loss
-//!                                  ↑ mip
+//!                                  ↑ mip                ↑ edges
 //! ```
+//!
+//! `pipeline.rs` goes the whole way and back; `patch.rs` is its inner loop, from a
+//! triangle's samples to light. `slopes.rs` and `scatter.rs` are the two halves of the
+//! texture's adjoint: towards the coordinates and towards the texels. `scene.rs` renders
+//! whole models, forward only.
 //!
 //! Stages are pure functions over plain data: no hidden state, so that a GPU
 //! backend can put a kernel in the place of each.
 
+pub mod antialias;
+pub mod background;
 pub mod camera;
 pub mod display;
+pub mod edges;
 pub mod frame;
 pub mod interpolate;
+pub mod loss;
 pub mod mip;
+pub mod patch;
+pub mod pipeline;
 pub mod raster;
+pub mod scatter;
 pub mod scene;
 pub mod shade;
+pub mod slopes;
 pub mod texture;

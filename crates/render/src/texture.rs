@@ -58,19 +58,27 @@ fn wrapped(i: i64, size: i64, wrap: Wrap) -> u32 {
     }) as u32
 }
 
+/// `x.floor() as i64` without the call that CPUs before SSE 4.1 need for it.
+#[inline]
+fn floor(x: f32) -> i64 {
+    let towards_zero = x as i64;
+    towards_zero.saturating_sub(i64::from(towards_zero as f32 > x))
+}
+
 /// The taps of a coordinate on a level of this size.
 #[inline]
 pub fn taps(uv: Vec2, width: usize, height: usize, wrap: [Wrap; 2]) -> Taps {
     let (x, y) = (uv.x * width as f32 - 0.5, uv.y * height as f32 - 0.5);
-    let (x0, y0) = (x.floor(), y.floor());
+    let (i, j) = (floor(x), floor(y));
+    let (x0, y0) = (i as f32, j as f32);
     let (w, h) = (width as i64, height as i64);
-    let (i, j) = (x0 as i64, y0 as i64);
     let columns = [wrapped(i, w, wrap[0]), wrapped(i.saturating_add(1), w, wrap[0])];
     let rows = [wrapped(j, h, wrap[1]), wrapped(j.saturating_add(1), h, wrap[1])].map(|r| r * width as u32);
     Taps {
         index: [rows[0] + columns[0], rows[0] + columns[1], rows[1] + columns[0], rows[1] + columns[1]],
-        fx: x - x0,
-        fy: y - y0,
+        // Only coordinates beyond any i64 are not in this range already.
+        fx: (x - x0).clamp(0.0, 1.0),
+        fy: (y - y0).clamp(0.0, 1.0),
     }
 }
 
@@ -133,9 +141,10 @@ pub fn level_of_detail(per_x: Vec2, per_y: Vec2, width: usize, height: usize) ->
 
 impl<const C: usize> Pyramid<C> {
     #[inline]
-    fn split(&self, lod: f32) -> (usize, f32) {
+    pub(crate) fn split(&self, lod: f32) -> (usize, f32) {
         let lod = lod.clamp(0.0, (self.levels.len() - 1) as f32);
-        (lod as usize, lod.fract())
+        let level = lod as usize;
+        (level, lod - level as f32)
     }
 
     /// The level of detail of a footprint on this texture.

@@ -1,0 +1,144 @@
+//! What can be typed.
+
+use clap::{Args, Parser, Subcommand};
+use parbake::{BakeOptions, EvaluateOptions};
+use std::path::PathBuf;
+
+/// Makes a small 3D model look like a big one
+#[derive(Parser, Debug)]
+#[command(name = "parbake", version, propagate_version = true)]
+#[command(after_help = "Exit codes: 0 done, 1 bad input or failed output, 2 wrong usage, \
+130 interrupted (the best state so far was written).")]
+pub struct Arguments {
+    /// What to do
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Subcommand, Debug)]
+pub enum Command {
+    /// Bake a detailed model's look onto a coarse one with texture coordinates
+    Bake(BakeCommand),
+    /// Make a detailed model and a coarse one, bake, and write a report
+    Demo(DemoCommand),
+    /// Compare two models picture by picture: PSNR, MS-SSIM, FLIP
+    Eval(EvalCommand),
+    /// Write a coarser copy of a model, which keeps its texture coordinates
+    Simplify(SimplifyCommand),
+}
+
+/// What is told while running.
+#[derive(Args, Debug, Clone, Copy)]
+pub struct Talk {
+    /// Tell what each stage took
+    #[arg(short, long)]
+    pub verbose: bool,
+
+    /// Tell nothing but errors
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub quiet: bool,
+}
+
+/// Arguments of `bake`.
+#[derive(Args, Debug)]
+pub struct BakeCommand {
+    /// The detailed model: .obj, .gltf or .glb
+    pub high: PathBuf,
+
+    /// The coarse model with texture coordinates: .obj, .gltf or .glb
+    pub low: PathBuf,
+
+    /// Where the result goes: .glb, or .obj with .mtl and .png beside it
+    #[arg(short, long, value_name = "FILE", default_value = "baked.glb")]
+    pub output: PathBuf,
+
+    /// A JSON file of options, as in a JSON report's "options"; the command line wins over it
+    #[arg(long, value_name = "FILE")]
+    pub options: Option<PathBuf>,
+
+    /// Write figures of the run as JSON to this file, or to standard output for "-"
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+
+    /// Write a report with pictures to this HTML file
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
+
+    /// How to bake
+    #[command(flatten, next_help_heading = "Baking")]
+    pub bake: BakeOptions,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = "Messages")]
+    pub talk: Talk,
+}
+
+/// Arguments of `demo`.
+#[derive(Args, Debug)]
+pub struct DemoCommand {
+    /// Folder for demo.glb, demo.html and the two models
+    #[arg(short, long, value_name = "FOLDER", default_value = "out")]
+    pub output: PathBuf,
+
+    /// How to bake
+    #[command(flatten, next_help_heading = "Baking")]
+    pub bake: BakeOptions,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = "Messages")]
+    pub talk: Talk,
+}
+
+/// Arguments of `eval`.
+#[derive(Args, Debug)]
+pub struct EvalCommand {
+    /// The detailed model
+    pub high: PathBuf,
+
+    /// The model to compare with it
+    pub low: PathBuf,
+
+    /// Write the figures as JSON to this file, or to standard output for "-"
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+
+    /// Show each view's figures
+    #[arg(long)]
+    pub per_view: bool,
+
+    /// Threads to work with, 0 for one a core
+    #[arg(long, value_name = "COUNT", default_value_t = 0)]
+    pub threads: usize,
+
+    /// How to compare
+    #[command(flatten, next_help_heading = "Comparison")]
+    pub evaluate: EvaluateOptions,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = "Messages")]
+    pub talk: Talk,
+}
+
+/// Arguments of `simplify`.
+#[derive(Args, Debug)]
+pub struct SimplifyCommand {
+    /// The model: .obj, .gltf or .glb
+    pub model: PathBuf,
+
+    /// Where the copy goes: .glb or .obj
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+
+    /// Triangles to aim at, 4 or more
+    #[arg(short, long, value_name = "COUNT", default_value_t = 500)]
+    pub triangles: usize,
+
+    /// Instead make it finer: split each triangle into four, so many times, 1 to 6
+    #[arg(long, value_name = "TIMES", conflicts_with = "triangles")]
+    pub subdivide: Option<u32>,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = "Messages")]
+    pub talk: Talk,
+}

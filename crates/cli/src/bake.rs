@@ -1,0 +1,146 @@
+//! `parbake bake`.
+
+use crate::arguments::{BakeCommand, Talk};
+use crate::failure::{Ending, Failure};
+use crate::options_file::merged;
+use crate::progress::{Console, interrupted};
+use clap::ArgMatches;
+use parbake::{
+    BakeOptions, BakeReport, Baked, Limits, Loaded, Message, Model, Stage, Watcher, bake, html_report,
+    read_model, with_threads, write_file, write_glb, write_obj,
+};
+use std::path::Path;
+
+/// Runs the command.
+pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure> {
+    let options = merged(&command.bake, given, command.options.as_deref())?;
+    check_output(&command.output)?;
+    let console = Console::new(command.talk, options.time_budget);
+    with_threads(options.threads, || {
+        let (high, low) = read_pair(&command.high, &command.low, &console)?;
+        let baked = bake_and_write(&high, &low, &options, &command.output, &console)?;
+        if let Some(path) = &command.report {
+            write_report(path, &high, &baked, &console)?;
+        }
+        if let Some(path) = &command.json {
+            write_json(path, &baked.report)?;
+        }
+        console.finish();
+        tell(&console, command.talk, &baked.report, &command.output);
+        Ok(if interrupted() { Ending::Interrupted } else { Ending::Finished })
+    })?
+}
+
+/// Refuses what cannot be written before any work is done.
+pub fn check_output(path: &Path) -> Result<(), Failure> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+    if !matches!(extension.as_str(), "glb" | "obj") {
+        return Err(Failure::Usage(format!("{}: the output must end in .glb or .obj", path.display())));
+    }
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+    match folder {
+        Some(folder) if !folder.is_dir() => Err(Failure::Usage(format!(
+            "{}: there is no folder {}; make it first",
+            path.display(),
+            folder.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Writes a model as its extension says.
+pub fn write_model(path: &Path, model: &Model) -> Result<(), Failure> {
+    let is_obj = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"));
+    Ok(if is_obj { write_obj(path, model) } else { write_glb(path, model) }?)
+}
+
+/// Reads one model and passes its warnings on.
+pub fn read(path: &Path, console: &Console) -> Result<Model, Failure> {
+    let Loaded { model, warnings } = read_model(path, &Limits::default())?;
+    for warning in warnings {
+        console.message(Message::Warning(warning));
+    }
+    Ok(model)
+}
+
+/// Reads both models at once.
+pub fn read_pair(high: &Path, low: &Path, console: &Console) -> Result<(Model, Model), Failure> {
+    console.message(Message::Progress { stage: Stage::Read, done: 0, total: 2 });
+    let begin = console.seconds();
+    let (high, low) = parbake::join(|| read(high, console), || read(low, console));
+    let pair = (high?, low?);
+    console.detail(&format!("{:24} {:7.3} s", "reading", console.seconds() - begin));
+    Ok(pair)
+}
+
+/// Bakes and writes the model.
+pub fn bake_and_write(
+    high: &Model,
+    low: &Model,
+    options: &BakeOptions,
+    output: &Path,
+    console: &Console,
+) -> Result<Baked, Failure> {
+    let baked = bake(high, low, options, console)?;
+    for stage in &baked.report.stages {
+        console.detail(&format!(
+            "{:24} {:7.3} s",
+            format!("{:?}", stage.stage).to_lowercase(),
+            stage.seconds
+        ));
+    }
+    let begin = console.seconds();
+    write_model(output, &baked.model)?;
+    console.detail(&format!("{:24} {:7.3} s", "writing", console.seconds() - begin));
+    Ok(baked)
+}
+
+/// Renders and writes the HTML report.
+pub fn write_report(path: &Path, high: &Model, baked: &Baked, console: &Console) -> Result<(), Failure> {
+    let html = html_report(high, baked, console)?;
+    write_file(path, html.as_bytes())?;
+    Ok(())
+}
+
+/// Writes any report as JSON, to standard output for "-".
+pub fn write_json(path: &Path, report: &impl serde::Serialize) -> Result<(), Failure> {
+    let json =
+        serde_json::to_string_pretty(report).map_err(|e| Failure::Output(format!("no JSON report: {e}")))?;
+    if path.as_os_str() == "-" {
+        println!("{json}");
+        return Ok(());
+    }
+    Ok(write_file(path, json.as_bytes())?)
+}
+
+/// The last lines: what came of it.
+pub fn tell(console: &Console, talk: Talk, report: &BakeReport, output: &Path) {
+    let decibels = |mean_square: f64| -10.0 * mean_square.max(1e-10).log10();
+    let losses: Vec<f64> = report.losses.iter().map(|l| decibels(l.mean_square)).collect();
+    if let (Some(first), Some(last)) = (losses.first(), losses.last()) {
+        console.say(&format!(
+            "{}: {first:.2} dB projected, {last:.2} dB baked on the surface seen by {} training views; {:.1} s",
+            output.display(),
+            report.views,
+            console.seconds()
+        ));
+    }
+    if talk.verbose {
+        let share = 100.0 * report.unseen_texels as f64 / report.covered_texels.max(1) as f64;
+        console.say(&format!(
+            "{} texels on the surface, {} ({share:.1} %) seen by no view; {} samples",
+            report.covered_texels, report.unseen_texels, report.samples
+        ));
+        for step in &report.losses {
+            console.say(&format!(
+                "  {:8.3} s  {:8}  {:.3} dB",
+                step.seconds,
+                step.moved,
+                decibels(step.mean_square)
+            ));
+        }
+        if let Some(bytes) = report.peak_memory {
+            console.say(&format!("peak memory {:.0} MB", bytes as f64 / 1e6));
+        }
+    }
+}

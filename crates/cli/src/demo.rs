@@ -1,0 +1,30 @@
+//! `parbake demo`: everything from nothing.
+
+use crate::arguments::DemoCommand;
+use crate::bake::{bake_and_write, tell, write_json, write_report};
+use crate::failure::{Ending, Failure};
+use crate::progress::{Console, interrupted};
+use clap::ArgMatches;
+use parbake::{demo_pair, with_threads, write_glb};
+
+/// Runs the command.
+pub fn run(command: &DemoCommand, _: &ArgMatches) -> Result<Ending, Failure> {
+    let folder = &command.output;
+    std::fs::create_dir_all(folder)
+        .map_err(|e| Failure::Output(format!("{}: cannot make the folder: {e}", folder.display())))?;
+    let console = Console::new(command.talk, command.bake.time_budget);
+    with_threads(command.bake.threads, || {
+        let (high, low) = demo_pair();
+        write_glb(&folder.join("demo_high.glb"), &high)?;
+        write_glb(&folder.join("demo_low.glb"), &low)?;
+        let output = folder.join("demo.glb");
+        let baked = bake_and_write(&high, &low, &command.bake, &output, &console)?;
+        let report = folder.join("demo.html");
+        write_report(&report, &high, &baked, &console)?;
+        write_json(&folder.join("demo.json"), &baked.report)?;
+        console.finish();
+        tell(&console, command.talk, &baked.report, &output);
+        console.say(&format!("look at {}", report.display()));
+        Ok(if interrupted() { Ending::Interrupted } else { Ending::Finished })
+    })?
+}

@@ -1,0 +1,36 @@
+//! `parbake eval`.
+
+use crate::arguments::EvalCommand;
+use crate::bake::{read_pair, write_json};
+use crate::failure::{Ending, Failure};
+use crate::progress::Console;
+use parbake::{ViewFigures, evaluate, with_threads};
+
+/// Runs the command.
+pub fn run(command: &EvalCommand) -> Result<Ending, Failure> {
+    let console = Console::new(command.talk, None);
+    with_threads(command.threads, || {
+        let (high, low) = read_pair(&command.high, &command.low, &console)?;
+        let evaluation = evaluate(&high, &low, &command.evaluate, &console)?;
+        console.finish();
+        let to_stdout = command.json.as_ref().is_some_and(|p| p.as_os_str() == "-");
+        if let Some(path) = &command.json {
+            write_json(path, &evaluation)?;
+        }
+        if !to_stdout {
+            println!("view    PSNR dB   MS-SSIM   FLIP");
+            if command.per_view {
+                for (index, view) in evaluation.views.iter().enumerate() {
+                    println!("{index:4}  {}", figures(view));
+                }
+            }
+            println!("mean  {}", figures(&evaluation.mean));
+        }
+        Ok(Ending::Finished)
+    })?
+}
+
+fn figures(f: &ViewFigures) -> String {
+    let optional = |x: Option<f64>| x.map_or("-".to_string(), |x| format!("{x:.4}"));
+    format!("{:9.3}   {:>7}   {:>6}", f.psnr, optional(f.ms_ssim), optional(f.flip))
+}

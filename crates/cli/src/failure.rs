@@ -1,0 +1,66 @@
+//! How the command ends: exit codes that a script can act on.
+
+use parbake::BakeError;
+use std::fmt;
+use std::process::ExitCode;
+
+/// A run that ended as it should.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// All work is done (or the time budget is spent): 0.
+    Finished,
+    /// Ctrl-C: the best state so far was written: 130.
+    Interrupted,
+}
+
+impl Ending {
+    /// The process's exit code.
+    pub fn exit_code(self) -> ExitCode {
+        match self {
+            Ending::Finished => ExitCode::SUCCESS,
+            Ending::Interrupted => ExitCode::from(130),
+        }
+    }
+}
+
+/// A run that has no result.
+#[derive(Debug)]
+pub enum Failure {
+    /// An input or an option is wrong: 2 for options, 1 for everything else.
+    Bake(BakeError),
+    /// Something on the command line that clap could not see: 2.
+    Usage(String),
+    /// The report or JSON could not be made or written: 1.
+    Output(String),
+}
+
+impl Failure {
+    /// The process's exit code.
+    pub fn exit_code(&self) -> ExitCode {
+        match self {
+            Failure::Usage(_) | Failure::Bake(BakeError::Option { .. }) => ExitCode::from(2),
+            Failure::Bake(_) | Failure::Output(_) => ExitCode::from(1),
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Failure::Bake(error) => error.fmt(f),
+            Failure::Usage(text) | Failure::Output(text) => f.write_str(text),
+        }
+    }
+}
+
+impl From<BakeError> for Failure {
+    fn from(error: BakeError) -> Self {
+        Failure::Bake(error)
+    }
+}
+
+impl From<parbake::FileError> for Failure {
+    fn from(error: parbake::FileError) -> Self {
+        Failure::Bake(error.into())
+    }
+}

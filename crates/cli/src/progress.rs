@@ -1,0 +1,123 @@
+//! What a person sees while waiting, and the two ways of ending early: Ctrl-C and
+//! the time budget.
+
+use crate::arguments::Talk;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use parbake::{Message, Stage, Watcher};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, OnceLock};
+use std::time::{Duration, Instant};
+
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+static HANDLER: OnceLock<()> = OnceLock::new();
+
+/// True after Ctrl-C (or SIGTERM).
+pub fn interrupted() -> bool {
+    INTERRUPTED.load(Ordering::Relaxed)
+}
+
+/// The first Ctrl-C asks for a clean stop, the second ends at once.
+fn catch_interrupts() {
+    HANDLER.get_or_init(|| {
+        // Without a handler the bake still works; it only cannot stop cleanly.
+        let _ = ctrlc::set_handler(|| {
+            if INTERRUPTED.swap(true, Ordering::Relaxed) {
+                std::process::exit(130);
+            }
+            eprintln!("\nstopping: the best state so far is being written (Ctrl-C again to give up)");
+        });
+    });
+}
+
+/// Draws messages on standard error.
+pub struct Console {
+    talk: Talk,
+    deadline: Option<Instant>,
+    begin: Instant,
+    bar: ProgressBar,
+    stage: Mutex<Option<(Stage, Instant)>>,
+}
+
+fn label(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Read => "reading",
+        Stage::Prepare => "preparing",
+        Stage::Reference => "rendering the high-poly",
+        Stage::Start => "projecting",
+        Stage::Sampling => "finding samples",
+        Stage::Solve => "solving for textures",
+        Stage::Evaluate => "comparing pictures",
+        Stage::Write => "writing",
+    }
+}
+
+/// Kept back from a time budget for encoding and writing, as a share and at least
+/// so many seconds.
+const RESERVE: (f64, f64) = (0.15, 0.12);
+
+impl Console {
+    /// Begins the clock of the time budget.
+    pub fn new(talk: Talk, time_budget: Option<f64>) -> Self {
+        catch_interrupts();
+        let begin = Instant::now();
+        let deadline = time_budget.map(|seconds| {
+            let work = (seconds - (seconds * RESERVE.0).clamp(RESERVE.1, 2.0)).max(0.0);
+            begin + Duration::from_secs_f64(work.min(1e9))
+        });
+        let bar = ProgressBar::new(1);
+        if talk.quiet {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        if let Ok(style) = ProgressStyle::with_template("{msg:24} {bar:30} {pos}/{len}, {eta} left") {
+            bar.set_style(style);
+        }
+        Self { talk, deadline, begin, bar, stage: Mutex::new(None) }
+    }
+
+    /// A line for people, unless they asked for quiet.
+    pub fn say(&self, text: &str) {
+        if !self.talk.quiet {
+            self.bar.suspend(|| eprintln!("{text}"));
+        }
+    }
+
+    /// A line for people who asked for more.
+    pub fn detail(&self, text: &str) {
+        if self.talk.verbose {
+            self.say(text);
+        }
+    }
+
+    /// Seconds since the run began.
+    pub fn seconds(&self) -> f64 {
+        self.begin.elapsed().as_secs_f64()
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Watcher for Console {
+    fn message(&self, message: Message) {
+        match message {
+            Message::Warning(text) => self.say(&format!("warning: {text}")),
+            Message::Progress { stage, done, total } => {
+                if let Ok(mut current) = self.stage.lock()
+                    && current.is_none_or(|(s, _)| s != stage)
+                {
+                    *current = Some((stage, Instant::now()));
+                    self.bar.reset();
+                    self.bar.set_message(label(stage));
+                }
+                self.bar.set_length(total as u64);
+                self.bar.set_position(done as u64);
+            }
+        }
+    }
+
+    fn stopped(&self) -> bool {
+        interrupted() || self.deadline.is_some_and(|d| Instant::now() >= d)
+    }
+}

@@ -1,0 +1,31 @@
+//! `parbake simplify`.
+
+use crate::arguments::SimplifyCommand;
+use crate::bake::{check_output, read, write_model};
+use crate::failure::{Ending, Failure};
+use crate::progress::Console;
+use parbake::{simplified, subdivided};
+
+/// Runs the command.
+pub fn run(command: &SimplifyCommand) -> Result<Ending, Failure> {
+    check_output(&command.output)?;
+    if command.triangles < 4 {
+        return Err(Failure::Usage(format!("--triangles {}: at least 4", command.triangles)));
+    }
+    let console = Console::new(command.talk, None);
+    let model = read(&command.model, &console)?;
+    let result = match command.subdivide {
+        Some(times @ 1..=6) => (0..times).fold(model.clone(), |m, _| subdivided(&m)),
+        Some(times) => return Err(Failure::Usage(format!("--subdivide {times}: 1 to 6"))),
+        None => simplified(&model, command.triangles),
+    };
+    write_model(&command.output, &result)?;
+    console.finish();
+    console.say(&format!(
+        "{}: {} triangles from {}",
+        command.output.display(),
+        result.mesh.triangles.len(),
+        model.mesh.triangles.len()
+    ));
+    Ok(Ending::Finished)
+}

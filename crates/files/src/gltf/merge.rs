@@ -1,0 +1,318 @@
+//! All placings of all primitives into one mesh.
+//!
+//! Attributes that only some primitives have are filled in for the others: flat
+//! normals (as glTF 2.0, 3.7.2.1 asks), zero texture coordinates, white colours.
+//! Tangents are kept only when all have them. Vertices that no triangle of a
+//! primitive uses are left out; the others keep their order.
+
+use super::accessor::Accessor;
+use super::buffers::{Buffers, pointer};
+use super::json::Primitive;
+use super::scene::Instance;
+use super::topology::{has_triangles, triangles};
+use crate::{FileError, Place};
+use parbake_model::Mesh;
+use parbake_model::glam::{DAffine3, DMat3, Vec2, Vec3, Vec4};
+use std::collections::HashMap;
+
+const UNUSED: u32 = u32::MAX;
+
+/// The mesh so far.
+pub(super) struct Merge<'a, 'd> {
+    buffers: &'a Buffers<'d>,
+    pub mesh: Mesh,
+    /// The document's materials (or none, for the default one) in order of first use.
+    pub materials: Vec<Option<usize>>,
+    material_ids: HashMap<Option<usize>, u32>,
+    has: Attributes,
+    /// From a primitive's element numbers to vertices; all `UNUSED` between primitives.
+    places: Vec<u32>,
+}
+
+/// Which attributes the mesh gets.
+struct Attributes {
+    normals: bool,
+    tangents: bool,
+    uvs: bool,
+    uvs1: bool,
+    colors: bool,
+}
+
+/// The accessors of one primitive.
+struct Sources<'a> {
+    position: Accessor<'a>,
+    normal: Option<Accessor<'a>>,
+    tangent: Option<Accessor<'a>>,
+    uv: Option<Accessor<'a>>,
+    uv1: Option<Accessor<'a>>,
+    color: Option<Accessor<'a>>,
+}
+
+impl<'a, 'd> Merge<'a, 'd> {
+    pub fn new(buffers: &'a Buffers<'d>) -> Self {
+        let all = || buffers.document.meshes.iter().flat_map(|m| &m.primitives).filter(|p| has_triangles(p));
+        let any = |has: fn(&Primitive) -> bool| all().any(has);
+        let has = Attributes {
+            normals: any(|p| p.attributes.normal.is_some()),
+            tangents: all().all(|p| p.attributes.tangent.is_some() && p.attributes.normal.is_some()),
+            uvs: any(|p| p.attributes.texcoord_0.is_some()),
+            uvs1: any(|p| p.attributes.texcoord_1.is_some()),
+            colors: any(|p| p.attributes.color_0.is_some()),
+        };
+        let (mesh, materials, material_ids, places) = Default::default();
+        Self { buffers, mesh, materials, material_ids, has, places }
+    }
+
+    /// Adds one placing of a mesh.
+    pub fn add(&mut self, instance: Instance) -> Result<(), FileError> {
+        let buffers = self.buffers;
+        let meshes = &buffers.document.meshes;
+        let Some(mesh) = meshes.get(instance.mesh) else {
+            return Err(buffers.missing(&instance.from, "mesh", instance.mesh, meshes.len()));
+        };
+        for (i, primitive) in mesh.primitives.iter().enumerate() {
+            let here = format!("/meshes/{}/primitives/{i}", instance.mesh);
+            if !has_triangles(primitive) {
+                buffers.context.warn("points and lines were left out");
+                continue;
+            }
+            self.add_primitive(primitive, &here, &instance)?;
+        }
+        Ok(())
+    }
+
+    fn add_primitive(&mut self, primitive: &Primitive, here: &str, at: &Instance) -> Result<(), FileError> {
+        let context = self.buffers.context;
+        let Some(sources) = Sources::open(self.buffers, primitive, here, &self.has)? else {
+            context.warn(format!("{here} has no positions and was left out"));
+            return Ok(());
+        };
+        let already = self.mesh.triangles.len();
+        let triangles = triangles(self.buffers, primitive, here, sources.position.count, already)?;
+        if triangles.is_empty() {
+            return Ok(());
+        }
+        let material = self.material(primitive.material, here)?;
+        let (elements, mut triangles) = if self.has.normals && sources.normal.is_none() {
+            separate(&triangles)
+        } else {
+            compact(triangles, sources.position.count, &mut self.places)
+        };
+        let first = self.mesh.positions.len();
+        let found = (first as u64).saturating_add(elements.len() as u64);
+        let limit = (context.limits.max_vertices as u64).min(u64::from(u32::MAX) - 1);
+        context.within(pointer(here.into()), "vertices", found, limit)?;
+        let determinant = at.world.matrix3.determinant();
+        for triangle in &mut triangles {
+            *triangle = triangle.map(|i| i + first as u32);
+            if determinant < 0.0 {
+                triangle.swap(1, 2);
+            }
+        }
+        self.mesh.triangle_materials.resize(already + triangles.len(), material);
+        self.mesh.triangles.append(&mut triangles);
+        self.positions(&sources.position, &elements, at)?;
+        self.attributes(&sources, &elements, &at.world);
+        if self.has.normals && sources.normal.is_none() {
+            self.flat_normals(already);
+        }
+        Ok(())
+    }
+
+    fn material(&mut self, index: Option<usize>, here: &str) -> Result<u32, FileError> {
+        let count = self.buffers.document.materials.len();
+        if let Some(index) = index.filter(|&i| i >= count) {
+            return Err(self.buffers.missing(&format!("{here}/material"), "material", index, count));
+        }
+        let next = self.materials.len() as u32;
+        let id = *self.material_ids.entry(index).or_insert(next);
+        if id == next {
+            self.materials.push(index);
+        }
+        Ok(id)
+    }
+
+    fn positions(&mut self, source: &Accessor<'_>, elements: &[u32], at: &Instance) -> Result<(), FileError> {
+        let refuse = |element: u32, reason: &str| {
+            let place = Place::Element(source.pointer.clone(), element as usize);
+            Err(self.buffers.context.invalid(place, reason))
+        };
+        self.mesh.positions.reserve(elements.len());
+        for &element in elements {
+            let position = Vec3::from_array(source.read(element as usize, [0.0; 3]));
+            if !position.is_finite() {
+                return refuse(element, "the position is not finite");
+            }
+            let moved = at.world.transform_point3(position.as_dvec3()).as_vec3();
+            if !moved.is_finite() {
+                return refuse(element, &format!("the transform of {} moves it out of range", at.from));
+            }
+            self.mesh.positions.push(moved);
+        }
+        Ok(())
+    }
+
+    fn attributes(&mut self, sources: &Sources<'_>, elements: &[u32], world: &DAffine3) {
+        let matrix = world.matrix3;
+        let (cofactors, sign) = cofactors(&matrix);
+        let still = matrix == DMat3::IDENTITY;
+        let turned = |m: &DMat3, v: Vec3| {
+            // Bits are kept where nothing turns. In doubles: scales of 1e-20 are squared.
+            if still { v } else { (*m * v.as_dvec3()).normalize_or_zero().as_vec3() }
+        };
+        let elements = || elements.iter().map(|&e| e as usize);
+        let mesh = &mut self.mesh;
+        if let Some(source) = &sources.normal {
+            let read = |e| turned(&cofactors, Vec3::from_array(source.read(e, [0.0; 3])));
+            mesh.normals.extend(elements().map(read));
+        }
+        if let Some(source) = &sources.tangent {
+            let read = |e| {
+                let tangent = Vec4::from_array(source.read(e, [0.0; 4]));
+                turned(&matrix, tangent.truncate()).extend(tangent.w * sign)
+            };
+            mesh.tangents.extend(elements().map(read));
+        }
+        let uv = |source: &Option<Accessor>, e| {
+            source.as_ref().map_or(Vec2::ZERO, |s| Vec2::from_array(s.read(e, [0.0; 2])))
+        };
+        if self.has.uvs {
+            mesh.uvs.extend(elements().map(|e| uv(&sources.uv, e)));
+        }
+        if self.has.uvs1 {
+            mesh.uvs1.extend(elements().map(|e| uv(&sources.uv1, e)));
+        }
+        if self.has.colors {
+            // Colours go from 0 to 1; NaN passes through, to be repaired and counted.
+            let color = |s: &Accessor, e| Vec4::from_array(s.read(e, [1.0; 4]).map(|x| x.clamp(0.0, 1.0)));
+            mesh.colors.extend(elements().map(|e| sources.color.as_ref().map_or(Vec4::ONE, |s| color(s, e))));
+        }
+    }
+
+    /// For the triangles from `first` on, none of which shares a vertex.
+    fn flat_normals(&mut self, first: usize) {
+        self.mesh.normals.resize(self.mesh.positions.len(), Vec3::ZERO);
+        for triangle in &self.mesh.triangles[first..] {
+            let [a, b, c] = triangle.map(|i| self.mesh.positions[i as usize].as_dvec3());
+            let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
+            for &corner in triangle {
+                self.mesh.normals[corner as usize] = normal;
+            }
+        }
+    }
+}
+
+impl<'a> Sources<'a> {
+    /// `None` when the primitive has no positions.
+    fn open(
+        buffers: &'a Buffers<'_>,
+        primitive: &Primitive,
+        here: &str,
+        has: &Attributes,
+    ) -> Result<Option<Self>, FileError> {
+        let attributes = &primitive.attributes;
+        let draco = primitive.extensions.as_ref().is_some_and(|e| e.draco.is_some());
+        let open = |index: Option<usize>, name: &str, widths: &[usize], wanted: bool| {
+            let from = format!("{here}/attributes/{name}");
+            match index.filter(|_| wanted) {
+                None => Ok(None),
+                Some(index) => Accessor::new(buffers, index, &from, widths).map(Some),
+            }
+        };
+        let position = open(attributes.position, "POSITION", &[3], true)?;
+        if draco && position.as_ref().is_none_or(Accessor::is_empty) {
+            return Err(super::extensions::unsupported(buffers.context, here, "KHR_draco_mesh_compression"));
+        }
+        let Some(position) = position else { return Ok(None) };
+        let sources = Self {
+            normal: open(attributes.normal, "NORMAL", &[3], true)?,
+            tangent: open(attributes.tangent, "TANGENT", &[4], has.tangents)?,
+            uv: open(attributes.texcoord_0, "TEXCOORD_0", &[2], true)?,
+            uv1: open(attributes.texcoord_1, "TEXCOORD_1", &[2], true)?,
+            color: open(attributes.color_0, "COLOR_0", &[3, 4], true)?,
+            position,
+        };
+        let count = sources.position.count;
+        let others = [&sources.normal, &sources.tangent, &sources.uv, &sources.uv1, &sources.color];
+        if let Some(other) = others.into_iter().flatten().find(|a| a.count != count) {
+            let reason = format!("there are {count} positions, but {} has {}", other.pointer, other.count);
+            return Err(buffers.context.invalid(pointer(format!("{here}/attributes")), reason));
+        }
+        Ok(Some(sources))
+    }
+}
+
+/// Three vertices of its own for each triangle.
+fn separate(triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<[u32; 3]>) {
+    let elements: Vec<u32> = triangles.as_flattened().to_vec();
+    let own = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    (elements, own)
+}
+
+/// The elements in use, in order, and the triangles among them.
+fn compact(mut triangles: Vec<[u32; 3]>, count: usize, places: &mut Vec<u32>) -> (Vec<u32>, Vec<[u32; 3]>) {
+    if places.len() < count {
+        places.resize(count, UNUSED);
+    }
+    let mut elements = Vec::new();
+    for &element in triangles.as_flattened() {
+        let place = &mut places[element as usize];
+        if *place == UNUSED {
+            *place = 0;
+            elements.push(element);
+        }
+    }
+    if elements.len() == count {
+        elements.clear();
+        elements.extend(0..count as u32);
+    } else {
+        elements.sort_unstable();
+    }
+    for (place, &element) in elements.iter().enumerate() {
+        places[element as usize] = place as u32;
+    }
+    for corner in triangles.as_flattened_mut() {
+        *corner = places[*corner as usize];
+    }
+    for &element in &elements {
+        places[element as usize] = UNUSED;
+    }
+    (elements, triangles)
+}
+
+/// The matrix that turns normals, up to their length: the inverse transpose times
+/// |det|, which also exists where the inverse does not. And the determinant's sign.
+fn cofactors(m: &DMat3) -> (DMat3, f32) {
+    let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);
+    let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
+    (DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign, sign as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parbake_model::glam::DVec3;
+
+    /// Protects primitives that share large accessors: only what they use is kept.
+    #[test]
+    fn compact_keeps_order_and_cleans_up() {
+        let mut places = Vec::new();
+        let (elements, triangles) = compact(vec![[9, 2, 5], [5, 2, 7]], 10, &mut places);
+        assert_eq!(elements, [2, 5, 7, 9]);
+        assert_eq!(triangles, [[3, 0, 1], [1, 0, 2]]);
+        assert!(places.iter().all(|&p| p == UNUSED));
+        let (elements, triangles) = compact(vec![[2, 1, 0]], 3, &mut places);
+        assert_eq!((elements, triangles), (vec![0, 1, 2], vec![[2, 1, 0]]));
+    }
+
+    /// Protects normals under mirrors: they follow the surface, not the winding.
+    #[test]
+    fn cofactors_are_the_inverse_transpose() {
+        let m = DMat3::from_cols_array(&[-2.0, 0.1, 0.0, 0.3, 1.0, 0.5, 0.0, 0.2, 3.0]);
+        let (cofactors, sign) = cofactors(&m);
+        assert_eq!(sign, -1.0);
+        let expected = m.inverse().transpose() * m.determinant().abs();
+        let n = DVec3::new(0.3, -0.5, 0.8);
+        assert!((cofactors * n).distance(expected * n) < 1e-12);
+    }
+}

@@ -1,0 +1,115 @@
+//! glTF 2.0 and GLB, in and out.
+//!
+//! Only what Parbake bakes from is understood: triangles, base colour, normals.
+//! Skins, morph targets and animations are passed over with a warning: the mesh
+//! is taken as its nodes place it.
+
+mod accessor;
+mod buffers;
+mod container;
+mod extensions;
+mod json;
+mod materials;
+mod merge;
+mod scene;
+mod topology;
+mod uri;
+mod write;
+mod write_material;
+
+pub use write::{glb_bytes, write_glb};
+
+use crate::context::{Context, Textures};
+use crate::finish::finish;
+use crate::{FileError, Limits, Loaded, Place, Resources};
+use parbake_model::Model;
+use std::path::Path;
+
+/// The first bytes of a GLB file.
+pub(crate) const MAGIC: &[u8] = b"glTF";
+
+/// Reads a glTF document (GLB or JSON) from memory; what it refers to comes from
+/// `resources`. `path` is only for messages and the model's name.
+///
+/// # Errors
+/// As [`read_model`](crate::read_model); they give a JSON pointer where there is one.
+pub fn read_gltf_bytes(
+    path: &Path,
+    bytes: &[u8],
+    resources: &dyn Resources,
+    limits: &Limits,
+) -> Result<Loaded, FileError> {
+    read(Context::new(path, resources, limits, Textures::Decode), bytes)
+}
+
+pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileError> {
+    let (text, binary) = container::open(bytes, &context)?;
+    let document = parse(text, &context)?;
+    extensions::check(&document, &context)?;
+    mention_motion(&document, &context);
+    let buffers = buffers::Buffers::new(&document, binary, &context);
+    let mut merge = merge::Merge::new(&buffers);
+    scene::visit(&buffers, &mut |instance| merge.add(instance))?;
+    let (mesh, used) = (std::mem::take(&mut merge.mesh), std::mem::take(&mut merge.materials));
+    let empty = match document.meshes.len() {
+        0 => "; the document has no meshes",
+        _ if mesh.triangles.is_empty() => "; no mesh with triangles is in its scene",
+        _ => "",
+    };
+    let (materials, images) = materials::build(&buffers, &used)?;
+    drop(merge);
+    drop(buffers);
+    for material in &materials {
+        for slot in [material.base_color_texture, material.normal_texture].into_iter().flatten() {
+            let uvs = if slot.uv_set == 0 { &mesh.uvs } else { &mesh.uvs1 };
+            if uvs.is_empty() {
+                let (name, set) = (&material.name, slot.uv_set);
+                context
+                    .warn(format!("material {name:?} uses texture coordinate set {set}, which no mesh has"));
+            }
+        }
+    }
+    let name = context.path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    finish(Model { name, mesh, materials, images }, context, empty)
+}
+
+fn parse(text: &[u8], context: &Context<'_>) -> Result<json::Document, FileError> {
+    let objects = text.iter().filter(|&&b| b == b'{').count() as u64;
+    context.within(Place::File, "JSON objects", objects, context.limits.max_json_objects as u64)?;
+    let document: json::Document = serde_json::from_slice(text).map_err(|error| {
+        let (place, reason) = match json::locate(text) {
+            Some((pointer, reason)) => (Place::Pointer(pointer), reason),
+            None => (Place::File, format!("the document is not glTF: {error}")),
+        };
+        context.invalid(place, reason)
+    })?;
+    let Some(asset) = &document.asset else {
+        return Err(
+            context.invalid(Place::Pointer("/asset".into()), "a glTF document has an asset with a version")
+        );
+    };
+    let version = asset.min_version.as_ref().unwrap_or(&asset.version);
+    let place = || Place::Pointer("/asset/version".into());
+    match version.split_once('.').map(|(major, minor)| (major.parse::<u32>(), minor.parse::<u32>())) {
+        Some((Ok(2), Ok(_))) => Ok(document),
+        Some((Ok(_), Ok(_))) => {
+            Err(context.unsupported(place(), format!("glTF {version}"), "convert the model to glTF 2.0"))
+        }
+        _ => Err(context.invalid(place(), format!("{version:?} is no version"))),
+    }
+}
+
+fn mention_motion(document: &json::Document, context: &Context<'_>) {
+    if !document.skins.is_empty() && document.nodes.iter().any(|n| n.skin.is_some()) {
+        context.warn("the model has skins; its meshes are taken as they are bound, unmoved by joints");
+    }
+    if document.meshes.iter().flat_map(|m| &m.primitives).any(|p| !p.targets.is_empty()) {
+        context.warn("the model has morph targets; its meshes are taken without them");
+    }
+    if !document.animations.is_empty() {
+        context.warn("the model has animations; it is taken as it stands before they begin");
+    }
+}
+
+#[cfg(test)]
+mod tests;

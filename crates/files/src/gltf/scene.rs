@@ -1,0 +1,147 @@
+//! The node hierarchy (glTF 2.0, 3.5): which mesh stands where.
+//!
+//! The default scene is used; failing that the first; failing that all nodes that
+//! are no node's child; failing that all meshes as they are. The hierarchy must be
+//! a forest: a node reached twice is an error. Transforms are carried in doubles.
+
+use super::accessor::Accessor;
+use super::buffers::{Buffers, pointer};
+use super::json::{InstancingAttributes, Node};
+use crate::FileError;
+use parbake_model::glam::{DAffine3, DMat4, DQuat, DVec3};
+
+/// One placing of a mesh.
+pub(super) struct Instance {
+    pub mesh: usize,
+    /// Where the mesh is named, for messages.
+    pub from: String,
+    /// From the mesh's space to the world.
+    pub world: DAffine3,
+}
+
+/// A node on the way to be visited: the node, its parent's transform, and by
+/// whom it was named (a parent or nobody; the place in the list).
+type Pending = (usize, DAffine3, Option<usize>, usize);
+
+/// Calls `each` for every placing of a mesh, in the document's order.
+pub(super) fn visit(
+    buffers: &Buffers<'_>,
+    each: &mut dyn FnMut(Instance) -> Result<(), FileError>,
+) -> Result<(), FileError> {
+    let document = buffers.document;
+    if document.scenes.is_empty() && document.nodes.is_empty() {
+        for mesh in 0..document.meshes.len() {
+            each(Instance { mesh, from: format!("/meshes/{mesh}"), world: DAffine3::IDENTITY })?;
+        }
+        return Ok(());
+    }
+    let (scene, roots) = roots(buffers)?;
+    let mut visited = vec![false; document.nodes.len()];
+    // Reversed, as the last is taken first.
+    let mut pending: Vec<Pending> =
+        roots.iter().enumerate().rev().map(|(k, &n)| (n, DAffine3::IDENTITY, None, k)).collect();
+    while let Some((index, parent_world, parent, k)) = pending.pop() {
+        let from = || match parent {
+            Some(parent) => format!("/nodes/{parent}/children/{k}"),
+            None => format!("/scenes/{scene}/nodes/{k}"),
+        };
+        let Some(node) = document.nodes.get(index) else {
+            return Err(buffers.missing(&from(), "node", index, document.nodes.len()));
+        };
+        if std::mem::replace(&mut visited[index], true) {
+            let reason = format!("node {index} is reached twice: it has two parents or is its own ancestor");
+            return Err(buffers.context.invalid(pointer(from()), reason));
+        }
+        let extensions = node.extensions.as_deref();
+        if extensions.and_then(|e| e.visibility.as_ref()).is_some_and(|v| !v.visible) {
+            buffers.context.warn("nodes that are marked invisible were left out");
+            continue;
+        }
+        let world = parent_world * local(node);
+        if let Some(mesh) = node.mesh {
+            let from = format!("/nodes/{index}/mesh");
+            match extensions.and_then(|e| e.instancing.as_ref()) {
+                Some(instancing) => {
+                    let here = format!("/nodes/{index}/extensions/EXT_mesh_gpu_instancing/attributes");
+                    for_instances(buffers, &instancing.attributes, &here, &mut |local| {
+                        each(Instance { mesh, from: from.clone(), world: world * local })
+                    })?;
+                }
+                None => each(Instance { mesh, from, world })?,
+            }
+        }
+        pending.extend(node.children.iter().enumerate().rev().map(|(k, &n)| (n, world, Some(index), k)));
+    }
+    Ok(())
+}
+
+/// The scene, and its root nodes.
+fn roots(buffers: &Buffers<'_>) -> Result<(usize, Vec<usize>), FileError> {
+    let document = buffers.document;
+    let index = document.scene.unwrap_or(0);
+    if let Some(scene) = document.scenes.get(index) {
+        return Ok((index, scene.nodes.clone()));
+    }
+    if document.scene.is_some() {
+        return Err(buffers.missing("/scene", "scene", index, document.scenes.len()));
+    }
+    let mut is_child = vec![false; document.nodes.len()];
+    for &child in document.nodes.iter().flat_map(|n| &n.children) {
+        if let Some(flag) = is_child.get_mut(child) {
+            *flag = true;
+        }
+    }
+    buffers.context.warn("the document has no scene; all its nodes are used");
+    Ok((0, (0..document.nodes.len()).filter(|&n| !is_child[n]).collect()))
+}
+
+fn local(node: &Node) -> DAffine3 {
+    match &node.matrix {
+        Some(matrix) => DAffine3::from_mat4(DMat4::from_cols_array(matrix)),
+        None => from_parts(
+            node.translation.unwrap_or([0.0; 3]),
+            node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]),
+            node.scale.unwrap_or([1.0; 3]),
+        ),
+    }
+}
+
+fn from_parts(translation: [f64; 3], rotation: [f64; 4], scale: [f64; 3]) -> DAffine3 {
+    let quaternion = DQuat::from_array(rotation);
+    let length = quaternion.length();
+    let quaternion = match length {
+        // As written where it is a unit already: dividing would blur the last bits.
+        l if (l - 1.0).abs() < 1e-15 => quaternion,
+        l if l > 0.0 && l.is_finite() => quaternion / l,
+        _ => DQuat::IDENTITY,
+    };
+    DAffine3::from_scale_rotation_translation(DVec3::from(scale), quaternion, DVec3::from(translation))
+}
+
+/// EXT_mesh_gpu_instancing: one transform for each element of its accessors.
+fn for_instances(
+    buffers: &Buffers<'_>,
+    attributes: &InstancingAttributes,
+    here: &str,
+    each: &mut dyn FnMut(DAffine3) -> Result<(), FileError>,
+) -> Result<(), FileError> {
+    let open = |index: Option<usize>, name: &str, width: usize| {
+        let from = format!("{here}/{name}");
+        index.map(|index| Accessor::new(buffers, index, &from, &[width])).transpose()
+    };
+    let translation = open(attributes.translation, "TRANSLATION", 3)?;
+    let rotation = open(attributes.rotation, "ROTATION", 4)?;
+    let scale = open(attributes.scale, "SCALE", 3)?;
+    let mut counts = [&translation, &rotation, &scale].into_iter().flatten().map(|a| a.count);
+    let count = counts.next().unwrap_or(0);
+    if counts.any(|other| other != count) {
+        return Err(buffers.context.invalid(pointer(here.into()), "the attributes differ in number"));
+    }
+    for i in 0..count {
+        let t = translation.as_ref().map_or([0.0; 3], |a| a.read(i, [0.0; 3]));
+        let r = rotation.as_ref().map_or([0.0, 0.0, 0.0, 1.0], |a| a.read(i, [0.0; 4]));
+        let s = scale.as_ref().map_or([1.0; 3], |a| a.read(i, [1.0; 3]));
+        each(from_parts(t.map(f64::from), r.map(f64::from), s.map(f64::from)))?;
+    }
+    Ok(())
+}

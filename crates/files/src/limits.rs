@@ -1,0 +1,36 @@
+//! How much a file may ask for. Everything that a file *declares* is held against
+//! these before memory is reserved for it, so that a few hostile bytes cannot ask
+//! for gigabytes.
+
+/// Upper bounds on what is read. All are inclusive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Bytes of one file; for glTF also of all its external buffers together.
+    pub max_file_bytes: u64,
+    /// Vertices of the merged mesh, instances counted; also positions in an OBJ file.
+    pub max_vertices: usize,
+    /// Triangles of the merged mesh, instances counted.
+    pub max_triangles: usize,
+    /// Texels along either side of an image.
+    pub max_image_side: u32,
+    /// Texels of an image.
+    pub max_image_pixels: u64,
+    /// Texels of all images of one model together.
+    pub max_total_pixels: u64,
+    /// JSON objects in a glTF document; each costs a few hundred bytes in memory.
+    pub max_json_objects: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            max_file_bytes: 4 << 30,
+            max_vertices: 100_000_000,
+            max_triangles: 100_000_000,
+            max_image_side: 16_384,
+            max_image_pixels: 1 << 28,
+            max_total_pixels: 1 << 30,
+            max_json_objects: 4_000_000,
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! One door for all model formats: chosen by the first bytes, then the extension.
+
+use crate::context::{Context, Textures};
+use crate::resources::read_file;
+use crate::{FileError, Folder, Limits, Place, gltf, obj};
+use parbake_model::Model;
+use std::path::Path;
+
+const SUPPORTED: &str = "OBJ (.obj) and glTF 2.0 (.gltf, .glb)";
+
+/// A model, and what is odd about its file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Loaded {
+    /// Keeps the model's contract; has at least one triangle, and every triangle an area.
+    pub model: Model,
+    /// One sentence each, to show to people.
+    pub warnings: Vec<String>,
+}
+
+/// Reads an `.obj`, `.gltf` or `.glb` file with all that it refers to.
+///
+/// # Errors
+/// When the file or a buffer of it cannot be read, breaks its format, needs what is
+/// not supported, is over the limits, or has no triangles; when a picture that a
+/// material uses is there but cannot be decoded. A picture that is not there is a
+/// warning.
+pub fn read_model(path: &Path, limits: &Limits) -> Result<Loaded, FileError> {
+    read(path, limits, Textures::Decode)
+}
+
+/// Like [`read_model`], but opens no pictures: every material comes without
+/// textures. For models whose look is not needed.
+///
+/// # Errors
+/// As [`read_model`], except for those about pictures.
+pub fn read_geometry(path: &Path, limits: &Limits) -> Result<Loaded, FileError> {
+    read(path, limits, Textures::Skip)
+}
+
+fn read(path: &Path, limits: &Limits, textures: Textures) -> Result<Loaded, FileError> {
+    let extension = path.extension().map(|e| e.to_ascii_lowercase()).unwrap_or_default();
+    let known = ["obj", "gltf", "glb"].iter().any(|e| extension == *e);
+    let bytes = read_file(path, limits.max_file_bytes).map_err(|source| FileError::Read {
+        path: path.into(),
+        place: Place::File,
+        source,
+    })?;
+    let resources = Folder::beside(path);
+    let context = Context::new(path, &resources, limits, textures);
+    if bytes.starts_with(gltf::MAGIC) || known && extension != "obj" {
+        gltf::read(context, &bytes)
+    } else if known {
+        obj::read(context, &bytes)
+    } else {
+        Err(FileError::UnknownFormat { path: path.into(), supported: SUPPORTED })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects the message for other formats: it says what can be read.
+    #[test]
+    fn unknown_extensions_are_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.fbx");
+        std::fs::write(&path, b"Kaydara FBX Binary").unwrap();
+        let error = read_model(&path, &Limits::default()).unwrap_err().to_string();
+        assert!(error.contains("a.fbx") && error.contains(".obj"), "{error}");
+        let missing = read_model(&folder.path().join("b.obj"), &Limits::default()).unwrap_err();
+        assert!(missing.to_string().contains("cannot be read"), "{missing}");
+    }
+
+    /// Protects capital extensions, as old exporters write them.
+    #[test]
+    fn extensions_may_be_capital() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("A.OBJ");
+        std::fs::write(&path, b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+        assert_eq!(read_model(&path, &Limits::default()).unwrap().model.mesh.triangles.len(), 1);
+    }
+}

@@ -1,0 +1,84 @@
+//! What writers ask of a model before they touch the disk: that it keeps its
+//! contract, so that no index can go astray.
+
+use crate::{FileError, Place};
+use parbake_model::{Material, Model};
+use std::path::Path;
+
+/// Refuses models that break [`Model`]'s or [`Mesh`](parbake_model::Mesh)'s contract.
+pub(crate) fn check(path: &Path, model: &Model) -> Result<(), FileError> {
+    let refuse = |reason: String| {
+        let reason = format!("the model cannot be written: {reason}");
+        Err(FileError::Invalid { path: path.into(), place: Place::File, reason })
+    };
+    let mesh = &model.mesh;
+    let count = mesh.positions.len();
+    if mesh.triangles.is_empty() {
+        return Err(FileError::Empty { path: path.into(), detail: String::new() });
+    }
+    let lengths = [
+        ("normals", mesh.normals.len()),
+        ("tangents", mesh.tangents.len()),
+        ("texture coordinates", mesh.uvs.len()),
+        ("second texture coordinates", mesh.uvs1.len()),
+        ("colours", mesh.colors.len()),
+    ];
+    if let Some((what, n)) = lengths.iter().find(|(_, n)| *n != 0 && *n != count) {
+        return refuse(format!("it has {count} positions but {n} {what}"));
+    }
+    if mesh.triangle_materials.len() != mesh.triangles.len() {
+        return refuse("not every triangle has a material".into());
+    }
+    if mesh.triangles.iter().flatten().any(|&i| i as usize >= count) {
+        return refuse("a triangle names a vertex that is not there".into());
+    }
+    if mesh.triangle_materials.iter().any(|&m| m as usize >= model.materials.len()) {
+        return refuse("a triangle names a material that is not there".into());
+    }
+    let slots = |m: &Material| [m.base_color_texture, m.normal_texture];
+    if model.materials.iter().flat_map(slots).flatten().any(|s| s.image >= model.images.len()) {
+        return refuse("a material names an image that is not there".into());
+    }
+    let finite = mesh.positions.iter().all(|p| p.is_finite())
+        && mesh.uvs.iter().chain(&mesh.uvs1).all(|uv| uv.is_finite())
+        && mesh.colors.iter().all(|c| c.is_finite());
+    if !finite {
+        return refuse("a position, texture coordinate or colour is not finite".into());
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parbake_model::Mesh;
+    use parbake_model::glam::Vec3;
+
+    /// Protects the writers from panics on models that break the contract.
+    #[test]
+    fn broken_models_are_refused() {
+        let mesh = Mesh {
+            positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+            triangles: vec![[0, 1, 2]],
+            triangle_materials: vec![0],
+            ..Mesh::default()
+        };
+        let good = Model { mesh, materials: vec![Material::default()], ..Model::default() };
+        let breakages: [fn(&mut Model); 7] = [
+            |m| m.mesh.triangles[0][1] = 3,
+            |m| m.mesh.triangle_materials[0] = 1,
+            |m| m.mesh.triangle_materials.clear(),
+            |m| m.mesh.normals.push(Vec3::X),
+            |m| m.mesh.positions[0].x = f32::NAN,
+            |m| m.materials[0].normal_texture = Some(Default::default()),
+            |m| m.mesh.triangles.clear(),
+        ];
+        let path = Path::new("out.glb");
+        assert!(check(path, &good).is_ok());
+        for breakage in breakages {
+            let mut model = good.clone();
+            breakage(&mut model);
+            assert!(check(path, &model).unwrap_err().to_string().starts_with("out.glb"));
+        }
+    }
+}

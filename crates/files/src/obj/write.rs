@@ -1,0 +1,252 @@
+//! OBJ out: the mesh, an MTL file and the pictures beside it.
+//!
+//! Numbers are printed so that reading gives the same bits back (colours: nearly). What OBJ cannot
+//! say is refused rather than dropped: turned, mirrored or second-set texture
+//! coordinates, and a colour factor on a texture. Tangents and the alpha of vertex
+//! colours are left out; readers can compute the former.
+
+use super::{NamedImage, srgb};
+use crate::unit::unit;
+use crate::{FileError, Place, encode_png, write_atomically};
+use parbake_model::glam::Vec3;
+use parbake_model::{Material, Mesh, Model, TextureSlot, UvTransform, Wrap};
+use std::fmt::Write;
+use std::path::Path;
+
+/// Writes `model` to `path`, with `<stem>.mtl` and `<stem>_<use>.png` beside it.
+/// The OBJ file comes last, so that it never names what is not there yet.
+///
+/// # Errors
+/// When the model breaks its contract or says what OBJ cannot, and when a file
+/// cannot be written.
+pub fn write_obj(path: &Path, model: &Model) -> Result<(), FileError> {
+    crate::model_out::check(path, model)?;
+    let stem = plain_stem(path);
+    let pictures = name_pictures(&stem, model);
+    let library = library(path, model, &pictures)?;
+    let text = text(&stem, model);
+    for (name, image) in pictures.iter().flatten() {
+        write_atomically(&path.with_file_name(name), &encode_png(image)?)?;
+    }
+    write_atomically(&path.with_file_name(format!("{stem}.mtl")), library.as_bytes())?;
+    write_atomically(path, text.as_bytes())
+}
+
+/// The stem without what other programs stumble over in OBJ and MTL files: blanks,
+/// and characters that begin a comment or an option.
+fn plain_stem(path: &Path) -> String {
+    let plain = |c: char| if c.is_whitespace() || c.is_control() || "#\\\"".contains(c) { '_' } else { c };
+    let stem: String = super::path_stem(path).chars().map(plain).collect();
+    if stem.starts_with('-') { format!("_{stem}") } else { stem }
+}
+
+/// For each image a file name, if a material uses it.
+fn name_pictures<'a>(stem: &str, model: &'a Model) -> Vec<Option<NamedImage<'a>>> {
+    let mut names: Vec<Option<NamedImage>> = vec![None; model.images.len()];
+    let mut counts = [0; 2];
+    for material in &model.materials {
+        let slots = [(material.base_color_texture, "base_color"), (material.normal_texture, "normal")];
+        for ((slot, what), count) in slots.into_iter().zip(&mut counts) {
+            let Some(image) = slot.map(|s| s.image).filter(|&i| names[i].is_none()) else { continue };
+            *count += 1;
+            let number = if *count == 1 { String::new() } else { format!("_{count}") };
+            names[image] = Some((format!("{stem}_{what}{number}.png"), &model.images[image]));
+        }
+    }
+    names
+}
+
+/// Names that are told apart by the reader: no blanks at the ends, none twice.
+fn material_names(model: &Model) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    let mut taken = std::collections::HashSet::new();
+    for (i, material) in model.materials.iter().enumerate() {
+        let plain = |c: char| if c.is_control() || c == '\\' { '_' } else { c };
+        let name: String = material.name.trim().chars().map(plain).collect();
+        let mut name = if name.is_empty() { format!("material_{i}") } else { name };
+        while !taken.insert(name.clone()) {
+            name = format!("{name}_{i}");
+        }
+        names.push(name);
+    }
+    names
+}
+
+// Writing into a String cannot fail; `let _` says so where the trait returns a Result.
+
+fn library(path: &Path, model: &Model, pictures: &[Option<NamedImage>]) -> Result<String, FileError> {
+    let mut out = format!("# Parbake {}\n", env!("CARGO_PKG_VERSION"));
+    for (material, name) in model.materials.iter().zip(material_names(model)) {
+        let [r, g, b, a] = material.base_color.map(f64::from);
+        let [r, g, b] = [r, g, b].map(|x| srgb::encode(x.clamp(0.0, 1.0)));
+        let _ = write!(out, "\nnewmtl {name}\nKd {r} {g} {b}\nKs 0 0 0\n");
+        if a < 1.0 {
+            let _ = writeln!(out, "d {a}");
+        }
+        if let Some(slot) = &material.base_color_texture {
+            if material.base_color[..3] != [1.0; 3] {
+                return Err(cannot(path, material, "a colour factor on a texture"));
+            }
+            let _ = writeln!(out, "map_Kd {}", map(path, material, slot, pictures)?);
+        }
+        if let Some(slot) = &material.normal_texture {
+            let map = map(path, material, slot, pictures)?;
+            let strength = material.normal_scale;
+            let strength = if strength == 1.0 { String::new() } else { format!("-bm {strength} ") };
+            // `norm` is what new programs read, `map_Bump` what old ones do.
+            let _ = write!(out, "norm {strength}{map}\nmap_Bump {strength}{map}\n");
+        }
+    }
+    Ok(out)
+}
+
+/// Options and file name of one use.
+fn map(
+    path: &Path,
+    material: &Material,
+    slot: &TextureSlot,
+    pictures: &[Option<NamedImage>],
+) -> Result<String, FileError> {
+    let mut out = String::new();
+    match slot.wrap {
+        [Wrap::Repeat, Wrap::Repeat] => {}
+        [Wrap::Clamp, Wrap::Clamp] => out += "-clamp on ",
+        _ => return Err(cannot(path, material, "mirrored textures, or other edges along u than along v")),
+    }
+    let UvTransform { offset, rotation, scale } = slot.transform;
+    if rotation != 0.0 {
+        return Err(cannot(path, material, "turned textures"));
+    }
+    if slot.uv_set != 0 {
+        return Err(cannot(path, material, "a second set of texture coordinates"));
+    }
+    if slot.transform != UvTransform::default() {
+        let up = 1.0 - f64::from(scale.y) - f64::from(offset.y);
+        let _ = write!(out, "-s {} {} 1 -o {} {up} 0 ", scale.x, scale.y, offset.x);
+    }
+    out += pictures[slot.image].as_ref().map_or("", |(name, _)| name);
+    Ok(out)
+}
+
+fn cannot(path: &Path, material: &Material, feature: &str) -> FileError {
+    FileError::Unsupported {
+        path: path.into(),
+        place: Place::File,
+        feature: format!("{feature} (material {:?}) in OBJ", material.name),
+        advice: "write a .glb file instead".into(),
+    }
+}
+
+fn text(stem: &str, model: &Model) -> String {
+    let mesh = &model.mesh;
+    let mut out = String::with_capacity(100 * mesh.positions.len() + 30 * mesh.triangles.len());
+    let _ = writeln!(out, "# Parbake {}\nmtllib {stem}.mtl", env!("CARGO_PKG_VERSION"));
+    vertices(&mut out, mesh);
+    let names = material_names(model);
+    let mut current = None;
+    for (triangle, &material) in mesh.triangles.iter().zip(&mesh.triangle_materials) {
+        if current != Some(material) {
+            current = Some(material);
+            let _ = writeln!(out, "usemtl {}", names[material as usize]);
+        }
+        out.push('f');
+        for &i in triangle {
+            let n = u64::from(i) + 1;
+            let _ = match (mesh.uvs.is_empty(), mesh.normals.is_empty()) {
+                (true, true) => write!(out, " {n}"),
+                (false, true) => write!(out, " {n}/{n}"),
+                (true, false) => write!(out, " {n}//{n}"),
+                (false, false) => write!(out, " {n}/{n}/{n}"),
+            };
+        }
+        out.push('\n');
+    }
+    out
+}
+
+fn vertices(out: &mut String, mesh: &Mesh) {
+    for (i, p) in mesh.positions.iter().enumerate() {
+        let _ = write!(out, "v {} {} {}", p.x, p.y, p.z);
+        if let Some(color) = mesh.colors.get(i) {
+            let [r, g, b] =
+                color.truncate().to_array().map(|x| srgb::encode(f64::from(x).clamp(0.0, 1.0)) as f32);
+            let _ = write!(out, " {r} {g} {b}");
+        }
+        out.push('\n');
+    }
+    for uv in &mesh.uvs {
+        // In doubles 1 − v is exact, so that the reader's 1 − v gives v back.
+        let _ = writeln!(out, "vt {} {}", uv.x, 1.0 - f64::from(uv.y));
+    }
+    for n in &mesh.normals {
+        let n = unit(*n).unwrap_or(Vec3::Y);
+        let _ = writeln!(out, "vn {} {} {}", n.x, n.y, n.z);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Limits, read_model};
+    use parbake_model::Image;
+    use parbake_model::glam::{Vec2, Vec4};
+
+    fn model() -> Model {
+        let mesh = Mesh {
+            positions: vec![Vec3::new(0.1, -1e-9, 3e20), Vec3::X, Vec3::Y, Vec3::Z],
+            normals: vec![Vec3::Z, Vec3::X, Vec3::Y, Vec3::new(0.6, 0.8, 0.0)],
+            uvs: vec![Vec2::new(0.1, 0.3), Vec2::new(1.0, 1e-7), Vec2::new(-3.3, 7.1), Vec2::ONE],
+            colors: vec![Vec4::new(0.1, 0.2, 0.3, 1.0), Vec4::ONE, Vec4::W, Vec4::ONE],
+            triangles: vec![[0, 1, 2], [1, 3, 2]],
+            triangle_materials: vec![0, 1],
+            ..Mesh::default()
+        };
+        let slot = TextureSlot { image: 1, ..TextureSlot::default() };
+        let colored = Material { name: "a".into(), base_color: [0.2, 0.4, 0.6, 1.0], ..Material::default() };
+        let textured = Material {
+            name: "a".into(),
+            base_color_texture: Some(slot),
+            normal_texture: Some(TextureSlot { image: 0, wrap: [Wrap::Clamp; 2], ..slot }),
+            normal_scale: 0.5,
+            ..Material::default()
+        };
+        let images = vec![Image::solid("n", 2, 2, [1, 2, 3, 4]), Image::solid("c", 3, 1, [9, 8, 7, 255])];
+        Model { name: "m".into(), mesh, materials: vec![colored, textured], images }
+    }
+
+    /// Protects every bit on the way through a file, and the pictures' names.
+    #[test]
+    fn comes_back_the_same() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("my cup.obj");
+        let model = model();
+        write_obj(&path, &model).unwrap();
+        assert!(folder.path().join("my_cup_base_color.png").exists());
+        let loaded = read_model(&path, &Limits::default()).unwrap();
+        assert_eq!(loaded.warnings, [""; 0]);
+        let mut mesh = loaded.model.mesh;
+        for (a, b) in mesh.colors.iter_mut().zip(&model.mesh.colors) {
+            assert!(a.distance(*b) < 1e-6, "{a} {b}");
+            *a = *b;
+        }
+        assert_eq!(mesh, model.mesh);
+        let (a, b) = (&loaded.model.materials, &model.materials);
+        assert_eq!(a[0], b[0]);
+        assert_eq!(a[1].name, "a_1");
+        assert_eq!(a[1].normal_scale, 0.5);
+        assert_eq!(a[1].normal_texture.unwrap().wrap, [Wrap::Clamp; 2]);
+        let image = &loaded.model.images[a[1].normal_texture.unwrap().image];
+        assert_eq!(image.pixels, model.images[0].pixels);
+    }
+
+    /// Protects users from silently losing what OBJ cannot say.
+    #[test]
+    fn what_obj_cannot_say_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut turned = model();
+        turned.materials[1].base_color_texture.as_mut().unwrap().transform.rotation = 1.0;
+        let error = write_obj(&folder.path().join("a.obj"), &turned).unwrap_err().to_string();
+        assert!(error.contains("turned textures") && error.contains(".glb"), "{error}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,58 @@
+//! What the tests on real data share.
+
+#![allow(dead_code)]
+
+use parbake_files::Loaded;
+use std::path::{Path, PathBuf};
+
+/// `$PARBAKE_DATA`, or `None` after saying that the test is skipped.
+pub fn data_folder() -> Option<PathBuf> {
+    let folder = std::env::var_os("PARBAKE_DATA").map(PathBuf::from);
+    if folder.is_none() {
+        println!("SKIPPED: set PARBAKE_DATA to the folder of test data to run this test");
+    }
+    folder
+}
+
+/// All files below a folder, in a fixed order.
+pub fn files_below(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    let mut folders = vec![folder.to_path_buf()];
+    while let Some(folder) = folders.pop() {
+        let Ok(entries) = std::fs::read_dir(&folder) else { continue };
+        for path in entries.flatten().map(|e| e.path()) {
+            if path.is_dir() { folders.push(path) } else { files.push(path) }
+        }
+    }
+    files.sort();
+    files
+}
+
+/// Asserts the contracts of `Model` and `Mesh`.
+pub fn check_model(path: &Path, loaded: &Loaded) {
+    let path = path.display();
+    let (mesh, model) = (&loaded.model.mesh, &loaded.model);
+    let count = mesh.positions.len();
+    assert!(!mesh.triangles.is_empty(), "{path}");
+    assert!(mesh.triangles.iter().flatten().all(|&i| (i as usize) < count), "{path}");
+    assert_eq!(mesh.triangle_materials.len(), mesh.triangles.len(), "{path}");
+    assert!(mesh.triangle_materials.iter().all(|&m| (m as usize) < model.materials.len()), "{path}");
+    let lengths =
+        [&mesh.normals.len(), &mesh.tangents.len(), &mesh.uvs.len(), &mesh.uvs1.len(), &mesh.colors.len()];
+    assert!(lengths.iter().all(|&&n| n == 0 || n == count), "{path}: {count} {lengths:?}");
+    assert!(mesh.positions.iter().all(|p| p.is_finite()), "{path}");
+    assert!(mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-3), "{path}");
+    assert!(mesh.tangents.iter().all(|t| (t.truncate().length() - 1.0).abs() < 1e-3), "{path}");
+    assert!(mesh.tangents.iter().all(|t| t.w.abs() == 1.0), "{path}");
+    assert!(mesh.uvs.iter().chain(&mesh.uvs1).all(|uv| uv.is_finite()), "{path}");
+    assert!(mesh.colors.iter().all(|c| c.is_finite()), "{path}");
+    for material in &model.materials {
+        for slot in [material.base_color_texture, material.normal_texture].into_iter().flatten() {
+            assert!(slot.image < model.images.len() && slot.uv_set < 2, "{path}");
+        }
+        assert!(material.base_color.iter().all(|x| (0.0..=1.0).contains(x)), "{path}");
+    }
+    for image in &model.images {
+        assert_eq!(image.pixels.len(), image.width * image.height, "{path}");
+    }
+}

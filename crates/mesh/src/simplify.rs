@@ -1,0 +1,220 @@
+//! Simplification by edge collapses (meshoptimizer: Garland and Heckbert 1997,
+//! with attributes after Hoppe 1999).
+//!
+//! Vertices are split by material first: the triangles' materials can then be told
+//! from their vertices afterwards, and meshoptimizer keeps the two sides of a
+//! material's border together as it does those of a texture seam. Models that
+//! resist are tried again, each time with less to preserve; see [`Attempt`].
+//!
+//! Contract: the result uses only the input's vertices, is not empty unless the
+//! input is, and has no tangents.
+
+use crate::normals::smooth_normals;
+use crate::vertices::drop_unused;
+use crate::weld::{ordered_bits, weld_by};
+use meshopt::SimplifyOptions as Flags;
+use parbake_model::glam::{Vec2, Vec3};
+use parbake_model::{Bounds, Mesh};
+
+/// How far, and what to preserve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SimplifyOptions {
+    /// How many triangles the result should have, at least 1.
+    pub target_triangles: usize,
+    /// How far the surface may move, relative to the longest side of its bounding
+    /// box; 1 does not bound it.
+    pub max_error: f32,
+    /// How bad a texture that slips along the surface is, compared with a surface
+    /// that moves by as much; 0 … 1.
+    pub uv_weight: f32,
+    /// How bad normals are that turn by a radian, compared with a surface that
+    /// moves by the longest side of its bounding box; 0 … 1.
+    pub normal_weight: f32,
+}
+
+impl Default for SimplifyOptions {
+    fn default() -> Self {
+        Self { target_triangles: 1000, max_error: 1.0, uv_weight: 0.5, normal_weight: 0.1 }
+    }
+}
+
+/// What a try preserves, in the order in which they are made.
+#[derive(Clone, Copy, PartialEq)]
+enum Attempt {
+    /// Seams of texture and normals alike.
+    AllSeams,
+    /// Seams of texture; the result is shaded smooth. For models whose every
+    /// edge is sharp, which otherwise have no vertex that may move.
+    TextureSeams,
+    /// As above, but texture seams may be collapsed where they are in the way.
+    CrossingSeams,
+    /// The shape; the texture layout is no longer of use.
+    ShapeOnly,
+    /// Roughly the shape, by clustering vertices, whatever the topology.
+    Clustered,
+}
+
+/// A coarser mesh. It misses the target by more than half only where even
+/// clustering does, or where `max_error` stops it.
+pub fn simplify(mesh: &Mesh, options: SimplifyOptions) -> Mesh {
+    let target = options.target_triangles.max(1);
+    let mut best = Mesh { tangents: Vec::new(), ..mesh.clone() };
+    if mesh.triangles.len() > target {
+        use Attempt::*;
+        for attempt in [AllSeams, TextureSeams, CrossingSeams, ShapeOnly, Clustered] {
+            let coarse = attempt.run(mesh, target, &options);
+            if !coarse.triangles.is_empty() && coarse.triangles.len() < best.triangles.len() {
+                best = coarse;
+            }
+            if 2 * best.triangles.len() <= 3 * target {
+                break;
+            }
+        }
+    }
+    drop_unused(&mut best);
+    best
+}
+
+impl Attempt {
+    fn run(self, mesh: &Mesh, target: usize, options: &SimplifyOptions) -> Mesh {
+        let (mut work, materials) = self.welded(mesh);
+        let positions = in_unit_box(&work);
+        let indices: Vec<u32> = work.triangles.iter().flatten().copied().collect();
+        let (count, error) = (3 * target, options.max_error.max(0.0));
+        let simplified = match self {
+            Self::ShapeOnly => {
+                meshopt::simplify_decoder(&indices, &positions, count, error, Flags::Prune, None)
+            }
+            Self::Clustered => meshopt::simplify_sloppy_decoder(&indices, &positions, count, error, None),
+            _ => {
+                let (attributes, weights) = attributes(&work, &positions, options, self == Self::AllSeams);
+                let unlocked = vec![false; positions.len()];
+                let flags = if self == Self::CrossingSeams { Flags::Permissive } else { Flags::None };
+                meshopt::simplify_with_attributes_and_locks_decoder(
+                    &indices,
+                    &positions,
+                    &attributes,
+                    &weights,
+                    weights.len() * size_of::<f32>(),
+                    &unlocked,
+                    count,
+                    error,
+                    flags | Flags::Prune,
+                    None,
+                )
+            }
+        };
+        work.triangles = simplified.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
+        work.triangle_materials = work.triangles.iter().map(|t| materials[t[0] as usize]).collect();
+        if self != Self::AllSeams && !work.normals.is_empty() {
+            drop_unused(&mut work);
+            work.normals = smooth_normals(&work);
+        }
+        work
+    }
+
+    /// The mesh with each corner a vertex that all its equals share, and each
+    /// vertex's material.
+    fn welded(self, mesh: &Mesh) -> (Mesh, Vec<u32>) {
+        let corners: Vec<(u32, u32)> = mesh
+            .triangles
+            .iter()
+            .zip(&mesh.triangle_materials)
+            .flat_map(|(t, &material)| t.map(|v| (v, material)))
+            .collect();
+        let bits = |v: Option<&[f32]>| {
+            let mut key = [0; 4];
+            for (k, &x) in key.iter_mut().zip(v.unwrap_or_default()) {
+                *k = ordered_bits(x);
+            }
+            key
+        };
+        let first = weld_by(corners.len(), |corner| {
+            let (vertex, material) = corners[corner];
+            let v = vertex as usize;
+            let position = bits(Some(mesh.positions[v].as_ref()));
+            let seams = self != Self::ShapeOnly && self != Self::Clustered;
+            let uv = mesh.uvs.get(v).filter(|_| seams);
+            let uv1 = mesh.uvs1.get(v).filter(|_| seams);
+            let normal = mesh.normals.get(v).filter(|_| self == Self::AllSeams);
+            let color = mesh.colors.get(v).filter(|_| seams);
+            [
+                [material; 4],
+                position,
+                bits(uv.map(|x| x.as_ref().as_slice())),
+                bits(uv1.map(|x| x.as_ref().as_slice())),
+                bits(normal.map(|x| x.as_ref().as_slice())),
+                bits(color.map(|x| x.as_ref().as_slice())),
+            ]
+        });
+        // First corners become the vertices.
+        let mut vertex_of = vec![0; corners.len()];
+        let mut sources = Vec::new();
+        for corner in 0..corners.len() {
+            if first[corner] as usize == corner {
+                vertex_of[corner] = sources.len() as u32;
+                sources.push(corners[corner]);
+            } else {
+                vertex_of[corner] = vertex_of[first[corner] as usize];
+            }
+        }
+        fn pick<T: Copy>(values: &[T], sources: &[(u32, u32)]) -> Vec<T> {
+            sources.iter().filter_map(|&(v, _)| values.get(v as usize).copied()).collect()
+        }
+        let work = Mesh {
+            positions: pick(&mesh.positions, &sources),
+            normals: pick(&mesh.normals, &sources),
+            tangents: Vec::new(),
+            uvs: pick(&mesh.uvs, &sources),
+            uvs1: pick(&mesh.uvs1, &sources),
+            colors: pick(&mesh.colors, &sources),
+            triangles: vertex_of.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+            triangle_materials: Vec::new(),
+        };
+        (work, sources.into_iter().map(|(_, material)| material).collect())
+    }
+}
+
+/// Positions moved and scaled so that the longest side of the box is 1, whatever
+/// the file's unit: meshoptimizer's own scaling would overflow.
+fn in_unit_box(mesh: &Mesh) -> Vec<[f32; 3]> {
+    let Some(bounds) = Bounds::of(mesh) else { return Vec::new() };
+    let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+    let longest = (high - low).max_element().max(f64::MIN_POSITIVE);
+    mesh.positions.iter().map(|p| ((p.as_dvec3() - low) / longest).as_vec3().to_array()).collect()
+}
+
+/// Per vertex: the texture coordinate, in units of the surface's length so that
+/// neither the texture's size nor its tiling counts, and the normal. Their
+/// weights follow.
+fn attributes(
+    mesh: &Mesh,
+    positions: &[[f32; 3]],
+    options: &SimplifyOptions,
+    normals: bool,
+) -> (Vec<f32>, [f32; 5]) {
+    let (mut surface, mut texture) = (0.0, 0.0);
+    for (index, triangle) in mesh.triangles.iter().enumerate() {
+        let [a, b, c] = triangle.map(|v| Vec3::from(positions[v as usize]).as_dvec3());
+        surface += (b - a).cross(c - a).length();
+        let [a, b, c] = mesh.corner_uvs(index).map(Vec2::as_dvec2);
+        texture += (b - a).perp_dot(c - a).abs();
+    }
+    let scale = (surface / texture).sqrt();
+    // Texture coordinates without area, or absurd ones, say nothing.
+    let scale = if scale.is_finite() && scale > 0.0 { scale } else { 0.0 };
+    let mut values = Vec::with_capacity(5 * positions.len());
+    for v in 0..positions.len() {
+        let uv = mesh.uvs.get(v).copied().unwrap_or_default().as_dvec2() * scale;
+        let normal = mesh.normals.get(v).copied().unwrap_or_default();
+        values.extend(uv.clamp_length_max(1e6).as_vec2().to_array());
+        values.extend(normal.to_array());
+    }
+    let uv = options.uv_weight.clamp(0.0, 1.0);
+    let normal = if normals { options.normal_weight.clamp(0.0, 1.0) } else { 0.0 };
+    (values, [uv, uv, normal, normal, normal])
+}
+
+#[cfg(test)]
+#[path = "simplify_tests.rs"]
+mod tests;

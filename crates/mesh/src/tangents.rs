@@ -1,0 +1,187 @@
+//! Tangents by MikkTSpace (Mikkelsen, "Simulation of Wrinkled Surfaces
+//! Revisited", 2008), the tangent space that bakers and engines agree on.
+//!
+//! Convention (glTF 2.0, 3.7.2.1 and 3.9.3): the tangent points towards growing
+//! u, the bitangent w · n × t towards *decreasing* v, since our v grows downwards
+//! and a normal map's green grows upwards. MikkTSpace is therefore fed (u, −v),
+//! as exporters feed it (u, 1 − v): tangents do not see the difference.
+//!
+//! Contract: tangents are unit vectors with w = ±1; triangles keep their order,
+//! and vertices their indices; a vertex whose corners need different tangents gets
+//! copies at the end.
+
+use crate::normals::ensure_normals;
+use crate::vertices::{any_orthogonal, push_copy};
+use mikktspace::Geometry;
+use parbake_model::Mesh;
+use parbake_model::glam::{Vec3, Vec4};
+
+/// Fills `mesh.tangents`, and `mesh.normals` where there are none. Corners that
+/// MikkTSpace says nothing of (no texture coordinates, no area in space or
+/// texture) take over their vertex's tangent, or any one orthogonal to its normal,
+/// with w = 1.
+pub fn compute_tangents(mesh: &mut Mesh) {
+    if mesh.normals.len() != mesh.positions.len() {
+        ensure_normals(mesh);
+    }
+    mesh.tangents.clear();
+    let corners = corner_tangents(mesh);
+    assign(mesh, &corners);
+}
+
+/// One tangent for each corner of each triangle, where there is one.
+fn corner_tangents(mesh: &Mesh) -> Vec<[Option<Vec4>; 3]> {
+    let mut tangents = vec![[None; 3]; mesh.triangles.len()];
+    if mesh.uvs.len() != mesh.positions.len() {
+        return tangents;
+    }
+    // The reference implementation searches all triangles for each degenerate
+    // one, to copy a tangent from its vertex, which `assign` does at once.
+    let solid: Vec<u32> = (0..mesh.triangles.len() as u32)
+        .filter(|&t| {
+            let [a, b, c] = mesh.corners(t as usize);
+            a != b && b != c && c != a
+        })
+        .collect();
+    if solid.is_empty() {
+        return tangents;
+    }
+    let largest = |values: &mut dyn Iterator<Item = f32>| values.fold(0.0, |m: f32, x| m.max(x.abs()));
+    let mut corners = Corners {
+        mesh,
+        position_scale: taming_scale(largest(&mut mesh.positions.iter().flat_map(|p| p.to_array()))),
+        uv_scale: taming_scale(largest(&mut mesh.uvs.iter().flat_map(|uv| uv.to_array()))),
+        solid: &solid,
+        tangents: &mut tangents,
+    };
+    // It also walks round each vertex recursively, a stack frame per triangle.
+    let frames = most_triangles_at_a_vertex(mesh) * 256;
+    if frames < 256 * 1024 {
+        mikktspace::generate_tangents(&mut corners);
+    } else {
+        std::thread::scope(|scope| {
+            let thread = std::thread::Builder::new().stack_size(4 * frames + 1024 * 1024);
+            // Without a thread there are no tangents but the fallback's.
+            let _ = thread
+                .spawn_scoped(scope, || mikktspace::generate_tangents(&mut corners))
+                .map(|handle| handle.join());
+        });
+    }
+    tangents
+}
+
+/// A power of two, which rounds nothing, that keeps products of three
+/// coordinates from overflowing and those of ordinary meshes as they are.
+fn taming_scale(largest: f32) -> f32 {
+    if largest > 1e9 { 2f32.powi(-100) } else { 1.0 }
+}
+
+fn most_triangles_at_a_vertex(mesh: &Mesh) -> usize {
+    // By position: vertices of equal attributes are one to MikkTSpace.
+    let welded = crate::weld::weld_by_position(&mesh.positions);
+    let mut counts = vec![0; mesh.positions.len()];
+    for &vertex in mesh.triangles.iter().flatten() {
+        counts[welded[vertex as usize] as usize] += 1;
+    }
+    counts.into_iter().max().unwrap_or(0)
+}
+
+/// The mesh as MikkTSpace wants it.
+struct Corners<'a> {
+    mesh: &'a Mesh,
+    position_scale: f32,
+    uv_scale: f32,
+    /// Triangles with three different corners.
+    solid: &'a [u32],
+    tangents: &'a mut [[Option<Vec4>; 3]],
+}
+
+impl Corners<'_> {
+    fn vertex(&self, face: usize, corner: usize) -> usize {
+        self.mesh.triangles[self.solid[face] as usize][corner] as usize
+    }
+}
+
+impl Geometry for Corners<'_> {
+    fn num_faces(&self) -> usize {
+        self.solid.len()
+    }
+
+    fn num_vertices_of_face(&self, _face: usize) -> usize {
+        3
+    }
+
+    fn position(&self, face: usize, corner: usize) -> [f32; 3] {
+        (self.mesh.positions[self.vertex(face, corner)] * self.position_scale).to_array()
+    }
+
+    fn normal(&self, face: usize, corner: usize) -> [f32; 3] {
+        self.mesh.normals[self.vertex(face, corner)].to_array()
+    }
+
+    fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
+        let uv = self.mesh.uvs[self.vertex(face, corner)] * self.uv_scale;
+        [uv.x, -uv.y]
+    }
+
+    fn set_tangent(
+        &mut self,
+        tangent: [f32; 3],
+        bitangent: [f32; 3],
+        length_u: f32,
+        length_v: f32,
+        preserves_orientation: bool,
+        face: usize,
+        corner: usize,
+    ) {
+        // What MikkTSpace leaves where it has nothing to say; no real tangent
+        // space is an isometry to the last bit, and if one is, it is mirrored.
+        let untouched = tangent == [1.0, 0.0, 0.0]
+            && bitangent == [0.0, 1.0, 0.0]
+            && (length_u, length_v, preserves_orientation) == (1.0, 1.0, false);
+        let uvs = self.mesh.corner_uvs(self.solid[face] as usize);
+        let no_area = (uvs[1] - uvs[0]).perp_dot(uvs[2] - uvs[0]) == 0.0;
+        let sign = if preserves_orientation { 1.0 } else { -1.0 };
+        let unit = Vec3::from(tangent).try_normalize().filter(|_| !(untouched && no_area));
+        self.tangents[self.solid[face] as usize][corner] = unit.map(|t| t.extend(sign));
+    }
+}
+
+/// Writes the corners' tangents to their vertices, copying a vertex for each
+/// further tangent that its corners have.
+fn assign(mesh: &mut Mesh, corners: &[[Option<Vec4>; 3]]) {
+    const NONE: u32 = u32::MAX;
+    let originals = mesh.positions.len();
+    let mut tangents: Vec<Option<Vec4>> = vec![None; originals];
+    // A chain through each vertex's copies.
+    let mut next_copy = vec![NONE; originals];
+    for (index, corner_tangents) in corners.iter().enumerate() {
+        for (k, &tangent) in corner_tangents.iter().enumerate() {
+            let Some(tangent) = tangent else { continue };
+            let mut vertex = mesh.triangles[index][k];
+            loop {
+                let slot = &mut tangents[vertex as usize];
+                if *slot.get_or_insert(tangent) == tangent {
+                    break;
+                }
+                if next_copy[vertex as usize] == NONE {
+                    let copy = push_copy(mesh, vertex);
+                    tangents.push(Some(tangent));
+                    next_copy.push(NONE);
+                    next_copy[vertex as usize] = copy;
+                }
+                vertex = next_copy[vertex as usize];
+            }
+            mesh.triangles[index][k] = vertex;
+        }
+    }
+    mesh.tangents = tangents
+        .iter()
+        .zip(&mesh.normals)
+        .map(|(tangent, &normal)| tangent.unwrap_or_else(|| any_orthogonal(normal).extend(1.0)))
+        .collect();
+}
+
+#[cfg(test)]
+#[path = "tangents_tests.rs"]
+mod tests;

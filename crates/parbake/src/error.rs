@@ -1,0 +1,50 @@
+//! What can keep a bake or an evaluation from a result.
+
+use parbake_files::FileError;
+
+/// One clear sentence, and what to do next where there is something to do.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BakeError {
+    /// Reading or writing a file.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// An option is out of range.
+    #[error("--{option} {value} is out of range: it may be {range}")]
+    Option {
+        /// Its name on the command line.
+        option: &'static str,
+        /// What was asked.
+        value: String,
+        /// What may be asked.
+        range: String,
+    },
+    /// A texture cannot be baked without texture coordinates.
+    #[error(
+        "{model}: the low-poly has no texture coordinates, so there is no place for a texture; unwrap it first"
+    )]
+    NoTextureCoordinates {
+        /// The low-poly's name.
+        model: String,
+    },
+    /// All texture coordinates fall together.
+    #[error("{model}: the low-poly's texture coordinates cover no area; unwrap it first")]
+    FlatTextureCoordinates {
+        /// The low-poly's name.
+        model: String,
+    },
+    /// Nothing to look at.
+    #[error("{model}: all vertices lie in one point, so there is nothing to render")]
+    NoExtent {
+        /// The model's name.
+        model: String,
+    },
+    /// The operating system refused to start threads.
+    #[error("could not start {threads} threads: {source}")]
+    Threads {
+        /// How many were asked for.
+        threads: usize,
+        /// Why not.
+        source: rayon::ThreadPoolBuildError,
+    },
+}

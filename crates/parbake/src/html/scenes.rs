@@ -1,0 +1,41 @@
+//! The three models of a bake, made ready for rendering once for the whole page.
+
+use crate::bake::Baked;
+use crate::error::BakeError;
+use crate::pair::{common_frame, make_shadeable};
+use parbake_model::Model;
+use parbake_render::display::Display;
+use parbake_render::scene::Scene;
+
+/// Scenes in the high-poly's frame, read by the bake's own convention.
+pub struct Scenes {
+    /// The detailed model.
+    pub high: Scene,
+    /// The coarse model with projected textures.
+    pub projected: Scene,
+    /// The coarse model with fitted textures.
+    pub baked: Scene,
+    /// Light strength and display curve of the convention.
+    pub display: Display,
+}
+
+impl Scenes {
+    /// Places and unpacks all three.
+    pub fn new(high: &Model, baked: &Baked) -> Result<Self, BakeError> {
+        let convention = baked.report.options.convention;
+        let frame = common_frame(high)?;
+        // As `evaluate` does it, so that the figures are the same.
+        let scene = |model: &Model| {
+            let mut model = model.clone();
+            make_shadeable(&mut model, false, false);
+            frame.apply(&mut model.mesh);
+            Scene::new(&model, convention.interpretation())
+        };
+        Ok(Self {
+            high: scene(high),
+            projected: scene(&baked.projected),
+            baked: scene(&baked.model),
+            display: convention.display(),
+        })
+    }
+}

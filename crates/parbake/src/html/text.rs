@@ -1,0 +1,129 @@
+//! Text for the page: escaping, and numbers as people read them.
+//!
+//! Contract: whatever comes in, the result can stand in HTML text and in a quoted
+//! attribute, and no "NaN" or "inf" ever reaches the page.
+
+/// Narrow no-break space: parts thousands, and numbers from their units.
+const THIN: char = '\u{202f}';
+
+/// What stands where there is no number.
+pub const NOTHING: &str = "–";
+
+/// Makes any text safe inside an element or a quoted attribute.
+pub fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            // Control characters are not allowed in HTML, escaped or not.
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// A whole number with its thousands parted.
+pub fn count(number: usize) -> String {
+    let digits = number.to_string();
+    let mut out = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(THIN);
+        }
+        out.push(digit);
+    }
+    out
+}
+
+/// `number` with so many decimals and a true minus sign.
+pub fn decimal(number: f64, decimals: usize) -> String {
+    if !number.is_finite() {
+        return NOTHING.into();
+    }
+    let text = format!("{:.decimals$}", number.abs());
+    // Rounding may have left nothing of a small negative number.
+    let negative = number < 0.0 && text.chars().any(|c| matches!(c, '1'..='9'));
+    if negative { format!("−{text}") } else { text }
+}
+
+/// The same with a plus sign where it grows.
+pub fn change(number: f64, decimals: usize) -> String {
+    let text = decimal(number, decimals);
+    if number.is_finite() && text.chars().any(|c| matches!(c, '1'..='9')) && number > 0.0 {
+        format!("+{text}")
+    } else {
+        text
+    }
+}
+
+/// `part` of `whole` in percent, as exact as is of interest.
+pub fn share(part: usize, whole: usize) -> String {
+    let percent = 100.0 * part as f64 / whole.max(1) as f64;
+    let text = match part {
+        0 => "0".into(),
+        _ if percent < 0.1 => "&lt;".to_string() + &format!("{THIN}0.1"),
+        _ if percent < 10.0 => decimal(percent, 1),
+        _ => decimal(percent, 0),
+    };
+    format!("{text}{THIN}%")
+}
+
+/// Seconds: tenths up to a minute, then minutes and seconds.
+pub fn duration(seconds: f64) -> String {
+    match seconds {
+        s if !s.is_finite() || s < 0.0 => NOTHING.into(),
+        s if s < 0.0995 => format!("{:.0}{THIN}ms", s * 1e3),
+        s if s < 9.995 => format!("{s:.2}{THIN}s"),
+        s if s < 99.95 => format!("{s:.1}{THIN}s"),
+        s => {
+            let whole = s.round() as u64;
+            format!("{}{THIN}min {:02}{THIN}s", whole / 60, whole % 60)
+        }
+    }
+}
+
+/// Bytes in decimal megabytes or gigabytes.
+pub fn bytes(bytes: u64) -> String {
+    let mega = bytes as f64 / 1e6;
+    if mega < 999.5 { format!("{mega:.0}{THIN}MB") } else { format!("{:.2}{THIN}GB", mega / 1e3) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects the page from names that look like HTML.
+    #[test]
+    fn names_cannot_break_out() {
+        assert_eq!(escape(r#"<a href="x">'&'</a>"#), "&lt;a href=&quot;x&quot;&gt;&#39;&amp;&#39;&lt;/a&gt;");
+        assert_eq!(escape("a\u{0}b\nc"), "a b c");
+        assert_eq!(escape("Bröd — 面包"), "Bröd — 面包");
+    }
+
+    /// Protects the numbers' look at their borders.
+    #[test]
+    fn numbers() {
+        assert_eq!(count(0), "0");
+        assert_eq!(count(999), "999");
+        assert_eq!(count(1_234_567), "1\u{202f}234\u{202f}567");
+        assert_eq!(decimal(f64::NAN, 2), "–");
+        assert_eq!(decimal(-0.001, 2), "0.00");
+        assert_eq!(decimal(-1.5, 1), "−1.5");
+        assert_eq!(change(2.0, 1), "+2.0");
+        assert_eq!(change(-2.0, 1), "−2.0");
+        assert_eq!(change(0.001, 1), "0.0");
+        assert_eq!(change(f64::INFINITY, 1), "–");
+        assert_eq!(share(0, 0), "0\u{202f}%");
+        assert_eq!(share(1, 1_000_000), "&lt;\u{202f}0.1\u{202f}%");
+        assert_eq!(share(1, 3), "33\u{202f}%");
+        assert_eq!(duration(0.0123), "12\u{202f}ms");
+        assert_eq!(duration(125.2), "2\u{202f}min 05\u{202f}s");
+        assert_eq!(duration(f64::NAN), "–");
+        assert_eq!(bytes(457_000_000), "457\u{202f}MB");
+    }
+}

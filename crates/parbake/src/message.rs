@@ -1,0 +1,57 @@
+//! Messages of a run, for whoever draws them.
+
+use serde::{Deserialize, Serialize};
+
+/// What a run is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stage {
+    /// Reading and decoding files.
+    Read,
+    /// Normals, tangents, charts, the search structure of the high-poly.
+    Prepare,
+    /// Rendering the high-poly from the training views.
+    Reference,
+    /// Projecting the high-poly onto the low-poly's texture.
+    Start,
+    /// Finding where each pixel falls on the texture.
+    Sampling,
+    /// Solving for the textures.
+    Solve,
+    /// Comparing pictures.
+    Evaluate,
+    /// Encoding and writing files.
+    Write,
+}
+
+/// One message.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Message {
+    /// `done` of `total` steps of a stage are finished.
+    Progress {
+        /// Which stage.
+        stage: Stage,
+        /// Steps finished.
+        done: usize,
+        /// Steps in all.
+        total: usize,
+    },
+    /// Something that the user should know and that stops nothing.
+    Warning(String),
+}
+
+/// Receives messages and may stop a run; called from several threads at once.
+pub trait Watcher: Sync {
+    /// Takes a message.
+    fn message(&self, message: Message) {
+        let _ = message;
+    }
+
+    /// True once the run shall end with the best state so far.
+    fn stopped(&self) -> bool {
+        false
+    }
+}
+
+/// Nobody watches.
+impl Watcher for () {}

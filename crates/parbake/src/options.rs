@@ -1,0 +1,232 @@
+//! What a user can ask for: one plain struct for the library, the command line and
+//! the options file. Every field states its unit, range and default; `None` in a
+//! quality field means "as the preset says".
+
+use crate::error::BakeError;
+use parbake_fit::conjugate_gradient::Effort;
+use parbake_fit::membrane::Membrane;
+use parbake_fit::schedule::Schedule;
+use parbake_render::display::{Curve, Display};
+use parbake_render::scene::Interpretation;
+use serde::{Deserialize, Serialize};
+
+/// How much time a bake may take for how much quality.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum Preset {
+    /// A look within a second or two.
+    Fast,
+    /// What most bakes should use.
+    #[default]
+    Balanced,
+    /// The last tenths of a decibel.
+    Best,
+}
+
+/// How colours are understood when pictures are compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum Convention {
+    /// As glTF says: base colour is decoded from sRGB, light has unit strength.
+    #[default]
+    Gltf,
+    /// As in the paper's pictures: textures as stored, light of strength 1.59.
+    Paper,
+}
+
+impl Convention {
+    /// Whether base colour is decoded from sRGB before shading.
+    pub fn decodes_srgb(self) -> bool {
+        self == Convention::Gltf
+    }
+
+    /// How textures are read.
+    pub fn interpretation(self) -> Interpretation {
+        Interpretation { decode_srgb: self.decodes_srgb(), trilinear: true }
+    }
+
+    /// Light strength and display curve.
+    pub fn display(self) -> Display {
+        let gain = if self == Convention::Paper { 1.59 } else { 1.0 };
+        Display { gain, curve: Curve::Srgb }
+    }
+}
+
+/// What lies behind the models while fitting: the low-poly is asked to look like this
+/// where its silhouette goes beyond the high-poly's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum Backdrop {
+    /// Darkness, which shading at grazing light comes close to by itself.
+    #[default]
+    Black,
+    /// Middle grey.
+    Grey,
+    /// White.
+    White,
+}
+
+impl Backdrop {
+    /// Its linear light.
+    pub fn light(self) -> [f32; 3] {
+        match self {
+            Backdrop::Black => [0.0; 3],
+            Backdrop::Grey => [0.214; 3],
+            Backdrop::White => [1.0; 3],
+        }
+    }
+}
+
+/// Options of a bake.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default, deny_unknown_fields)]
+pub struct BakeOptions {
+    /// Side of the baked textures in texels, 16 to 8192
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 512))]
+    pub texture_size: usize,
+
+    /// How much time to spend for how much quality
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Preset::Balanced))]
+    pub preset: Preset,
+
+    /// How colours are understood when pictures are compared
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Convention::Gltf))]
+    pub convention: Convention,
+
+    /// What lies behind the models while fitting
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Backdrop::Black))]
+    pub backdrop: Backdrop,
+
+    /// How much pixels count where the low-poly reaches beyond the high-poly's silhouette, 0 to 1:
+    /// 1 looks best on the backdrop's colour, 0 treats all backgrounds alike
+    #[cfg_attr(feature = "clap", arg(long, value_name = "WEIGHT", default_value_t = 0.5))]
+    pub silhouette: f32,
+
+    /// Keep the projected normal map instead of fitting it
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub keep_normals: bool,
+
+    /// How far outside the low-poly projection looks for the high-poly, as a share of the
+    /// high-poly's longest side, 0 to 1
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.05))]
+    pub reach: f32,
+
+    /// Training views, 1 to 4096 [default: by preset 48, 160, 320]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
+    pub views: Option<usize>,
+
+    /// Side of a training view in pixels, 32 to 2048 [default: by preset 192, 256, 320]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS"))]
+    pub view_size: Option<usize>,
+
+    /// Turns that colours and normals take, 0 to 100 [default: by preset 1, 3, 6]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
+    pub rounds: Option<usize>,
+
+    /// Chooses the training views: another seed, another pool
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NUMBER", default_value_t = 0))]
+    pub seed: u64,
+
+    /// Threads to work with, 0 for one a core; the result does not depend on it
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 0))]
+    pub threads: usize,
+
+    /// Seconds after which the best textures so far are written, reading files included
+    /// [default: no limit]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SECONDS"))]
+    pub time_budget: Option<f64>,
+}
+
+impl Default for BakeOptions {
+    fn default() -> Self {
+        Self {
+            texture_size: 512,
+            preset: Preset::Balanced,
+            convention: Convention::Gltf,
+            backdrop: Backdrop::Black,
+            silhouette: 0.5,
+            keep_normals: false,
+            reach: 0.05,
+            views: None,
+            view_size: None,
+            rounds: None,
+            seed: 0,
+            threads: 0,
+            time_budget: None,
+        }
+    }
+}
+
+/// Options with every number settled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plan {
+    /// Training views.
+    pub views: usize,
+    /// Their side in pixels.
+    pub view_size: usize,
+    /// Samples of the high-poly along a side of each pixel's filter.
+    pub reference_samples: usize,
+    /// That filter's width in pixels.
+    pub filter: f32,
+    /// The order of the fit.
+    pub schedule: Schedule,
+}
+
+impl BakeOptions {
+    /// Checks every range; the error names the option and what it may be.
+    pub fn check(&self) -> Result<(), BakeError> {
+        let within = |option: &'static str, value: f64, low: f64, high: f64| {
+            if (low..=high).contains(&value) {
+                Ok(())
+            } else {
+                Err(BakeError::Option { option, value: value.to_string(), range: format!("{low} to {high}") })
+            }
+        };
+        within("texture-size", self.texture_size as f64, 16.0, 8192.0)?;
+        within("reach", f64::from(self.reach), 0.0, 1.0)?;
+        within("silhouette", f64::from(self.silhouette), 0.0, 1.0)?;
+        within("views", self.views.unwrap_or(1) as f64, 1.0, 4096.0)?;
+        within("view-size", self.view_size.unwrap_or(32) as f64, 32.0, 2048.0)?;
+        within("rounds", self.rounds.unwrap_or(0) as f64, 0.0, 100.0)?;
+        within("threads", self.threads as f64, 0.0, 1024.0)?;
+        within("time-budget", self.time_budget.unwrap_or(0.0), 0.0, 1e9)
+    }
+
+    /// Settles what the preset leaves open.
+    pub fn plan(&self) -> Plan {
+        let (views, view_size, rounds, final_steps) = match self.preset {
+            Preset::Fast => (48, 192, 1, 1),
+            Preset::Balanced => (160, 256, 3, 2),
+            Preset::Best => (320, 320, 6, 3),
+        };
+        let view_size = self.view_size.unwrap_or(view_size);
+        let normal_steps = if self.keep_normals {
+            0
+        } else {
+            std::env::var("PB_N").ok().and_then(|v| v.parse().ok()).unwrap_or(2)
+        };
+        let env = |n: &str, d: f32| std::env::var(n).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
+        Plan {
+            views: self.views.unwrap_or(views),
+            view_size,
+            reference_samples: 2,
+            // As sharp as a picture in which a texel is about a pixel wide.
+            filter: (256.0 / self.texture_size as f32).clamp(0.125, 1.0),
+            schedule: Schedule {
+                rounds: self.rounds.unwrap_or(rounds),
+                normal_steps,
+                final_steps,
+                effort: Effort { steps: env("PB_E", 6.0) as usize, tolerance: f64::from(env("PB_T", 0.05)) },
+                final_effort: Effort { steps: 30, tolerance: 1e-3 },
+                color_membrane: Membrane { stiffness: env("PB_CM", 3e-3), tether: 1e-5 },
+                damping: env("PB_DAMP", 8.0),
+                normal_membrane: Membrane { stiffness: env("PB_NS", 1e-2), tether: env("PB_NT", 1e-3) },
+                color_steps: env("PB_CS", 1.0) as usize,
+            },
+        }
+    }
+}

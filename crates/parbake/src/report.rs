@@ -1,0 +1,69 @@
+//! What a bake saw, as plain data: the JSON report, and what the HTML report shows.
+
+use crate::message::Stage;
+use crate::options::BakeOptions;
+use parbake_fit::schedule::{LossPoint, Move};
+use serde::{Deserialize, Serialize};
+
+/// Seconds that a stage took.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StageTime {
+    /// Which stage.
+    pub stage: Stage,
+    /// Wall seconds.
+    pub seconds: f64,
+}
+
+/// The loss after a step of the fit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LossStep {
+    /// What moved: start, color, normal or rounding.
+    pub moved: String,
+    /// Seconds since the fit began.
+    pub seconds: f64,
+    /// Mean squared display difference over all samples and channels.
+    pub mean_square: f64,
+}
+
+impl From<&LossPoint> for LossStep {
+    fn from(p: &LossPoint) -> Self {
+        let moved = match p.moved {
+            Move::Start => "start",
+            Move::Color => "color",
+            Move::Normal => "normal",
+            Move::Rounding => "rounding",
+        };
+        Self { moved: moved.into(), seconds: p.seconds, mean_square: p.mean_square }
+    }
+}
+
+/// What a bake saw.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BakeReport {
+    /// What was asked.
+    pub options: BakeOptions,
+    /// Triangles of the high-poly.
+    pub high_triangles: usize,
+    /// Triangles of the low-poly.
+    pub low_triangles: usize,
+    /// Training views that were rendered.
+    pub views: usize,
+    /// Pixels of those views that show the low-poly.
+    pub samples: usize,
+    /// Texels whose centre lies on the surface.
+    pub covered_texels: usize,
+    /// Those among them that no view saw; they were filled inside their chart.
+    pub unseen_texels: usize,
+    /// Texels that several triangles claim.
+    pub overlapping_texels: usize,
+    /// Texels on the surface for which projection found nothing.
+    pub missed_texels: usize,
+    /// Loss of the start and after each step.
+    pub losses: Vec<LossStep>,
+    /// Seconds by stage.
+    pub stages: Vec<StageTime>,
+    /// True when a time budget or a signal ended the run early.
+    pub stopped_early: bool,
+    /// Peak resident memory of the process in bytes, where the system tells.
+    pub peak_memory: Option<u64>,
+}
