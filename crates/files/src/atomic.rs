@@ -1,5 +1,6 @@
-//! Writes a file whole or not at all: a temporary file beside the target, synced,
-//! then renamed onto it. Readers see the old file or the new one, never half.
+//! Writes files whole or not at all: temporary files beside the targets, synced,
+//! then renamed onto them. Readers see the old file or the new one, never half, and
+//! of several files that belong together all or none.
 
 use crate::FileError;
 use std::ffi::OsString;
@@ -14,34 +15,73 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// When the file cannot be written; then `path` is as it was, and nothing is left
 /// beside it.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
-    let fail = |source| FileError::Write { path: path.into(), source };
-    let (mut file, temporary) = create_beside(path).map_err(fail)?;
-    let written = file.write_all(bytes).and_then(|()| file.sync_all());
-    drop(file);
-    if let Err(source) = written.and_then(|()| fs::rename(&temporary, path)) {
-        // The first error is the one to tell; that the clean-up failed too adds nothing.
-        let _ = fs::remove_file(&temporary);
-        return Err(fail(source));
+    write_together(&[(path.to_path_buf(), bytes)])
+}
+
+/// Replaces all these files, in this order. No target changes before every byte is
+/// on the disk, so that only a rename can fail half-way: then the targets before
+/// it are new already.
+pub(crate) fn write_together(files: &[(PathBuf, &[u8])]) -> Result<(), FileError> {
+    let mut waiting = Vec::with_capacity(files.len());
+    for (path, bytes) in files {
+        let written = Temporary::beside(path).and_then(|(temporary, mut file)| {
+            file.write_all(bytes)?;
+            file.sync_all()?;
+            Ok(temporary)
+        });
+        waiting.push(written.map_err(|source| FileError::Write { path: path.into(), source })?);
     }
-    sync_folder(path);
+    for (temporary, (path, _)) in waiting.into_iter().zip(files) {
+        temporary.rename_to(path).map_err(|source| FileError::Write { path: path.into(), source })?;
+    }
+    if let Some((path, _)) = files.last() {
+        sync_folder(path);
+    }
     Ok(())
 }
 
-fn create_beside(path: &Path) -> io::Result<(File, PathBuf)> {
-    static COUNTER: AtomicU64 = AtomicU64::new(0);
-    let name = path
-        .file_name()
-        .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "the path names no file"))?;
-    loop {
-        let unique = format!(".{}-{}.tmp", std::process::id(), COUNTER.fetch_add(1, Ordering::Relaxed));
-        let mut temporary = OsString::from(".");
-        temporary.push(name);
-        temporary.push(unique);
-        let temporary = path.with_file_name(temporary);
-        match OpenOptions::new().write(true).create_new(true).open(&temporary) {
-            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
-            Err(e) => return Err(e),
-            Ok(file) => return Ok((file, temporary)),
+/// A file that is deleted again unless it is renamed.
+struct Temporary {
+    path: PathBuf,
+    renamed: bool,
+}
+
+impl Temporary {
+    fn beside(target: &Path) -> io::Result<(Self, File)> {
+        static COUNTER: AtomicU64 = AtomicU64::new(0);
+        let name = target
+            .file_name()
+            .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "the path names no file"))?;
+        // The one thing that would stop the rename later, when others are done.
+        if target.is_dir() {
+            return Err(io::Error::from(io::ErrorKind::IsADirectory));
+        }
+        loop {
+            let unique = format!(".{}-{}.tmp", std::process::id(), COUNTER.fetch_add(1, Ordering::Relaxed));
+            let mut temporary = OsString::from(".");
+            temporary.push(name);
+            temporary.push(unique);
+            let path = target.with_file_name(temporary);
+            match OpenOptions::new().write(true).create_new(true).open(&path) {
+                Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(e) => return Err(e),
+                Ok(file) => return Ok((Self { path, renamed: false }, file)),
+            }
+        }
+    }
+
+    fn rename_to(mut self, target: &Path) -> io::Result<()> {
+        fs::rename(&self.path, target)?;
+        self.renamed = true;
+        Ok(())
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        if !self.renamed {
+            // The first error is the one to tell; that the clean-up failed too adds nothing.
+            let _ = fs::remove_file(&self.path);
         }
     }
 }
@@ -70,15 +110,25 @@ mod tests {
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 
-    /// Protects the folder from litter when the target cannot be replaced.
+    /// Protects the folder from litter, and files from being replaced by a part of
+    /// what belongs together.
     #[test]
-    fn a_failure_leaves_nothing_behind() {
+    fn a_failure_leaves_everything_as_it_was() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("taken");
-        fs::create_dir(&path).unwrap();
-        let error = write_atomically(&path, b"x").unwrap_err();
-        assert_eq!(error.path(), path);
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-        assert!(write_atomically(&folder.path().join("no/such/folder"), b"x").is_err());
+        let (old, taken) = (folder.path().join("old"), folder.path().join("taken"));
+        fs::write(&old, b"old").unwrap();
+        fs::create_dir(&taken).unwrap();
+        let error = write_atomically(&taken, b"x").unwrap_err();
+        assert_eq!(error.path(), taken);
+        let new = folder.path().join("new");
+        for bad in [taken.clone(), folder.path().join("no/such/folder"), "/".into()] {
+            let files = [(old.clone(), b"1".as_slice()), (new.clone(), b"2"), (bad.clone(), b"3")];
+            assert_eq!(write_together(&files).unwrap_err().path(), bad);
+            assert_eq!(fs::read(&old).unwrap(), b"old");
+            assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+        }
+        write_together(&[(old.clone(), b"1".as_slice()), (new.clone(), b"2")]).unwrap();
+        assert_eq!((fs::read(&old).unwrap(), fs::read(&new).unwrap()), (b"1".to_vec(), b"2".to_vec()));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
     }
 }

@@ -1,10 +1,13 @@
 //! What every reader carries along: whose file it is, what it may use, and the
 //! warnings so far.
 
-use crate::image_in::{ImageTrouble, decode};
+use crate::image_in::{decode, texels};
+use crate::words::shown;
 use crate::{FileError, Limits, Place, Resources};
 use parbake_model::Image;
-use std::cell::{Cell, RefCell};
+use rayon::prelude::*;
+use std::borrow::Cow;
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -20,6 +23,9 @@ pub(crate) enum Textures {
     Skip,
 }
 
+/// A picture that is yet to be decoded, and its name.
+pub(crate) type NamedBytes<'a> = (String, Cow<'a, [u8]>);
+
 /// Carried through one reading of one file.
 pub(crate) struct Context<'a> {
     pub path: &'a Path,
@@ -28,18 +34,17 @@ pub(crate) struct Context<'a> {
     pub textures: Textures,
     warnings: RefCell<Vec<String>>,
     seen: RefCell<BTreeSet<String>>,
-    pixels: Cell<u64>,
 }
 
 impl<'a> Context<'a> {
     pub fn new(path: &'a Path, resources: &'a dyn Resources, limits: &'a Limits, textures: Textures) -> Self {
-        let (warnings, seen, pixels) = Default::default();
-        Self { path, resources, limits, textures, warnings, seen, pixels }
+        let (warnings, seen) = Default::default();
+        Self { path, resources, limits, textures, warnings, seen }
     }
 
     /// Adds a warning, once.
     pub fn warn(&self, text: impl Into<String>) {
-        let text = text.into();
+        let text = shown(&text.into());
         let mut seen = self.seen.borrow_mut();
         // The set is bounded too: a hostile file could warn about a million names.
         if seen.len() < 10 * MOST_WARNINGS && seen.insert(text.clone()) && seen.len() <= MOST_WARNINGS {
@@ -58,7 +63,7 @@ impl<'a> Context<'a> {
     }
 
     pub fn invalid(&self, place: Place, reason: impl Into<String>) -> FileError {
-        FileError::Invalid { path: self.path.into(), place, reason: reason.into() }
+        FileError::Invalid { path: self.path.into(), place, reason: shown(&reason.into()) }
     }
 
     pub fn unsupported(
@@ -70,7 +75,7 @@ impl<'a> Context<'a> {
         FileError::Unsupported {
             path: self.path.into(),
             place,
-            feature: feature.into(),
+            feature: shown(&feature.into()),
             advice: advice.into(),
         }
     }
@@ -83,23 +88,26 @@ impl<'a> Context<'a> {
         Err(FileError::OverLimit { path: self.path.into(), place, what, found, limit })
     }
 
-    /// Decodes one of the model's pictures, and counts its texels.
-    pub fn decode_image(&self, name: &str, bytes: &[u8]) -> Result<Image, FileError> {
-        let place = || Place::Image(name.into());
-        let left = self.limits.max_total_pixels.saturating_sub(self.pixels.get());
-        let limits = Limits { max_image_pixels: self.limits.max_image_pixels.min(left), ..*self.limits };
-        let image = decode(name, bytes, &limits).map_err(|trouble| match trouble {
-            ImageTrouble::Pixels(found) if found <= self.limits.max_image_pixels => FileError::OverLimit {
-                path: self.path.into(),
-                place: place(),
-                what: "texels of all images together",
-                found: found.saturating_add(self.pixels.get()),
-                limit: self.limits.max_total_pixels,
-            },
-            other => other.into_error(self.path, place(), &limits),
-        })?;
-        self.pixels.set(self.pixels.get() + (image.width * image.height) as u64);
-        Ok(image)
+    /// Decodes all of the model's pictures, side by side. Each has a name, by which
+    /// errors call it. To be called once, as the texels of all are counted together.
+    pub fn decode_images(&self, pictures: &[NamedBytes<'_>]) -> Result<Vec<Image>, FileError> {
+        let place = |name: &str| Place::Image(shown(name));
+        // All sizes are known to be within the limits before memory is reserved for any.
+        let mut total = 0u64;
+        for (name, bytes) in pictures {
+            let texels = texels(bytes, self.limits)
+                .map_err(|trouble| trouble.into_error(self.path, place(name), self.limits))?;
+            total = total.saturating_add(texels);
+            self.within(place(name), "texels of all images together", total, self.limits.max_total_pixels)?;
+        }
+        let images: Vec<_> =
+            pictures.par_iter().map(|(name, bytes)| decode(name, bytes, self.limits)).collect();
+        let named = images.into_iter().zip(pictures);
+        named
+            .map(|(image, (name, _))| {
+                image.map_err(|trouble| trouble.into_error(self.path, place(name), self.limits))
+            })
+            .collect()
     }
 }
 
@@ -107,6 +115,22 @@ impl<'a> Context<'a> {
 mod tests {
     use super::*;
     use crate::NoResources;
+
+    /// Protects memory: many pictures are counted together before any is decoded.
+    #[test]
+    fn pictures_are_counted_together() {
+        let png = crate::encode_png(&Image::solid("a", 10, 10, [1, 2, 3, 4])).unwrap();
+        let pictures: Vec<NamedBytes> = (0..3).map(|i| (format!("p{i}"), png.as_slice().into())).collect();
+        let run = |max_total_pixels| {
+            let limits = Limits { max_total_pixels, ..Limits::default() };
+            let context = Context::new(Path::new("a"), &NoResources, &limits, Textures::Decode);
+            context.decode_images(&pictures).map_err(|e| e.to_string())
+        };
+        let names: Vec<_> = run(300).unwrap().into_iter().map(|image| image.name).collect();
+        assert_eq!(names, ["p0", "p1", "p2"]);
+        let error = run(299).unwrap_err();
+        assert!(error.contains("\"p2\": texels of all images together: 300"), "{error}");
+    }
 
     /// Protects the terminal from a flood of warnings.
     #[test]

@@ -10,6 +10,7 @@
 
 use crate::context::Context;
 use crate::unit::{unit, unit_tangent};
+use crate::words::count;
 use crate::{FileError, Loaded, Place};
 use parbake_model::glam::{DVec3, Vec2, Vec3, Vec4};
 use parbake_model::{Mesh, Model};
@@ -31,12 +32,13 @@ pub(crate) fn finish(
         return Err(FileError::Empty { path: context.path.into(), detail });
     }
     if degenerate > 0 {
-        context.warn(format!("{degenerate} triangles without area were left out"));
+        context.warn(format!("left out {} without area", count(degenerate, "triangle")));
     }
     repair_numbers(mesh, &context);
     let replaced = repair_normals(mesh);
     if replaced > 0 {
-        context.warn(format!("{replaced} normals have no direction and were computed from the triangles"));
+        let normals = count(replaced, "normal");
+        context.warn(format!("computed {normals} without a direction from the triangles around"));
     }
     let sizes = [&mesh.normals.len(), &mesh.tangents.len(), &mesh.uvs.len(), &mesh.uvs1.len()];
     if sizes.iter().any(|&&n| n != 0 && n != mesh.positions.len()) {
@@ -74,7 +76,8 @@ fn repair_numbers(mesh: &mut Mesh, context: &Context<'_>) {
         bad += 1;
     }
     if bad > 0 {
-        context.warn(format!("{bad} texture coordinates are not finite and became 0"));
+        let bad = count(bad, "texture coordinate");
+        context.warn(format!("replaced {bad} without a finite value by 0"));
     }
     let mut bad = 0;
     for color in mesh.colors.iter_mut().filter(|c| !c.is_finite()) {
@@ -82,7 +85,8 @@ fn repair_numbers(mesh: &mut Mesh, context: &Context<'_>) {
         bad += 1;
     }
     if bad > 0 {
-        context.warn(format!("{bad} vertex colours are not finite and became white"));
+        let bad = count(bad, "vertex colour");
+        context.warn(format!("replaced {bad} without a finite value by white"));
     }
 }
 
@@ -144,7 +148,7 @@ mod tests {
         let loaded = run(model()).unwrap();
         assert_eq!(loaded.model.mesh.triangles, [[0, 1, 2]]);
         assert_eq!(loaded.model.mesh.triangle_materials, [0]);
-        assert_eq!(loaded.warnings, ["2 triangles without area were left out"]);
+        assert_eq!(loaded.warnings, ["left out 2 triangles without area"]);
     }
 
     /// Protects tiny models: areas of 1e-50 are areas.

@@ -9,15 +9,23 @@
 
 use crate::resources::read_file;
 use crate::{FileError, Limits, Place};
-use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
+use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use parbake_model::Image;
 use std::io::Cursor;
 use std::path::Path;
 
 const SUPPORTED: &str = "PNG, JPEG and WebP";
 
-/// No deflate stream unpacks to more than this many bytes for each of its own.
-const DEFLATE_MOST: u64 = 1032;
+/// The most pixels that one byte of a whole file can stand for: a PNG of one bit a
+/// pixel, at the 1032 bytes that deflate makes of one; a JPEG's 64 pixels a bit, and
+/// as much again to be on the safe side. Lossless WebP knows no such bound.
+fn most_pixels_a_byte(format: ImageFormat) -> u64 {
+    match format {
+        ImageFormat::Png => 8 * 1032,
+        ImageFormat::Jpeg => 2 * 8 * 64,
+        _ => u64::MAX,
+    }
+}
 
 /// Why a picture could not be had, before it is known whose picture it is.
 #[derive(Debug)]
@@ -82,15 +90,34 @@ pub fn decode_image(name: &str, bytes: &[u8], limits: &Limits) -> Result<Image, 
     decode(name, bytes, limits).map_err(|trouble| trouble.into_error(Path::new(name), Place::File, limits))
 }
 
+/// The number of texels that a picture declares, if that is believable and within
+/// the limits. Costs next to nothing.
+pub(crate) fn texels(bytes: &[u8], limits: &Limits) -> Result<u64, ImageTrouble> {
+    let (decoder, _) = open(bytes, limits)?;
+    let (width, height) = decoder.dimensions();
+    Ok(u64::from(width) * u64::from(height))
+}
+
 pub(crate) fn decode(name: &str, bytes: &[u8], limits: &Limits) -> Result<Image, ImageTrouble> {
+    let (decoder, format) = open(bytes, limits)?;
+    // The decoder would fill up what is missing with grey.
+    if format == ImageFormat::Jpeg && !jpeg_has_end(bytes) {
+        return Err(ImageTrouble::Damaged("the picture is cut off".into()));
+    }
+    let (width, height) = decoder.dimensions();
+    let (width, height) = (width as usize, height as usize);
+    let pixels = rgba(decoder, width * height).map_err(damaged)?;
+    Ok(Image { name: name.into(), width, height, pixels })
+}
+
+/// Reads the header and holds it against the limits.
+fn open<'b>(
+    bytes: &'b [u8],
+    limits: &Limits,
+) -> Result<(impl ImageDecoder + use<'b>, ImageFormat), ImageTrouble> {
     let format = match image::guess_format(bytes) {
         Ok(f @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) => f,
         _ => return Err(ImageTrouble::UnknownFormat),
-    };
-    let damaged = |e: ImageError| {
-        // Some reasons go over several lines.
-        let reason = e.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-        ImageTrouble::Damaged(format!("the picture cannot be decoded: {reason}"))
     };
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     reader.limits(decoder_limits(limits));
@@ -107,16 +134,94 @@ pub(crate) fn decode(name: &str, bytes: &[u8], limits: &Limits) -> Result<Image,
     if pixels > limits.max_image_pixels {
         return Err(ImageTrouble::Pixels(pixels));
     }
-    // A PNG of one bit a pixel is the densest; what is shorter than that was cut off.
-    if format == ImageFormat::Png && pixels / 8 > DEFLATE_MOST * bytes.len() as u64 {
+    if pixels > most_pixels_a_byte(format).saturating_mul(bytes.len() as u64) {
         return Err(ImageTrouble::Damaged(format!(
             "the picture declares {width} × {height} pixels but has only {} bytes",
             bytes.len()
         )));
     }
-    let picture = DynamicImage::from_decoder(decoder).map_err(damaged)?.into_rgba8();
-    let pixels = picture.as_raw().as_chunks::<4>().0.to_vec();
-    Ok(Image { name: name.into(), width: width as usize, height: height as usize, pixels })
+    Ok((decoder, format))
+}
+
+fn damaged(error: ImageError) -> ImageTrouble {
+    ImageTrouble::Damaged(format!("the picture cannot be decoded: {}", tidy(&error)))
+}
+
+/// All pixels, with no more copies in memory than needed: textures are large.
+fn rgba(decoder: impl ImageDecoder, count: usize) -> Result<Vec<[u8; 4]>, ImageError> {
+    let wide = |high, low| ((u32::from(u16::from_ne_bytes([high, low])) + 128) / 257) as u8;
+    match decoder.color_type() {
+        ColorType::L8 => read(decoder, count, |[l]| [l, l, l, 255]),
+        ColorType::La8 => read(decoder, count, |[l, a]| [l, l, l, a]),
+        ColorType::Rgb8 => read(decoder, count, |[r, g, b]| [r, g, b, 255]),
+        ColorType::Rgba8 => {
+            let mut pixels = vec![[0; 4]; count];
+            decoder.read_image(pixels.as_flattened_mut())?;
+            Ok(pixels)
+        }
+        ColorType::L16 => read(decoder, count, |[l, m]| [wide(l, m), wide(l, m), wide(l, m), 255]),
+        ColorType::La16 => {
+            read(decoder, count, |[l, m, a, b]| [wide(l, m), wide(l, m), wide(l, m), wide(a, b)])
+        }
+        ColorType::Rgb16 => {
+            read(decoder, count, |[r, s, g, h, b, c]| [wide(r, s), wide(g, h), wide(b, c), 255])
+        }
+        ColorType::Rgba16 => {
+            read(decoder, count, |[r, s, g, h, b, c, a, d]| [wide(r, s), wide(g, h), wide(b, c), wide(a, d)])
+        }
+        // No decoder that we use gives anything else.
+        _ => Ok(DynamicImage::from_decoder(decoder)?.into_rgba8().as_raw().as_chunks().0.to_vec()),
+    }
+}
+
+/// Pixels of N bytes each, widened one by one.
+fn read<const N: usize>(
+    decoder: impl ImageDecoder,
+    count: usize,
+    widen: impl Fn([u8; N]) -> [u8; 4],
+) -> Result<Vec<[u8; 4]>, ImageError> {
+    let mut samples = vec![0; N * count];
+    decoder.read_image(&mut samples)?;
+    Ok(samples.as_chunks().0.iter().map(|&pixel| widen(pixel)).collect())
+}
+
+/// Whether a JPEG (ITU-T T.81, annex B) goes on to its end marker.
+fn jpeg_has_end(bytes: &[u8]) -> bool {
+    if bytes.trim_ascii_end().ends_with(&[0xff, 0xd9]) {
+        return true;
+    }
+    let mut rest = bytes;
+    while let Some(at) = rest.iter().position(|&b| b == 0xff) {
+        rest = &rest[at + 1..];
+        let Some(&code) = rest.first() else { return false };
+        match code {
+            0xd9 => return true,
+            // Fill bytes, stuffed bytes, and markers that stand alone.
+            0xff => {}
+            0x00 | 0x01 | 0xd0..=0xd8 => rest = &rest[1..],
+            // Segments may contain anything, a thumbnail with its own end too.
+            _ => {
+                let Some(&[high, low]) = rest[1..].first_chunk() else { return false };
+                let end = 1 + usize::from(u16::from_be_bytes([high, low])).max(2);
+                rest = rest.get(end..).unwrap_or_default();
+            }
+        }
+    }
+    false
+}
+
+/// The decoder's reason without the words around it, on one line.
+fn tidy(error: &ImageError) -> String {
+    let inner = std::error::Error::source(error).map(ToString::to_string);
+    let text = inner.unwrap_or_else(|| error.to_string());
+    let mut text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    // `ChunkType { type: IDAT, critical: true, … }` becomes `IDAT`.
+    while let Some((before, rest)) = text.split_once("ChunkType { type: ") {
+        let Some((inside, after)) = rest.split_once(" }") else { break };
+        let name = inside.split(',').next().unwrap_or_default();
+        text = format!("{before}{name}{after}");
+    }
+    text
 }
 
 /// Sizes are checked by us, so that the message can say what the limit is; the
@@ -129,59 +234,5 @@ fn decoder_limits(limits: &Limits) -> image::Limits {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::encode_png;
-
-    fn png(width: u32, height: u32) -> Vec<u8> {
-        encode_png(&Image::solid("a", width as usize, height as usize, [1, 2, 3, 255])).unwrap()
-    }
-
-    /// Protects the pixels' order and the filled-in alpha.
-    #[test]
-    fn png_comes_back() {
-        let mut image = Image::solid("a.png", 3, 2, [9, 8, 7, 255]);
-        image.pixels[4] = [1, 2, 3, 255];
-        let bytes = encode_png(&image).unwrap();
-        assert_eq!(decode_image("a.png", &bytes, &Limits::default()).unwrap(), image);
-    }
-
-    /// Protects memory: limits are held against the header.
-    #[test]
-    fn sizes_over_the_limits_are_refused() {
-        let limits = Limits { max_image_side: 16, max_image_pixels: 100, ..Limits::default() };
-        let side = decode_image("a.png", &png(17, 1), &limits).unwrap_err();
-        assert!(side.to_string().contains("longer side: 17, and the limit is 16"), "{side}");
-        let pixels = decode_image("a.png", &png(11, 10), &limits).unwrap_err();
-        assert!(pixels.to_string().contains("110"), "{pixels}");
-        assert!(decode_image("a.png", &png(10, 10), &limits).is_ok());
-    }
-
-    /// Protects against bombs whose size is within the limits.
-    #[test]
-    fn a_header_without_pixels_is_refused_early() {
-        let mut bytes = png(4, 4);
-        let ihdr = [b"IHDR".as_slice(), &[0, 0, 0x3f, 0, 0, 0, 0x3f, 0, 8, 6, 0, 0, 0]].concat();
-        bytes[12..29].copy_from_slice(&ihdr);
-        let crc = crc32(&ihdr).to_be_bytes();
-        bytes[29..33].copy_from_slice(&crc);
-        let error = decode_image("bomb.png", &bytes, &Limits::default()).unwrap_err().to_string();
-        assert!(error.contains("declares 16128 × 16128"), "{error}");
-    }
-
-    fn crc32(bytes: &[u8]) -> u32 {
-        !bytes.iter().fold(!0u32, |crc, &b| {
-            (0..8).fold(crc ^ u32::from(b), |c, _| if c & 1 == 1 { c >> 1 ^ 0xedb8_8320 } else { c >> 1 })
-        })
-    }
-
-    /// Protects the messages about other formats and damaged files.
-    #[test]
-    fn other_bytes_are_named() {
-        let error = decode_image("a.tga", b"nonsense", &Limits::default()).unwrap_err().to_string();
-        assert!(error.starts_with("a.tga") && error.contains("WebP"), "{error}");
-        let bytes = png(40, 40);
-        let error = decode_image("b.png", &bytes[..60], &Limits::default()).unwrap_err().to_string();
-        assert!(error.starts_with("b.png") && error.contains("decoded"), "{error}");
-    }
-}
+#[path = "image_in_tests.rs"]
+mod tests;

@@ -18,6 +18,7 @@ mod model_out;
 mod obj;
 mod resources;
 mod unit;
+mod words;
 
 pub use atomic::write_atomically;
 pub use error::{FileError, Place};

@@ -17,7 +17,8 @@ pub struct Limits {
     pub max_image_pixels: u64,
     /// Texels of all images of one model together.
     pub max_total_pixels: u64,
-    /// JSON objects in a glTF document; each costs a few hundred bytes in memory.
+    /// JSON objects in a glTF document, each of which costs a few hundred bytes in
+    /// memory; also primitives placed by its nodes, instances counted.
     pub max_json_objects: usize,
 }
 
@@ -25,11 +26,11 @@ impl Default for Limits {
     fn default() -> Self {
         Self {
             max_file_bytes: 4 << 30,
-            max_vertices: 100_000_000,
+            max_vertices: 50_000_000,
             max_triangles: 100_000_000,
             max_image_side: 16_384,
             max_image_pixels: 1 << 28,
-            max_total_pixels: 1 << 30,
+            max_total_pixels: 1 << 29,
             max_json_objects: 4_000_000,
         }
     }

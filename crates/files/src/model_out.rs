@@ -2,7 +2,7 @@
 //! contract, so that no index can go astray.
 
 use crate::{FileError, Place};
-use parbake_model::{Material, Model};
+use parbake_model::{Image, Material, Model};
 use std::path::Path;
 
 /// Refuses models that break [`Model`]'s or [`Mesh`](parbake_model::Mesh)'s contract.
@@ -39,6 +39,18 @@ pub(crate) fn check(path: &Path, model: &Model) -> Result<(), FileError> {
     if model.materials.iter().flat_map(slots).flatten().any(|s| s.image >= model.images.len()) {
         return refuse("a material names an image that is not there".into());
     }
+    let used = model.materials.iter().flat_map(slots).flatten();
+    let transforms = used.clone().map(|s| s.transform);
+    if transforms
+        .into_iter()
+        .any(|t| !(t.offset.is_finite() && t.rotation.is_finite() && t.scale.is_finite()))
+    {
+        return refuse("a texture's transform is not finite".into());
+    }
+    if let Some(image) = used.map(|s| &model.images[s.image]).find(|i| !is_whole(i)) {
+        let (w, h, n) = (image.width, image.height, image.pixels.len());
+        return refuse(format!("image {:?} should have {w} × {h} texels, but has {n}", image.name));
+    }
     let finite = mesh.positions.iter().all(|p| p.is_finite())
         && mesh.uvs.iter().chain(&mesh.uvs1).all(|uv| uv.is_finite())
         && mesh.colors.iter().all(|c| c.is_finite());
@@ -48,11 +60,20 @@ pub(crate) fn check(path: &Path, model: &Model) -> Result<(), FileError> {
     Ok(())
 }
 
+fn is_whole(image: &Image) -> bool {
+    !image.pixels.is_empty() && image.width.checked_mul(image.height) == Some(image.pixels.len())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use parbake_model::Mesh;
     use parbake_model::glam::Vec3;
+    use parbake_model::{Mesh, TextureSlot, UvTransform};
+
+    fn turned(rotation: f32) -> Option<TextureSlot> {
+        let transform = UvTransform { rotation, ..UvTransform::default() };
+        Some(TextureSlot { transform, ..TextureSlot::default() })
+    }
 
     /// Protects the writers from panics on models that break the contract.
     #[test]
@@ -63,15 +84,20 @@ mod tests {
             triangle_materials: vec![0],
             ..Mesh::default()
         };
-        let good = Model { mesh, materials: vec![Material::default()], ..Model::default() };
-        let breakages: [fn(&mut Model); 7] = [
+        let materials = vec![Material { base_color_texture: turned(1.0), ..Material::default() }];
+        let images = vec![Image::solid("a", 2, 2, [1; 4])];
+        let good = Model { mesh, materials, images, ..Model::default() };
+        let breakages: [fn(&mut Model); 10] = [
             |m| m.mesh.triangles[0][1] = 3,
             |m| m.mesh.triangle_materials[0] = 1,
             |m| m.mesh.triangle_materials.clear(),
             |m| m.mesh.normals.push(Vec3::X),
             |m| m.mesh.positions[0].x = f32::NAN,
-            |m| m.materials[0].normal_texture = Some(Default::default()),
+            |m| m.images.clear(),
             |m| m.mesh.triangles.clear(),
+            |m| m.images[0].width = 3,
+            |m| m.images[0].pixels.clear(),
+            |m| m.materials[0].base_color_texture = turned(f32::NAN),
         ];
         let path = Path::new("out.glb");
         assert!(check(path, &good).is_ok());

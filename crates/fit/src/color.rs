@@ -17,7 +17,7 @@ use crate::membrane::{Membrane, add_membrane};
 use crate::samples::{Sample, SampleSet};
 use crate::stencil::{Diagonal, Row, Stencil, add_diagonal};
 use parbake_model::glam::Vec4;
-use parbake_render::display::Display;
+use parbake_render::display_table::DisplayTable;
 use parbake_render::shade::cosine;
 use rayon::prelude::*;
 
@@ -28,7 +28,7 @@ pub struct Problem<'a> {
     /// Chart labels.
     pub atlas: &'a Atlas,
     /// Gain and curve of the comparison.
-    pub display: Display,
+    pub display: &'a DisplayTable,
     /// What holds unseen texels.
     pub membrane: Membrane,
     /// Limits of the linear solver.
@@ -50,12 +50,12 @@ const DARK: f32 = 0.01;
 
 /// Compares what linear `light` shows with what was wanted.
 #[inline]
-pub fn respond(display: &Display, light: Vec4, target: Vec4) -> Response {
+pub fn respond(display: &DisplayTable, light: Vec4, target: Vec4) -> Response {
     let mut out = Response::default();
     for lane in 0..3 {
         let (mut shown, slope) = display.encode_with_derivative(light[lane].max(DARK));
         if light[lane] < DARK {
-            shown = display.encode(light[lane]);
+            shown = display.encode_with_derivative(light[lane]).0;
         }
         if shown < 1.0 || target[lane] < 1.0 {
             out.residual[lane] = shown.min(1.0) - target[lane];
@@ -90,8 +90,8 @@ pub fn loss(problem: &Problem, color: &Canvas, normal: &Canvas) -> f64 {
             band.iter()
                 .map(|s| {
                     let (texels, w) = footprint(s, size);
-                    let k = cosine(&s.light, normal.fetch(texels, w).truncate()).max(0.0);
-                    let r = respond(&problem.display, color.fetch(texels, w) * k, s.target()).residual;
+                    let k = cosine(&s.light(), normal.fetch(texels, w).truncate()).max(0.0);
+                    let r = respond(problem.display, color.fetch(texels, w) * k, s.target()).residual;
                     f64::from(r.length_squared() * s.weight())
                 })
                 .sum()
@@ -116,8 +116,8 @@ pub fn color_step(
             let mut loss = 0.0;
             for s in &problem.samples.bands[band] {
                 let (texels, w) = footprint(s, size);
-                let k = cosine(&s.light, normal.fetch(texels, w).truncate()).max(0.0);
-                let response = respond(&problem.display, color.fetch(texels, w) * k, s.target());
+                let k = cosine(&s.light(), normal.fetch(texels, w).truncate()).max(0.0);
+                let response = respond(problem.display, color.fetch(texels, w) * k, s.target());
                 let weight = s.weight();
                 loss += f64::from(response.residual.length_squared() * weight);
                 let j = response.slope * k;

@@ -43,8 +43,8 @@ pub fn normal_step(
             for s in &problem.samples.bands[band] {
                 let (texels, w) = footprint(s, size);
                 let albedo = color.fetch(texels, w);
-                let (k, per_normal) = cosine_with_derivative(&s.light, normal.fetch(texels, w).truncate());
-                let response = respond(&problem.display, albedo * k.max(0.0), s.target());
+                let (k, per_normal) = cosine_with_derivative(&s.light(), normal.fetch(texels, w).truncate());
+                let response = respond(problem.display, albedo * k.max(0.0), s.target());
                 let weight = s.weight();
                 loss += f64::from(response.residual.length_squared() * weight);
                 let j = response.slope * albedo;

@@ -33,15 +33,17 @@ pub enum Beyond {
     Background([f32; 3], f32),
 }
 
-/// One pixel of a training view, as the texture sees it: 56 bytes.
+/// One pixel of a training view, as the texture sees it: 36 bytes, since a fit reads
+/// millions of them in every step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
     /// Upper left texel of the bilinear fetch.
     pub texel: u32,
     /// Fractions towards the right and lower texels, in 65536ths.
     pub fraction: [u16; 2],
-    /// How the light meets the surface.
-    pub light: TangentLight,
+    /// How the light meets the surface: the light's three numbers and the Gram
+    /// matrix's six, in 32767ths of 1, which none of them exceeds.
+    light: [i16; 9],
     /// Wanted display value of red, green and blue, in 65535ths of 1.
     pub target: [u16; 3],
     /// How much this sample counts, in 65535ths.
@@ -62,6 +64,13 @@ impl Sample {
     #[inline]
     pub fn fractions(&self) -> (f32, f32) {
         (f32::from(self.fraction[0]) * (1.0 / 65536.0), f32::from(self.fraction[1]) * (1.0 / 65536.0))
+    }
+
+    /// How the light meets the surface.
+    #[inline]
+    pub fn light(&self) -> TangentLight {
+        let [x, y, z, tt, bb, nn, tb, tn, bn] = self.light.map(|v| f32::from(v) * (1.0 / 32767.0));
+        TangentLight { light: Vec3::new(x, y, z), gram: [tt, bb, nn, tb, tn, bn] }
     }
 
     /// Wanted display value.
@@ -213,12 +222,19 @@ fn view_samples(
         out.push(Sample {
             texel,
             fraction,
-            light: tangent_light(normal, tangent, handedness, to_light, facing),
+            light: packed(&tangent_light(normal, tangent, handedness, to_light, facing)),
             target,
             weight,
         });
     }
     out
+}
+
+/// See [`Sample::light`].
+fn packed(light: &TangentLight) -> [i16; 9] {
+    let [x, y, z] = light.light.to_array();
+    let [tt, bb, nn, tb, tn, bn] = light.gram;
+    [x, y, z, tt, bb, nn, tb, tn, bn].map(|v| (v.clamp(-1.0, 1.0) * 32767.0).round_ties_even() as i16)
 }
 
 /// The upper left texel of a coordinate's fetch, and the fractions.

@@ -18,6 +18,7 @@ use crate::start::Start;
 use crate::watch::{Stage, Watch};
 use parbake_model::Image;
 use parbake_render::display::Display;
+use parbake_render::display_table::DisplayTable;
 use std::time::Instant;
 
 /// How much work the fit does.
@@ -47,15 +48,15 @@ pub struct Schedule {
 impl Default for Schedule {
     fn default() -> Self {
         Self {
-            rounds: 3,
+            rounds: 5,
             color_steps: 1,
             normal_steps: 2,
             final_steps: 2,
             effort: Effort { steps: 6, tolerance: 0.05 },
             final_effort: Effort { steps: 30, tolerance: 1e-3 },
             color_membrane: Membrane { stiffness: 3e-3, tether: 1e-5 },
-            normal_membrane: Membrane { stiffness: 1e-2, tether: 1e-3 },
-            damping: 8.0,
+            normal_membrane: Membrane { stiffness: 0.2, tether: 1e-3 },
+            damping: 6.0,
         }
     }
 }
@@ -132,6 +133,7 @@ pub fn fit_textures(
     let weight: f64 = samples.bands.iter().flatten().map(|s| f64::from(s.weight())).sum();
     let mut log =
         Log { begin: Instant::now(), terms: (3.0 * weight).max(1e-9), losses: Vec::new(), best: None };
+    let display = &DisplayTable::new(&display);
     let problem = |membrane| Problem { samples, atlas, display, membrane, effort: schedule.effort };
     let color_problem = problem(schedule.color_membrane);
     let normal_problem = problem(schedule.normal_membrane);

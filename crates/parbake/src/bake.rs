@@ -13,7 +13,7 @@ use crate::pair::{common_frame, make_shadeable};
 use crate::report::{BakeReport, StageTime};
 use parbake_fit::atlas::Atlas;
 use parbake_fit::quantise::{color_image, normal_image};
-use parbake_fit::reference::{Sampling, render_references};
+use parbake_fit::reference::render_references;
 use parbake_fit::samples::{Beyond, collect_samples};
 use parbake_fit::schedule::fit_textures;
 use parbake_fit::start::project;
@@ -92,6 +92,11 @@ pub fn bake(
     let (convention, size) = (options.convention, options.texture_size);
     let bridge = Bridge(watcher);
     let mut clock = Clock { since: Instant::now(), stages: Vec::new() };
+    let mut warnings = Vec::new();
+    let mut warn = |text: String| {
+        watcher.message(Message::Warning(text.clone()));
+        warnings.push(text);
+    };
 
     let mut high = high.clone();
     let frame = common_frame(&high)?;
@@ -103,7 +108,7 @@ pub fn bake(
     }
     let repaired = make_shadeable(&mut written, true, true);
     if repaired > 0 && !low.mesh.normals.is_empty() {
-        watcher.message(Message::Warning(format!("{}: repaired {repaired} unusable normals", low.name)));
+        warn(format!("{}: repaired {repaired} unusable normals", low.name));
     }
     let mut placed = written.mesh.clone();
     frame.apply(&mut placed);
@@ -113,10 +118,10 @@ pub fn bake(
         return Err(BakeError::FlatTextureCoordinates { model: low.name.clone() });
     }
     if map.overlaps * 50 > size * size {
-        watcher.message(Message::Warning(format!(
+        warn(format!(
             "{}: {} texels are shared by several triangles and show a compromise; unwrap without overlaps to avoid that",
             low.name, map.overlaps
-        )));
+        ));
     }
     let scene = Scene::new(&high, convention.interpretation());
     let surface = HighSurface::new(&high.mesh);
@@ -127,8 +132,7 @@ pub fn bake(
     clock.lap(Stage::Start);
 
     let pool = view_pool(plan.views, &RIG, options.seed);
-    let sampling = Sampling { size: plan.view_size, filter: plan.filter, samples: plan.reference_samples };
-    let references = render_references(&scene, &Lambert, &pool, &sampling, 1, &bridge);
+    let references = render_references(&scene, &Lambert, &pool, &plan.reference, 1, &bridge);
     clock.lap(Stage::Reference);
 
     let beyond = match options.silhouette {
@@ -136,7 +140,7 @@ pub fn bake(
         weight => Beyond::Background(options.backdrop.light(), weight),
     };
     let display = convention.display();
-    let samples = collect_samples(&placed, &references, plan.view_size, size, &display, beyond, &bridge);
+    let samples = collect_samples(&placed, &references, plan.reference.size, size, &display, beyond, &bridge);
     let views = references.len();
     drop(references);
     clock.lap(Stage::Sampling);
@@ -158,6 +162,7 @@ pub fn bake(
         losses: fitted.losses.iter().map(Into::into).collect(),
         stages: clock.stages,
         stopped_early: fitted.stopped || views < plan.views,
+        warnings,
         peak_memory: crate::memory::peak_memory(),
     };
     let projected = textured(

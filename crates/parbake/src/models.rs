@@ -1,5 +1,6 @@
 //! Models made from models, and from nothing.
 
+use parbake_mesh::demo::{demo_low, demo_model};
 use parbake_mesh::simplify::{SimplifyOptions, simplify};
 use parbake_mesh::subdivide::subdivide;
 use parbake_model::{Material, Model};
@@ -17,5 +18,12 @@ pub fn subdivided(model: &Model) -> Model {
 
 /// The built-in detailed model and its coarse counterpart.
 pub fn demo_pair() -> (Model, Model) {
-    (Model::default(), Model { materials: vec![Material::default()], ..Model::default() })
+    let high = demo_model();
+    let low = Model {
+        name: "demo jar".into(),
+        mesh: demo_low(&high),
+        materials: vec![Material::default()],
+        images: Vec::new(),
+    };
+    (high, low)
 }

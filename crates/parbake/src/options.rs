@@ -3,8 +3,7 @@
 //! quality field means "as the preset says".
 
 use crate::error::BakeError;
-use parbake_fit::conjugate_gradient::Effort;
-use parbake_fit::membrane::Membrane;
+use parbake_fit::reference::Sampling;
 use parbake_fit::schedule::Schedule;
 use parbake_render::display::{Curve, Display};
 use parbake_render::scene::Interpretation;
@@ -115,15 +114,15 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.05))]
     pub reach: f32,
 
-    /// Training views, 1 to 4096 [default: by preset 48, 160, 320]
+    /// Training views, 1 to 4096 [default: by preset 160, 640, 1280]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
     pub views: Option<usize>,
 
-    /// Side of a training view in pixels, 32 to 2048 [default: by preset 192, 256, 320]
+    /// Side of a training view in pixels, 32 to 2048 [default: by preset 192, 192, 256]
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS"))]
     pub view_size: Option<usize>,
 
-    /// Turns that colours and normals take, 0 to 100 [default: by preset 1, 3, 6]
+    /// Turns that colours and normals take, 0 to 100, 0 for the projection as it is [default: by preset 2, 5, 8]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
     pub rounds: Option<usize>,
 
@@ -166,12 +165,8 @@ impl Default for BakeOptions {
 pub struct Plan {
     /// Training views.
     pub views: usize,
-    /// Their side in pixels.
-    pub view_size: usize,
-    /// Samples of the high-poly along a side of each pixel's filter.
-    pub reference_samples: usize,
-    /// That filter's width in pixels.
-    pub filter: f32,
+    /// How the high-poly is sampled in them.
+    pub reference: Sampling,
     /// The order of the fit.
     pub schedule: Schedule,
 }
@@ -198,34 +193,29 @@ impl BakeOptions {
 
     /// Settles what the preset leaves open.
     pub fn plan(&self) -> Plan {
+        // Views matter more than their pixels: what a texel looks like depends on the
+        // side it is seen from, and few sides are learnt by heart.
         let (views, view_size, rounds, final_steps) = match self.preset {
-            Preset::Fast => (48, 192, 1, 1),
-            Preset::Balanced => (160, 256, 3, 2),
-            Preset::Best => (320, 320, 6, 3),
+            Preset::Fast => (160, 192, 2, 1),
+            Preset::Balanced => (640, 192, 5, 2),
+            Preset::Best => (1280, 256, 8, 3),
         };
         let view_size = self.view_size.unwrap_or(view_size);
-        let normal_steps = if self.keep_normals {
-            0
-        } else {
-            std::env::var("PB_N").ok().and_then(|v| v.parse().ok()).unwrap_or(2)
-        };
-        let env = |n: &str, d: f32| std::env::var(n).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
+        let rounds = self.rounds.unwrap_or(rounds);
         Plan {
             views: self.views.unwrap_or(views),
-            view_size,
-            reference_samples: 2,
-            // As sharp as a picture in which a texel is about a pixel wide.
-            filter: (256.0 / self.texture_size as f32).clamp(0.125, 1.0),
+            reference: Sampling {
+                size: view_size,
+                // Half a texel wide where the texture fills the picture: averaging is the
+                // solver's work, over all the samples that meet in a texel.
+                filter: (0.5 * view_size as f32 / self.texture_size as f32).clamp(1.0 / 16.0, 1.0),
+                samples: 1,
+            },
             schedule: Schedule {
-                rounds: self.rounds.unwrap_or(rounds),
-                normal_steps,
-                final_steps,
-                effort: Effort { steps: env("PB_E", 6.0) as usize, tolerance: f64::from(env("PB_T", 0.05)) },
-                final_effort: Effort { steps: 30, tolerance: 1e-3 },
-                color_membrane: Membrane { stiffness: env("PB_CM", 3e-3), tether: 1e-5 },
-                damping: env("PB_DAMP", 8.0),
-                normal_membrane: Membrane { stiffness: env("PB_NS", 1e-2), tether: env("PB_NT", 1e-3) },
-                color_steps: env("PB_CS", 1.0) as usize,
+                rounds,
+                normal_steps: if self.keep_normals { 0 } else { Schedule::default().normal_steps },
+                final_steps: if rounds == 0 { 0 } else { final_steps },
+                ..Schedule::default()
             },
         }
     }

@@ -64,6 +64,8 @@ pub struct BakeReport {
     pub stages: Vec<StageTime>,
     /// True when a time budget or a signal ended the run early.
     pub stopped_early: bool,
+    /// What the user was warned of.
+    pub warnings: Vec<String>,
     /// Peak resident memory of the process in bytes, where the system tells.
     pub peak_memory: Option<u64>,
 }

@@ -20,6 +20,7 @@ pub mod antialias;
 pub mod background;
 pub mod camera;
 pub mod display;
+pub mod display_table;
 pub mod edges;
 pub mod frame;
 pub mod interpolate;

@@ -93,6 +93,7 @@ pub(super) struct Accessor<'a> {
     pub width: usize,
     /// Its place, for messages.
     pub pointer: String,
+    component: Component,
     /// `None`: all zeros.
     base: Option<Strided<'a>>,
     normalized: bool,
@@ -148,9 +149,10 @@ impl<'a> Accessor<'a> {
                 None
             }
         };
-        let replaced = json.sparse.as_ref().map(|sparse| layout.sparse(sparse, json.count)).transpose()?;
+        let replaced =
+            json.sparse.as_ref().map(|sparse| layout.sparse(index, sparse, json.count)).transpose()?;
         let normalized = json.normalized;
-        Ok(Self { count: json.count, width, base, normalized, replaced, pointer: here })
+        Ok(Self { count: json.count, width, component, base, normalized, replaced, pointer: here })
     }
 
     /// Whether there is nothing but zeros in it: no data at all.
@@ -160,8 +162,7 @@ impl<'a> Accessor<'a> {
 
     /// Whether it may hold indices: whole numbers, one by one.
     pub fn is_index_like(&self) -> bool {
-        let whole = |s: &Strided| matches!(s.component, Component::U8 | Component::U16 | Component::U32);
-        self.width == 1 && self.base.as_ref().is_none_or(whole)
+        self.width == 1 && matches!(self.component, Component::U8 | Component::U16 | Component::U32)
     }
 
     /// Where element `i` is.
@@ -246,6 +247,7 @@ impl<'a> Layout<'a, '_, '_> {
 
     fn sparse(
         &self,
+        index: usize,
         sparse: &json::Sparse,
         count: usize,
     ) -> Result<(usize, Strided<'a>, Strided<'a>), FileError> {
@@ -266,15 +268,19 @@ impl<'a> Layout<'a, '_, '_> {
         let indices = layout.strided(view, offset, sparse.count, "/sparse/indices")?;
         let (view, offset) = (sparse.values.buffer_view, sparse.values.byte_offset);
         let values = self.strided(view, offset, sparse.count, "/sparse/values")?;
+        if self.buffers.ordered.borrow().contains(&index) {
+            return Ok((sparse.count, indices, values));
+        }
         let mut last = None;
         for i in 0..sparse.count {
-            let index = component.read_index(indices.bytes, i * indices.stride) as usize;
-            if index >= count || last.is_some_and(|last| index <= last) {
-                let reason = format!("sparse index {index} (number {i}) is out of range or out of order");
+            let element = component.read_index(indices.bytes, i * indices.stride) as usize;
+            if element >= count || last.is_some_and(|last| element <= last) {
+                let reason = format!("sparse index {element} (number {i}) is out of range or out of order");
                 return Err(context.invalid(place("/indices"), reason));
             }
-            last = Some(index);
+            last = Some(element);
         }
+        self.buffers.ordered.borrow_mut().insert(index);
         Ok((sparse.count, indices, values))
     }
 }

@@ -4,9 +4,11 @@
 use super::json::Document;
 use super::uri::{Uri, parse};
 use crate::context::Context;
+use crate::words::shown;
 use crate::{FileError, Place};
 use std::borrow::Cow;
-use std::cell::{Cell, OnceCell};
+use std::cell::{Cell, OnceCell, RefCell};
+use std::collections::HashSet;
 
 /// The bytes that a document refers to.
 pub(super) struct Buffers<'a> {
@@ -15,6 +17,9 @@ pub(super) struct Buffers<'a> {
     binary: Option<&'a [u8]>,
     fetched: Vec<OnceCell<Cow<'a, [u8]>>>,
     total: Cell<u64>,
+    /// Accessors whose sparse indices are known to be in order: looking through them
+    /// again for every instance could take for ever.
+    pub ordered: RefCell<HashSet<usize>>,
 }
 
 pub(super) fn pointer(text: String) -> Place {
@@ -24,7 +29,7 @@ pub(super) fn pointer(text: String) -> Place {
 impl<'a> Buffers<'a> {
     pub fn new(document: &'a Document, binary: Option<&'a [u8]>, context: &'a Context<'a>) -> Self {
         let fetched = document.buffers.iter().map(|_| OnceCell::new()).collect();
-        Self { context, document, binary, fetched, total: Cell::new(0) }
+        Self { context, document, binary, fetched, total: Cell::new(0), ordered: RefCell::default() }
     }
 
     /// The bytes of a buffer, `byteLength` of them.
@@ -70,7 +75,7 @@ impl<'a> Buffers<'a> {
         let left = self.context.limits.max_file_bytes.saturating_sub(self.total.get());
         let read = self.context.resources.read(path, left).map_err(|e| {
             // The file's own name helps more than the pointer to where it is named.
-            let source = std::io::Error::new(e.kind(), format!("{path:?}: {e}"));
+            let source = std::io::Error::new(e.kind(), format!("{:?}: {e}", shown(path)));
             FileError::Read { path: self.context.path.into(), place, source }
         })?;
         self.total.set(self.total.get() + read.len() as u64);

@@ -2,7 +2,11 @@
 
 use super::MAGIC;
 use crate::context::Context;
+use crate::words::count;
 use crate::{FileError, Place};
+
+/// Bytes of a file's header.
+const HEADER: usize = 12;
 
 /// The document's text and the binary chunk, if there is one. Bytes that do not
 /// begin with "glTF" are a document by themselves.
@@ -10,12 +14,18 @@ pub(super) fn open<'b>(
     bytes: &'b [u8],
     context: &Context<'_>,
 ) -> Result<(&'b [u8], Option<&'b [u8]>), FileError> {
-    let bad = |reason: &str| Err(context.invalid(Place::File, reason));
+    let bad = |reason: String| Err(context.invalid(Place::File, reason));
     if !bytes.starts_with(MAGIC) {
-        return Ok((bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), None));
+        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        let named_glb = context.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb"));
+        // A document with the wrong extension is read; what is neither is told apart.
+        if named_glb && !text.trim_ascii_start().starts_with(b"{") {
+            return bad("the file is not GLB: it does not begin with \"glTF\"".into());
+        }
+        return Ok((text, None));
     }
     let (Some(version), Some(length)) = (word(bytes, 4), word(bytes, 8)) else {
-        return bad("the GLB header is cut off");
+        return bad("the GLB header is cut off".into());
     };
     if version != 2 {
         return Err(context.unsupported(
@@ -25,33 +35,37 @@ pub(super) fn open<'b>(
         ));
     }
     let length = length as usize;
-    if length > bytes.len() {
-        let reason = format!("the GLB file is cut off: {} of {length} bytes are there", bytes.len());
-        return bad(&reason);
+    let there = bytes.len();
+    if length > there {
+        return bad(format!("the GLB file is cut off: {there} of {length} bytes are there"));
     }
-    if length < bytes.len() {
-        context.warn(format!("{} bytes after the GLB file's end were passed over", bytes.len() - length));
+    if length < HEADER {
+        return bad(format!("the GLB header says that the file has {length} bytes; it has {there}"));
     }
-    let mut rest = bytes.get(12..length).unwrap_or_default();
+    if length < there {
+        context.warn(format!("passed over {} after the GLB file's end", count(there - length, "byte")));
+    }
+    let mut at = HEADER;
     let (mut json, mut binary) = (None, None);
-    while !rest.is_empty() {
-        let (Some(length), Some(kind)) = (word(rest, 0), rest.get(4..8)) else {
-            return bad("a GLB chunk's header is cut off");
+    while at < length {
+        let rest = &bytes[at..length];
+        let (Some(size), Some(kind)) = (word(rest, 0), rest.get(4..8)) else {
+            return bad(format!("the GLB chunk at byte {at} is cut off"));
         };
-        let Some(data) = rest.get(8..).and_then(|r| r.get(..length as usize)) else {
-            return bad("a GLB chunk is longer than the file");
+        let Some(data) = rest.get(8..).and_then(|r| r.get(..size as usize)) else {
+            return bad(format!("the GLB chunk at byte {at} has {size} bytes and reaches beyond the file"));
         };
-        rest = &rest[8 + data.len()..];
         match kind {
             b"JSON" if json.is_none() => json = Some(data),
             b"BIN\0" if binary.is_none() => binary = Some(data),
-            b"JSON" | b"BIN\0" => return bad("a GLB chunk comes twice"),
+            b"JSON" | b"BIN\0" => return bad(format!("the GLB chunk at byte {at} comes twice")),
             _ => {}
         }
+        at += 8 + data.len();
     }
     match json {
         Some(json) => Ok((json, binary)),
-        None => bad("the GLB file has no JSON chunk"),
+        None => bad("the GLB file has no JSON chunk".into()),
     }
 }
 

@@ -1,11 +1,11 @@
 //! The parts of a glTF 2.0 document that Parbake reads, by the names of the
 //! specification (section 5); all else in a document is passed over.
 //!
-//! `usize` fields go through [`integer`], as some exporters write `0.0` for `0`.
+//! Contract: nothing is checked here but the types; what is missing has the
+//! specification's default, and numbers are whole from 0 where it asks for that.
 
-use serde::de::{self, Deserializer, Visitor};
-use serde::{Deserialize, de::DeserializeOwned};
-use std::fmt;
+use super::integer::{integer, integers, optional_integer};
+use serde::Deserialize;
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
@@ -311,108 +311,4 @@ pub(super) struct Sampler {
     pub wrap_s: Option<usize>,
     #[serde(deserialize_with = "optional_integer")]
     pub wrap_t: Option<usize>,
-}
-
-/// A whole number from 0, however it is written.
-#[derive(Clone, Copy)]
-struct Integer(usize);
-
-impl<'de> Deserialize<'de> for Integer {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Digits;
-        impl Visitor<'_> for Digits {
-            type Value = Integer;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a whole number from 0")
-            }
-
-            fn visit_u64<E: de::Error>(self, value: u64) -> Result<Integer, E> {
-                usize::try_from(value).map(Integer).map_err(E::custom)
-            }
-
-            fn visit_i64<E: de::Error>(self, value: i64) -> Result<Integer, E> {
-                Err(E::invalid_value(de::Unexpected::Signed(value), &self))
-            }
-
-            fn visit_f64<E: de::Error>(self, value: f64) -> Result<Integer, E> {
-                // Beyond 2⁵³ doubles are no longer exact, and no count is that large.
-                if (0.0..9e15).contains(&value) && value.fract() == 0.0 {
-                    return self.visit_u64(value as u64);
-                }
-                Err(E::invalid_value(de::Unexpected::Float(value), &self))
-            }
-        }
-        deserializer.deserialize_any(Digits)
-    }
-}
-
-fn integer<'de, D: Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> {
-    Integer::deserialize(deserializer).map(|i| i.0)
-}
-
-fn optional_integer<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<usize>, D::Error> {
-    Ok(Option::<Integer>::deserialize(deserializer)?.map(|i| i.0))
-}
-
-fn integers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<usize>, D::Error> {
-    Ok(Vec::<Integer>::deserialize(deserializer)?.into_iter().map(|i| i.0).collect())
-}
-
-/// Where in the document the first thing stands that does not fit, as a JSON
-/// pointer to the object, and why. For documents that are JSON but not glTF.
-pub(super) fn locate(bytes: &[u8]) -> Option<(String, String)> {
-    let value: serde_json::Value = serde_json::from_slice(bytes).ok()?;
-    fn misfit<T: DeserializeOwned>(root: &serde_json::Value, key: &str) -> Option<(String, String)> {
-        let value = root.get(key)?;
-        let Some(elements) = value.as_array() else {
-            return Some((format!("/{key}"), "this should be an array".into()));
-        };
-        elements.iter().enumerate().find_map(|(i, element)| {
-            T::deserialize(element).err().map(|e| (format!("/{key}/{i}"), e.to_string()))
-        })
-    }
-    let root = value.as_object().map(|_| &value)?;
-    misfit::<Accessor>(root, "accessors")
-        .or_else(|| misfit::<BufferView>(root, "bufferViews"))
-        .or_else(|| misfit::<Buffer>(root, "buffers"))
-        .or_else(|| misfit::<Node>(root, "nodes"))
-        .or_else(|| misfit::<Scene>(root, "scenes"))
-        .or_else(|| misfit::<Mesh>(root, "meshes"))
-        .or_else(|| misfit::<Material>(root, "materials"))
-        .or_else(|| misfit::<Texture>(root, "textures"))
-        .or_else(|| misfit::<Image>(root, "images"))
-        .or_else(|| misfit::<Sampler>(root, "samplers"))
-        .or_else(|| misfit::<Ignored>(root, "skins"))
-        .or_else(|| misfit::<Ignored>(root, "animations"))
-        .or_else(|| {
-            Asset::deserialize(root.get("asset")?).err().map(|e| ("/asset".to_string(), e.to_string()))
-        })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Protects documents whose numbers have a point, and the defaults.
-    #[test]
-    fn integers_may_have_a_point() {
-        let text = r#"{"accessors":[{"componentType":5126.0,"count":3.0,"type":"VEC3"}],"scene":0.0,"nodes":[{"children":[1.0]}]}"#;
-        let document: Document = serde_json::from_str(text).unwrap();
-        assert_eq!(document.accessors[0].count, 3);
-        assert_eq!((document.scene, document.nodes[0].children[0]), (Some(0), 1));
-        for bad in ["-1", "1.5", "1e300", "\"1\""] {
-            assert!(serde_json::from_str::<Document>(&format!("{{\"scene\":{bad}}}")).is_err());
-        }
-    }
-
-    /// Protects the promise that errors point at their place.
-    #[test]
-    fn misfits_are_located() {
-        let text = br#"{"accessors":[{"componentType":1,"count":1,"type":"VEC3"},{"count":1}]}"#;
-        let (pointer, reason) = locate(text).unwrap();
-        assert_eq!(pointer, "/accessors/1");
-        assert!(reason.contains("componentType"), "{reason}");
-        assert_eq!(locate(br#"{"nodes":5}"#).unwrap().0, "/nodes");
-    }
 }

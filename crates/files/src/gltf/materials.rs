@@ -10,7 +10,7 @@ use super::buffers::{Buffers, pointer};
 use super::json::{self, TextureInfo};
 use super::uri::{Uri, parse};
 use crate::FileError;
-use crate::context::Textures;
+use crate::context::{NamedBytes, Textures};
 use parbake_model::glam::Vec2;
 use parbake_model::{AlphaMode, Image, Material, TextureSlot, UvTransform, Wrap};
 use std::collections::HashMap;
@@ -20,7 +20,7 @@ pub(super) fn build(
     buffers: &Buffers<'_>,
     indices: &[Option<usize>],
 ) -> Result<(Vec<Material>, Vec<Image>), FileError> {
-    let mut reader = Reader { buffers, images: Vec::new(), places: HashMap::new() };
+    let mut reader = Reader { buffers, pictures: Vec::new(), places: HashMap::new() };
     let mut materials = Vec::with_capacity(indices.len());
     for index in indices {
         materials.push(match index {
@@ -28,17 +28,19 @@ pub(super) fn build(
             Some(index) => reader.material(*index)?,
         });
     }
-    Ok((materials, reader.images))
+    let images = buffers.context.decode_images(&reader.pictures)?;
+    Ok((materials, images))
 }
 
 struct Reader<'a, 'd> {
     buffers: &'a Buffers<'d>,
-    images: Vec<Image>,
+    /// Those in use, to be decoded at the end.
+    pictures: Vec<NamedBytes<'a>>,
     /// From the document's images to ours; `None` where one could not be found.
     places: HashMap<usize, Option<usize>>,
 }
 
-impl Reader<'_, '_> {
+impl<'a> Reader<'a, '_> {
     fn material(&mut self, index: usize) -> Result<Material, FileError> {
         let json = &self.buffers.document.materials[index];
         let here = format!("/materials/{index}");
@@ -122,7 +124,13 @@ impl Reader<'_, '_> {
             image,
             uv_set,
             wrap,
-            transform: transform.map_or_else(Default::default, uv_transform),
+            transform: match transform {
+                None => UvTransform::default(),
+                Some(json) => uv_transform(json).ok_or_else(|| {
+                    let place = pointer(format!("{here}/extensions/KHR_texture_transform"));
+                    buffers.context.invalid(place, "the transform is not finite in single precision")
+                })?,
+            },
         }))
     }
 
@@ -133,19 +141,16 @@ impl Reader<'_, '_> {
         if let Some(&place) = self.places.get(&index) {
             return Ok(place);
         }
-        let place = match self.decode(index, json)? {
-            None => None,
-            Some(image) => {
-                self.images.push(image);
-                Some(self.images.len() - 1)
-            }
-        };
+        let place = self.fetch(index, json)?.map(|picture| {
+            self.pictures.push(picture);
+            self.pictures.len() - 1
+        });
         self.places.insert(index, place);
         Ok(place)
     }
 
     /// `None`, with a warning, when the image's file cannot be found.
-    fn decode(&self, index: usize, json: &json::Image) -> Result<Option<Image>, FileError> {
+    fn fetch(&self, index: usize, json: &json::Image) -> Result<Option<NamedBytes<'a>>, FileError> {
         let context = self.buffers.context;
         let here = format!("/images/{index}");
         let data_uri = |uri: &str| uri.get(..5).is_some_and(|s| s.eq_ignore_ascii_case("data:"));
@@ -156,7 +161,7 @@ impl Reader<'_, '_> {
         };
         if let Some(view) = json.buffer_view {
             let (bytes, _) = self.buffers.view(view, &format!("{here}/bufferView"))?;
-            return context.decode_image(&name, bytes).map(Some);
+            return Ok(Some((name, bytes.into())));
         }
         let Some(uri) = &json.uri else {
             return Err(context.invalid(pointer(here), "the image has neither a URI nor a buffer view"));
@@ -180,7 +185,7 @@ impl Reader<'_, '_> {
                 return Ok(None);
             }
         };
-        context.decode_image(&name, &bytes).map(Some)
+        Ok(Some((name, bytes.into())))
     }
 }
 
@@ -192,10 +197,9 @@ fn wrap(code: Option<usize>) -> Wrap {
     }
 }
 
-fn uv_transform(json: &json::TextureTransform) -> UvTransform {
-    UvTransform {
-        offset: Vec2::from_array(json.offset.unwrap_or([0.0; 2])),
-        rotation: json.rotation,
-        scale: Vec2::from_array(json.scale.unwrap_or([1.0; 2])),
-    }
+fn uv_transform(json: &json::TextureTransform) -> Option<UvTransform> {
+    let (offset, scale) = (json.offset.unwrap_or([0.0; 2]), json.scale.unwrap_or([1.0; 2]));
+    let (offset, scale) = (Vec2::from_array(offset), Vec2::from_array(scale));
+    let finite = offset.is_finite() && scale.is_finite() && json.rotation.is_finite();
+    finite.then_some(UvTransform { offset, rotation: json.rotation, scale })
 }

@@ -25,6 +25,8 @@ pub(super) struct Merge<'a, 'd> {
     pub materials: Vec<Option<usize>>,
     material_ids: HashMap<Option<usize>, u32>,
     has: Attributes,
+    /// Primitives placed so far: even those without triangles take time.
+    placed: u64,
     /// From a primitive's element numbers to vertices; all `UNUSED` between primitives.
     places: Vec<u32>,
 }
@@ -59,8 +61,8 @@ impl<'a, 'd> Merge<'a, 'd> {
             uvs1: any(|p| p.attributes.texcoord_1.is_some()),
             colors: any(|p| p.attributes.color_0.is_some()),
         };
-        let (mesh, materials, material_ids, places) = Default::default();
-        Self { buffers, mesh, materials, material_ids, has, places }
+        let (mesh, materials, material_ids, placed, places) = Default::default();
+        Self { buffers, mesh, materials, material_ids, has, placed, places }
     }
 
     /// Adds one placing of a mesh.
@@ -70,6 +72,14 @@ impl<'a, 'd> Merge<'a, 'd> {
         let Some(mesh) = meshes.get(instance.mesh) else {
             return Err(buffers.missing(&instance.from, "mesh", instance.mesh, meshes.len()));
         };
+        self.placed = self.placed.saturating_add(mesh.primitives.len() as u64);
+        let limit = buffers.context.limits.max_json_objects as u64;
+        buffers.context.within(
+            pointer(instance.from.clone()),
+            "primitives placed by nodes",
+            self.placed,
+            limit,
+        )?;
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let here = format!("/meshes/{}/primitives/{i}", instance.mesh);
             if !has_triangles(primitive) {

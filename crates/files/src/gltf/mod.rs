@@ -8,9 +8,12 @@ mod accessor;
 mod buffers;
 mod container;
 mod extensions;
+mod integer;
 mod json;
+mod locate;
 mod materials;
 mod merge;
+mod references;
 mod scene;
 mod topology;
 mod uri;
@@ -51,11 +54,10 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
     let mut merge = merge::Merge::new(&buffers);
     scene::visit(&buffers, &mut |instance| merge.add(instance))?;
     let (mesh, used) = (std::mem::take(&mut merge.mesh), std::mem::take(&mut merge.materials));
-    let empty = match document.meshes.len() {
-        0 => "; the document has no meshes",
-        _ if mesh.triangles.is_empty() => "; no mesh with triangles is in its scene",
-        _ => "",
-    };
+    if mesh.triangles.is_empty() {
+        references::check(&buffers)?;
+    }
+    let empty = emptiness(&document);
     let (materials, images) = materials::build(&buffers, &used)?;
     drop(merge);
     drop(buffers);
@@ -76,12 +78,15 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
 fn parse(text: &[u8], context: &Context<'_>) -> Result<json::Document, FileError> {
     let objects = text.iter().filter(|&&b| b == b'{').count() as u64;
     context.within(Place::File, "JSON objects", objects, context.limits.max_json_objects as u64)?;
-    let document: json::Document = serde_json::from_slice(text).map_err(|error| {
-        let (place, reason) = match json::locate(text) {
-            Some((pointer, reason)) => (Place::Pointer(pointer), reason),
-            None => (Place::File, format!("the document is not glTF: {error}")),
-        };
-        context.invalid(place, reason)
+    let document: json::Document = serde_json::from_slice(text).map_err(|error| match error.classify() {
+        serde_json::error::Category::Data => {
+            let place = match locate::pointer(text, &error) {
+                root if root.is_empty() => Place::File,
+                pointer => Place::Pointer(pointer),
+            };
+            context.invalid(place, locate::reason(&error))
+        }
+        _ => context.invalid(Place::File, format!("the document is not valid JSON: {error}")),
     })?;
     let Some(asset) = &document.asset else {
         return Err(
@@ -96,6 +101,22 @@ fn parse(text: &[u8], context: &Context<'_>) -> Result<json::Document, FileError
             Err(context.unsupported(place(), format!("glTF {version}"), "convert the model to glTF 2.0"))
         }
         _ => Err(context.invalid(place(), format!("{version:?} is no version"))),
+    }
+}
+
+/// What a document without triangles has instead.
+fn emptiness(document: &json::Document) -> &'static str {
+    let mut primitives = document.meshes.iter().flat_map(|m| &m.primitives).peekable();
+    if document.meshes.is_empty() {
+        "; the document has no meshes"
+    } else if primitives.peek().is_none() {
+        "; its meshes are empty"
+    } else if !primitives.clone().any(topology::has_triangles) {
+        "; it has only points and lines"
+    } else if primitives.all(|p| p.attributes.position.is_none()) {
+        "; its meshes have no positions"
+    } else {
+        "; no mesh with triangles is in its scene"
     }
 }
 

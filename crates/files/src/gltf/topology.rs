@@ -41,7 +41,7 @@ pub(super) fn triangles(
     };
     if mode == 4 && count % 3 != 0 {
         context.warn(format!(
-            "{here}: {count} indices are no whole number of triangles; the last are passed over"
+            "{here}: {count} corners are no whole number of triangles; the last are passed over"
         ));
     }
     let limit = context.limits.max_triangles as u64;

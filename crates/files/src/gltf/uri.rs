@@ -31,7 +31,9 @@ pub(super) fn parse(uri: &str) -> Result<Uri, String> {
     if uri.is_empty() {
         return Err("the URI is empty".into());
     }
-    Ok(Uri::Relative(String::from_utf8_lossy(&percent_decode(uri)).into_owned()))
+    // Exporters on Windows forget to turn their slashes; files with a backslash in
+    // their names are next to unheard of.
+    Ok(Uri::Relative(String::from_utf8_lossy(&percent_decode(uri)).replace('\\', "/")))
 }
 
 fn percent_decode(text: &str) -> Vec<u8> {
@@ -107,6 +109,7 @@ mod tests {
         assert_eq!(parse("Box%20With%C3%A9.bin"), Ok(Uri::Relative("Box Withé.bin".into())));
         assert_eq!(parse("../a b.png"), Ok(Uri::Relative("../a b.png".into())));
         assert_eq!(parse("100%.png"), Ok(Uri::Relative("100%.png".into())));
+        assert_eq!(parse("textures\\a.png"), Ok(Uri::Relative("textures/a.png".into())));
         assert!(parse("https://example.org/a.bin").unwrap_err().contains("https"));
         assert!(parse("file:///etc/passwd").is_err());
         assert!(parse("").is_err());

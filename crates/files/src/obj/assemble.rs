@@ -5,10 +5,12 @@
 //! `(u, 1 − v)`. Where some corners have a normal and others none, the latter get
 //! their triangle's.
 
-use super::statements::{Corner, NONE, Statements};
+use super::corner::{Corner, NONE};
+use super::statements::Statements;
 use crate::FileError;
 use crate::Place;
 use crate::context::Context;
+use crate::words::count;
 use parbake_model::Mesh;
 use parbake_model::glam::{Vec2, Vec4};
 use std::collections::HashMap;
@@ -21,8 +23,8 @@ const LONGEST_CHAIN: usize = 16;
 pub(super) fn assemble(mut statements: Statements, context: &Context<'_>) -> Result<Mesh, FileError> {
     let (with_texture, with_normal, all) = uses(&statements);
     if with_texture > 0 && with_texture < all {
-        let missing = all - with_texture;
-        context.warn(format!("{missing} face corners have no texture coordinate; (0, 0) is taken for them"));
+        let corners = count(all - with_texture, "face corner");
+        context.warn(format!("took (0, 0) for {corners} without a texture coordinate"));
     }
     if with_normal > 0 && with_normal < all {
         fill_normals(&mut statements);
@@ -188,7 +190,7 @@ mod tests {
         assert_eq!(mesh.normals[0], Vec3::X);
         assert_eq!(mesh.normals[mesh.triangles[1][0] as usize], Vec3::Z);
         assert_eq!(mesh.uvs[mesh.triangles[1][0] as usize], Vec2::ZERO);
-        assert!(warnings[0].starts_with("3 face corners"), "{warnings:?}");
+        assert!(warnings[0].contains("3 face corners"), "{warnings:?}");
     }
 
     /// Protects speed and correctness where one position has thousands of vertices.

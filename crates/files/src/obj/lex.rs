@@ -81,15 +81,32 @@ impl<'a> Iterator for Words<'a> {
     }
 }
 
-/// A decimal number, correctly rounded; `nan` and `inf` are numbers here.
+/// A decimal number, correctly rounded; what is printed for NaN and infinity on
+/// any system is a number here.
 #[inline]
 pub(super) fn number<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
-    std::str::from_utf8(word).ok()?.parse().ok()
+    let word = std::str::from_utf8(word).ok()?;
+    word.parse().ok().or_else(|| odd_number(word)?.parse().ok())
 }
 
-/// Bytes for people to read.
+/// `-nan(ind)`, `1.#QNAN`, `-1.#IND` or `1.#INF`, in the words of Rust.
+fn odd_number(word: &str) -> Option<&'static str> {
+    let plain = word.trim_start_matches(['+', '-']).to_ascii_lowercase();
+    match plain.strip_prefix("1.#").unwrap_or(&plain) {
+        rest if rest.starts_with("inf") => Some("inf"),
+        rest if rest.starts_with("nan(") => Some("nan"),
+        rest if ["ind", "qnan", "snan"].iter().any(|nan| rest.starts_with(nan)) => Some("nan"),
+        _ => None,
+    }
+}
+
+/// Bytes as text. What is no UTF-8 is taken for Latin-1, as older exporters write
+/// it; so names that differ stay different.
 pub(super) fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.into(),
+        Err(_) => bytes.iter().map(|&b| char::from(b)).collect(),
+    }
 }
 
 #[cfg(test)]
@@ -125,5 +142,15 @@ mod tests {
         assert_eq!(Words::new(b"v 1 2 # 3").count(), 3);
         assert_eq!(number::<f64>(b".8e-001"), Some(0.08));
         assert_eq!(number::<f64>(b"1,5"), None);
+    }
+
+    /// Protects files with normals of no direction, as C libraries print them.
+    #[test]
+    fn numbers_that_are_none() {
+        for word in ["nan", "-NaN", "nan(ind)", "-nan(ind)", "1.#QNAN0", "-1.#IND00"] {
+            assert!(number::<f32>(word.as_bytes()).is_some_and(f32::is_nan), "{word}");
+        }
+        assert!(number::<f32>(b"-1.#INF").is_some_and(f32::is_infinite));
+        assert_eq!(number::<f32>(b"name"), None);
     }
 }

@@ -10,12 +10,16 @@
 
 use super::lex::text;
 use super::mtl::{self, Map, Section};
-use crate::context::{Context, Textures};
+use crate::context::{Context, NamedBytes, Textures};
+use crate::words::shown;
 use crate::{FileError, Place};
 use parbake_model::glam::Vec2;
 use parbake_model::{AlphaMode, Image, Material, TextureSlot, UvTransform, Wrap};
 use std::collections::HashMap;
 use std::io::ErrorKind;
+
+/// More are not looked for: each may cost a search on the disk.
+const MOST_LIBRARIES: usize = 1000;
 
 /// A section, and the folder of its library (empty, or with a `/` at the end).
 pub(super) type Found = (Section, String);
@@ -27,12 +31,17 @@ pub(super) fn build(
     context: &Context<'_>,
 ) -> Result<(Vec<Material>, Vec<Image>), FileError> {
     let sections = read_libraries(libraries, context)?;
-    let mut pictures = Pictures { context, images: Vec::new(), seen: HashMap::new() };
+    let mut pictures = Pictures { context, found: Vec::new(), seen: HashMap::new() };
     let mut materials = Vec::with_capacity(names.len());
+    let mut doubtful = Vec::new();
     for name in names {
         let mut material = Material { name: name.clone(), ..Material::default() };
         match sections.get(name.as_str()) {
-            Some(found) => fill(&mut material, found, &mut pictures)?,
+            Some(found) => {
+                if let Some(bump) = fill(&mut material, found, &mut pictures)? {
+                    doubtful.push((materials.len(), bump));
+                }
+            }
             None if name.is_empty() => material.name = "default".into(),
             // Said once and not for each material, where there is no library at all.
             None if sections.is_empty() => {}
@@ -40,7 +49,18 @@ pub(super) fn build(
         }
         materials.push(material);
     }
-    Ok((materials, pictures.images))
+    let images = context.decode_images(&pictures.found)?;
+    for (material, file) in doubtful {
+        let slot = &mut materials[material].normal_texture;
+        if slot.is_some_and(|slot| !looks_like_normals(&images[slot.image])) {
+            *slot = None;
+            materials[material].normal_scale = 1.0;
+            context.warn(format!(
+                "bump map {file:?} does not look like a tangent-space normal map and was left out; write it as `norm` if it is one"
+            ));
+        }
+    }
+    Ok((materials, images))
 }
 
 fn read_libraries(libraries: &[Vec<u8>], context: &Context<'_>) -> Result<HashMap<String, Found>, FileError> {
@@ -56,12 +76,12 @@ fn read_libraries(libraries: &[Vec<u8>], context: &Context<'_>) -> Result<HashMa
     let mut seen: Vec<&[u8]> = Vec::new();
     for words in libraries {
         // Exporters that write one `mtllib` for each object write the same each time.
-        if seen.contains(&words.as_slice()) || seen.len() > 1000 {
+        if seen.contains(&words.as_slice()) || seen.len() > MOST_LIBRARIES {
             continue;
         }
         seen.push(words);
         let whole = text(words).replace("\\ ", " ").replace('\\', "/");
-        let several = split_names(&text(words));
+        let several = split_names(&text(words), MOST_LIBRARIES);
         // One name with blanks is likelier than several names; but both occur.
         if let Some(bytes) = read_beside(&whole, context)? {
             add(&whole, &bytes);
@@ -78,11 +98,11 @@ fn read_libraries(libraries: &[Vec<u8>], context: &Context<'_>) -> Result<HashMa
     Ok(sections)
 }
 
-/// Names separated by blanks; a blank after a backslash is part of the name.
-fn split_names(words: &str) -> Vec<String> {
+/// At most so many names separated by blanks; a blank after a backslash is part of the name.
+fn split_names(words: &str, most: usize) -> Vec<String> {
     let blank = '\u{0}';
     let kept = words.replace("\\ ", &blank.to_string()).replace('\\', "/");
-    kept.split_ascii_whitespace().map(|name| name.replace(blank, " ")).collect()
+    kept.split_ascii_whitespace().take(most).map(|name| name.replace(blank, " ")).collect()
 }
 
 /// `None` when there is no such file.
@@ -90,7 +110,7 @@ fn read_beside(file: &str, context: &Context<'_>) -> Result<Option<Vec<u8>>, Fil
     match context.resources.read(file, context.limits.max_file_bytes) {
         Ok(bytes) => Ok(Some(bytes)),
         Err(source) if source.kind() == ErrorKind::FileTooLarge => {
-            let place = Place::Image(file.into());
+            let place = Place::Image(shown(file));
             Err(FileError::Read { path: context.path.into(), place, source })
         }
         // Absolute paths, folders and forbidden files are as good as missing.
@@ -98,7 +118,13 @@ fn read_beside(file: &str, context: &Context<'_>) -> Result<Option<Vec<u8>>, Fil
     }
 }
 
-fn fill(material: &mut Material, found: &Found, pictures: &mut Pictures<'_, '_>) -> Result<(), FileError> {
+/// Fills the material in. A bump map is put down as a normal map, and its file is
+/// returned: only its pixels will tell whether it is one.
+fn fill<'f>(
+    material: &mut Material,
+    found: &'f Found,
+    pictures: &mut Pictures<'_, '_>,
+) -> Result<Option<&'f str>, FileError> {
     let (section, folder) = found;
     if let Some(diffuse) = section.diffuse {
         let [r, g, b] = diffuse.map(|x| super::srgb::decode(x) as f32);
@@ -106,7 +132,7 @@ fn fill(material: &mut Material, found: &Found, pictures: &mut Pictures<'_, '_>)
     }
     if let Some(map) = &section.diffuse_map {
         material.base_color = [1.0; 4];
-        material.base_color_texture = pictures.slot(map, folder, |_| true)?;
+        material.base_color_texture = pictures.slot(map, folder)?;
     }
     material.base_color[3] = section.opacity.filter(|o| o.is_finite()).unwrap_or(1.0).clamp(0.0, 1.0);
     if section.has_opacity_map {
@@ -114,16 +140,15 @@ fn fill(material: &mut Material, found: &Found, pictures: &mut Pictures<'_, '_>)
     } else if material.base_color[3] < 1.0 {
         material.alpha_mode = AlphaMode::Blend;
     }
-    if let Some(map) = &section.normal_map {
-        material.normal_texture = pictures.slot(map, folder, |_| true)?;
-        material.normal_scale = map.strength;
-    } else if let Some(map) = &section.bump_map {
-        material.normal_texture = pictures.slot(map, folder, looks_like_normals)?;
+    let normals = section.normal_map.as_ref();
+    if let Some(map) = normals.or(section.bump_map.as_ref()) {
+        material.normal_texture = pictures.slot(map, folder)?;
         if material.normal_texture.is_some() {
             material.normal_scale = map.strength;
+            return Ok(normals.is_none().then_some(&map.file));
         }
     }
-    Ok(())
+    Ok(None)
 }
 
 /// Whether the mean colour is that of tangent-space normals: much blue, and red
@@ -139,22 +164,17 @@ fn looks_like_normals(image: &Image) -> bool {
     b > 178.0 && (r - 127.5).abs() < 40.0 && (g - 127.5).abs() < 40.0
 }
 
-/// Pictures read so far, each once.
+/// Pictures found so far, each once, to be decoded together.
 struct Pictures<'a, 'c> {
     context: &'a Context<'c>,
-    images: Vec<Image>,
-    /// By path as tried. `None`: not found, or no normal map.
+    found: Vec<NamedBytes<'static>>,
+    /// By path as tried. `None`: not found.
     seen: HashMap<String, Option<usize>>,
 }
 
 impl Pictures<'_, '_> {
-    /// A use of the picture, if it can be found and `accept`ed.
-    fn slot(
-        &mut self,
-        map: &Map,
-        folder: &str,
-        accept: impl Fn(&Image) -> bool,
-    ) -> Result<Option<TextureSlot>, FileError> {
+    /// A use of the picture, if it can be found.
+    fn slot(&mut self, map: &Map, folder: &str) -> Result<Option<TextureSlot>, FileError> {
         if self.context.textures == Textures::Skip {
             return Ok(None);
         }
@@ -168,13 +188,6 @@ impl Pictures<'_, '_> {
             }
         };
         let Some(image) = image else { return Ok(None) };
-        if !accept(&self.images[image]) {
-            let name = &map.file;
-            self.context.warn(format!(
-                "bump map {name:?} does not look like a tangent-space normal map and was left out; write it as `norm` if it is one"
-            ));
-            return Ok(None);
-        }
         let wrap = [if map.clamp { Wrap::Clamp } else { Wrap::Repeat }; 2];
         Ok(Some(TextureSlot { image, uv_set: 0, wrap, transform: transform(map) }))
     }
@@ -185,8 +198,8 @@ impl Pictures<'_, '_> {
         let candidates = [key.to_string(), map.file.clone(), format!("{folder}{base}"), base.to_string()];
         for candidate in &candidates {
             if let Some(bytes) = read_beside(candidate, self.context)? {
-                self.images.push(self.context.decode_image(candidate, &bytes)?);
-                return Ok(Some(self.images.len() - 1));
+                self.found.push((candidate.clone(), bytes.into()));
+                return Ok(Some(self.found.len() - 1));
             }
         }
         let name = &map.file;

@@ -2,23 +2,18 @@
 //!
 //! Follows the Wavefront "Object Files (.obj)" appendix, with what is common
 //! since: colours after a position (`v x y z r g b`), any order of definitions
-//! and uses. Polygons become fans around their first corner. Lines, points,
-//! groups and smoothing groups are passed over.
+//! and uses. Lines, points, groups and smoothing groups are passed over.
 
+use super::corner::{Corner, Forward, KINDS, NONE, corner};
 use super::lex::{Lines, Words, number, text};
+use super::polygon::{self, Plan};
 use crate::context::Context;
 use crate::{FileError, Place};
 use parbake_model::glam::{DVec2, Vec3, Vec4};
 use std::collections::HashMap;
 
-/// Stands for an index that a face does not give.
-pub(super) const NONE: u32 = u32::MAX;
-
 /// So that the number of corners fits an index, whatever the limits say.
 const MOST_TRIANGLES: usize = 1 << 30;
-
-/// Indices of position, texture coordinate and normal.
-pub(super) type Corner = [u32; 3];
 
 /// What the file says, before vertices are made of it.
 #[derive(Default)]
@@ -40,12 +35,9 @@ pub(super) struct Statements {
     pub short_faces: usize,
     /// Whether there are free-form curves or surfaces.
     pub free_form: bool,
+    /// Faces of more than three corners: the first of their triangles, and how many.
+    polygons: Vec<(u32, u32)>,
 }
-
-/// The highest use so far of something not yet defined, and its line.
-type Forward = [(u32, usize); 3];
-
-const KINDS: [&str; 3] = ["v", "vt", "vn"];
 
 /// Reads all statements of `bytes`.
 pub(super) fn read(bytes: &[u8], context: &Context<'_>) -> Result<Statements, FileError> {
@@ -84,6 +76,8 @@ pub(super) fn read(bytes: &[u8], context: &Context<'_>) -> Result<Statements, Fi
         }
     }
     out.check_forward(&forward, context)?;
+    // Only now are all positions known.
+    out.cut_polygons(context);
     Ok(out)
 }
 
@@ -105,7 +99,7 @@ impl Statements {
                     .warn(format!("faces use {name} numbers, but the file has no {name}; they are ignored"));
                 self.triangles.as_flattened_mut().iter_mut().for_each(|corner| corner[kind] = NONE);
             } else {
-                let reason = format!("the face uses {name} number {used}, but there are only {count}");
+                let reason = format!("the face uses {name} number {used}, but the file defines only {count}");
                 return Err(context.invalid(Place::Line(line), reason));
             }
         }
@@ -140,9 +134,37 @@ impl Statements {
         let found = self.triangles.len() + rest.len().saturating_sub(1);
         let limit = context.limits.max_triangles.min(MOST_TRIANGLES);
         context.within(Place::File, "triangles", found as u64, limit as u64)?;
+        if rest.len() > 2 {
+            self.polygons.push((self.triangles.len() as u32, rest.len() as u32 - 1));
+        }
         self.triangles.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
         self.triangle_materials.resize(self.triangles.len(), material);
         Ok(())
+    }
+
+    /// Cuts those polygons anew that a fan does not cover.
+    fn cut_polygons(&mut self, context: &Context<'_>) {
+        let mut budget = polygon::BUDGET;
+        let (mut corners, mut points) = (Vec::new(), Vec::new());
+        for (first, count) in std::mem::take(&mut self.polygons) {
+            let fan = &mut self.triangles[first as usize..][..count as usize];
+            corners.clear();
+            corners.extend([fan[0][0], fan[0][1]]);
+            corners.extend(fan.iter().map(|triangle| triangle[2]));
+            points.clear();
+            points.extend(corners.iter().map(|c: &Corner| self.positions[c[0] as usize].as_dvec3()));
+            match polygon::plan(&points, &mut budget) {
+                Plan::Fan => {}
+                Plan::Triangles(cuts) => {
+                    for (triangle, cut) in fan.iter_mut().zip(cuts) {
+                        *triangle = cut.map(|i| corners[i]);
+                    }
+                }
+                Plan::TooCostly => {
+                    context.warn("some faces have very many corners and may be filled wrongly")
+                }
+            }
+        }
     }
 }
 
@@ -176,66 +198,6 @@ fn numbers<const N: usize, T: std::str::FromStr + Default + Copy>(
         return Err(context.invalid(Place::Line(line), reason));
     }
     Ok((values, count))
-}
-
-/// `position`, `position/texture`, `position//normal` or `position/texture/normal`.
-#[inline]
-fn corner(word: &[u8], counts: [usize; 3], forward: &mut Forward, line: usize) -> Result<Corner, String> {
-    let mut corner = [NONE; 3];
-    let mut rest = word;
-    for kind in 0..3 {
-        let (value, after) = index(rest).ok_or_else(|| format!("{:?} is not a face corner", text(word)))?;
-        if let Some(value) = value {
-            corner[kind] = resolve(value, counts[kind], KINDS[kind])?;
-            // Most files define first; only what is used before its definition
-            // has to wait for the end of the file.
-            if corner[kind] as usize >= counts[kind] {
-                forward[kind] = forward[kind].max((corner[kind] + 1, line));
-            }
-        } else if kind == 0 {
-            return Err(format!("{:?} gives no position", text(word)));
-        }
-        match after {
-            [] => return Ok(corner),
-            [b'/', tail @ ..] if kind < 2 => rest = tail,
-            _ => break,
-        }
-    }
-    Err(format!("{:?} is not a face corner", text(word)))
-}
-
-/// A signed integer at the beginning, or nothing before a slash or the end; and
-/// what follows it.
-#[inline]
-fn index(word: &[u8]) -> Option<(Option<i64>, &[u8])> {
-    let (negative, digits) = match word {
-        [b'-', rest @ ..] => (true, rest),
-        [b'+', rest @ ..] => (false, rest),
-        [] | [b'/', ..] => return Some((None, word)),
-        _ => (false, word),
-    };
-    let end = digits.iter().position(|b| !b.is_ascii_digit()).unwrap_or(digits.len());
-    // Eighteen digits cannot overflow; what is longer is out of range anyway.
-    if end == 0 || end > 18 {
-        return None;
-    }
-    let value = digits[..end].iter().fold(0, |n, &d| n * 10 + i64::from(d - b'0'));
-    Some((Some(if negative { -value } else { value }), &digits[end..]))
-}
-
-/// From OBJ's counting (from 1, or backwards from −1) to indices from 0.
-#[inline]
-fn resolve(value: i64, count: usize, kind: &str) -> Result<u32, String> {
-    let index = match value {
-        0 => return Err(format!("the face uses {kind} number 0, but OBJ counts from 1")),
-        v if v < 0 => v + count as i64,
-        v => v - 1,
-    };
-    // One below NONE, so that forward uses can be kept as index + 1.
-    u32::try_from(index)
-        .ok()
-        .filter(|&i| i < NONE - 1)
-        .ok_or_else(|| format!("the face uses {kind} number {value}, but there are {count} up to here"))
 }
 
 #[cfg(test)]
@@ -277,8 +239,8 @@ mod tests {
     #[test]
     fn errors_name_the_line() {
         for (text, expected) in [
-            ("f 1 2 5", "line 7: the face uses v number 5, but there are only 4"),
-            ("f 1 2 -5", "line 7: the face uses v number -5, but there are 4 up to here"),
+            ("f 1 2 5", "line 7: the face uses v number 5, but the file defines only 4"),
+            ("f 1 2 -5", "line 7: the face uses v number -5, but up to here the file defines only 4"),
             ("f 1 2 0", "counts from 1"),
             ("f 1/2 2/1 3/1", "line 7: the face uses vt number 2"),
             ("f 1//1 2//1 3//9", "line 7: the face uses vn number 9"),

@@ -6,15 +6,17 @@
 //! colours are left out; readers can compute the former.
 
 use super::{NamedImage, srgb};
+use crate::atomic::write_together;
 use crate::unit::unit;
-use crate::{FileError, Place, encode_png, write_atomically};
+use crate::{FileError, Place, encode_png};
 use parbake_model::glam::Vec3;
 use parbake_model::{Material, Mesh, Model, TextureSlot, UvTransform, Wrap};
 use std::fmt::Write;
 use std::path::Path;
 
 /// Writes `model` to `path`, with `<stem>.mtl` and `<stem>_<use>.png` beside it.
-/// The OBJ file comes last, so that it never names what is not there yet.
+/// All are written before any takes its place, the OBJ file last, so that it never
+/// names what is not there yet.
 ///
 /// # Errors
 /// When the model breaks its contract or says what OBJ cannot, and when a file
@@ -25,11 +27,13 @@ pub fn write_obj(path: &Path, model: &Model) -> Result<(), FileError> {
     let pictures = name_pictures(&stem, model);
     let library = library(path, model, &pictures)?;
     let text = text(&stem, model);
-    for (name, image) in pictures.iter().flatten() {
-        write_atomically(&path.with_file_name(name), &encode_png(image)?)?;
-    }
-    write_atomically(&path.with_file_name(format!("{stem}.mtl")), library.as_bytes())?;
-    write_atomically(path, text.as_bytes())
+    let encoded = pictures.iter().flatten().map(|(name, image)| Ok((name, encode_png(image)?)));
+    let encoded: Vec<_> = encoded.collect::<Result<_, FileError>>()?;
+    let mut files: Vec<_> =
+        encoded.iter().map(|(name, bytes)| (path.with_file_name(name), bytes.as_slice())).collect();
+    files.push((path.with_file_name(format!("{stem}.mtl")), library.as_bytes()));
+    files.push((path.to_path_buf(), text.as_bytes()));
+    write_together(&files)
 }
 
 /// The stem without what other programs stumble over in OBJ and MTL files: blanks,
@@ -248,5 +252,16 @@ mod tests {
         let error = write_obj(&folder.path().join("a.obj"), &turned).unwrap_err().to_string();
         assert!(error.contains("turned textures") && error.contains(".glb"), "{error}");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    /// Protects folders from half a model: pictures without their OBJ file.
+    #[test]
+    fn a_failure_leaves_nothing_behind() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.obj");
+        std::fs::create_dir(&path).unwrap();
+        let error = write_obj(&path, &model()).unwrap_err();
+        assert_eq!(error.path(), path);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 }

@@ -1,17 +1,32 @@
-//! What the tests on real data share.
+//! What the integration tests share.
 
-#![allow(dead_code)]
+#![allow(dead_code, reason = "every test file uses another part of it")]
 
 use parbake_files::Loaded;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// `$PARBAKE_DATA`, or `None` after saying that the test is skipped.
+/// `$PARBAKE_DATA`, or `None` after saying that the test is skipped. A variable
+/// that leads nowhere is a failure, lest a test passes by looking at nothing.
 pub fn data_folder() -> Option<PathBuf> {
-    let folder = std::env::var_os("PARBAKE_DATA").map(PathBuf::from);
-    if folder.is_none() {
-        println!("SKIPPED: set PARBAKE_DATA to the folder of test data to run this test");
-    }
-    folder
+    let Some(folder) = std::env::var_os("PARBAKE_DATA").map(PathBuf::from) else {
+        // Not eprintln!, which the test runner swallows when a test passes.
+        let test = std::thread::current().name().unwrap_or_default().to_string();
+        let _ = writeln!(
+            std::io::stderr(),
+            "SKIPPED {test}: set PARBAKE_DATA to the folder of test data to run it"
+        );
+        return None;
+    };
+    assert!(folder.is_dir(), "PARBAKE_DATA is {}, which is no folder", folder.display());
+    Some(folder)
+}
+
+/// The most memory this process has had in use so far, in bytes; 0 where the system does not tell.
+pub fn peak_memory() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:")).unwrap_or("0 kB");
+    line.split_ascii_whitespace().next().and_then(|n| n.parse::<u64>().ok()).unwrap_or(0) * 1024
 }
 
 /// All files below a folder, in a fixed order.

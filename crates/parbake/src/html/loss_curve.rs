@@ -50,7 +50,9 @@ pub fn loss_curve(losses: &[LossStep]) -> String {
             decimal(*decibels, 2)
         )
     };
-    content += &label(first, (10.0, 4.0), "start");
+    // Below the mark, away from a line that rises, where there is room for it.
+    let room = axes.y(f64::MIN) - axes.y(first.1) > 22.0;
+    content += &label(first, if room { (2.0, 19.0) } else { (10.0, 4.0) }, "start");
     if points.len() > 1 {
         content += &label(last, (4.0, -10.0), "end");
     }

@@ -1,7 +1,8 @@
 //! Pictures as `data:` addresses, so that the page needs no other file.
 //!
-//! Contract: PNG, lossless for pictures up to [`LARGEST`] along each side; larger
-//! ones are averaged down by a whole factor.
+//! Contract: PNG, lossless for pictures of at most [`LARGEST`] pixels along a side and
+//! [`MOST_BYTES`]; others are averaged down by a whole factor until they are, so that
+//! the page stays small whatever the textures.
 
 use super::base64;
 use crate::error::BakeError;
@@ -9,7 +10,9 @@ use parbake_metric::Rgb;
 use parbake_model::Image;
 
 /// Longest side of an embedded picture.
-pub const LARGEST: usize = 1024;
+const LARGEST: usize = 1024;
+/// Most bytes of its PNG. A texture of 512 × 512 stays below even if it is all noise.
+const MOST_BYTES: usize = 1_000_000;
 
 /// A picture ready for an `src` attribute.
 pub struct Embedded {
@@ -23,14 +26,21 @@ pub struct Embedded {
 
 /// Embeds a texture, opaque: alpha would hide colours that a renderer does show.
 pub fn embed(image: &Image) -> Result<Embedded, BakeError> {
-    let mut image = reduced(image, image.width.max(image.height).div_ceil(LARGEST).max(1));
-    for pixel in &mut image.pixels {
-        pixel[3] = 255;
+    let mut factor = image.width.max(image.height).div_ceil(LARGEST).max(1);
+    loop {
+        let mut small = reduced(image, factor);
+        for pixel in &mut small.pixels {
+            pixel[3] = 255;
+        }
+        let png = parbake_files::encode_png(&small)?;
+        if png.len() > MOST_BYTES && small.width.max(small.height) > 1 {
+            factor *= 2;
+            continue;
+        }
+        let mut address = String::from("data:image/png;base64,");
+        base64::encode(&png, &mut address);
+        return Ok(Embedded { address, width: small.width, height: small.height });
     }
-    let png = parbake_files::encode_png(&image)?;
-    let mut address = String::from("data:image/png;base64,");
-    base64::encode(&png, &mut address);
-    Ok(Embedded { address, width: image.width, height: image.height })
 }
 
 /// Embeds a rendered picture.
@@ -78,5 +88,19 @@ mod tests {
         let embedded = embed(&Image::solid("b", 2100, 5, [0; 4])).unwrap();
         assert_eq!((embedded.width, embedded.height), (700, 2));
         assert!(embedded.address.starts_with("data:image/png;base64,iVBORw0KGgo"));
+    }
+
+    /// Protects the page's size from textures that no PNG makes small.
+    #[test]
+    fn noise_is_averaged_down() {
+        let mut image = Image::solid("noise", 1024, 1024, [0; 4]);
+        let mut state = 1u32;
+        for pixel in &mut image.pixels {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            *pixel = state.to_be_bytes();
+        }
+        let embedded = embed(&image).unwrap();
+        assert_eq!(embedded.width, 512);
+        assert!(embedded.address.len() < MOST_BYTES * 4 / 3 + 100);
     }
 }

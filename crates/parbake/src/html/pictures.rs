@@ -23,7 +23,7 @@ pub const AMPLIFIED: f32 = 4.0;
 const BACKGROUND: [f32; 3] = [0.04; 3];
 
 /// Samples along a side of each pixel.
-const SUPERSAMPLE: usize = 3;
+const SUPERSAMPLE: usize = 2;
 /// Azimuth from +Z towards +X and height, in degrees: the usual front and the back
 /// as a photographer would take them, then one from above and one from below on
 /// the sides in between.
@@ -92,7 +92,9 @@ fn framed(scenes: &Scenes, direction: Vec3) -> Camera {
     let wide = Camera::towards_origin(direction, RADIUS, Projection::Perspective(1.0));
     let reach = [&scenes.high, &scenes.baked]
         .iter()
-        .flat_map(|scene| scene.mesh().triangles.iter().flatten().map(|&i| scene.mesh().positions[i as usize]))
+        .flat_map(|scene| {
+            scene.mesh().triangles.iter().flatten().map(|&i| scene.mesh().positions[i as usize])
+        })
         .map(|p| {
             let c = p - wide.eye;
             // The box's corners are nearer than √3, so nothing lies behind the camera;
@@ -114,8 +116,8 @@ fn difference(a: &Rgb, b: &Rgb) -> Rgb {
 /// Where a direction is, if +Z is the front and +Y the top.
 fn name(direction: Vec3) -> String {
     let height = match direction.y {
-        y if y > 0.5 => "above ",
-        y if y < -0.5 => "below ",
+        y if y > 0.5 => ", from above",
+        y if y < -0.5 => ", from below",
         _ => "",
     };
     let turn = direction.x.atan2(direction.z).to_degrees();
@@ -129,7 +131,7 @@ fn name(direction: Vec3) -> String {
         _ if turn > 0.0 => "back right",
         _ => "back left",
     };
-    format!("{height}{side}")
+    format!("{side}{height}")
 }
 
 #[cfg(test)]
@@ -140,7 +142,7 @@ mod tests {
     #[test]
     fn sides_are_spread() {
         let all = DIRECTIONS.map(direction);
-        assert_eq!(all.map(name), ["front", "back", "above left", "below right"]);
+        assert_eq!(all.map(name), ["front", "back", "left, from above", "right, from below"]);
         for (i, a) in all.iter().enumerate() {
             for b in &all[i + 1..] {
                 assert!(a.dot(*b) < 0.5, "{a} {b}");

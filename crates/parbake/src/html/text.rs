@@ -61,6 +61,28 @@ pub fn change(number: f64, decimals: usize) -> String {
     }
 }
 
+/// The class of a change that is shown with so many decimals: better, worse, or none
+/// where a reader sees no change.
+pub fn verdict(number: f64, decimals: usize, more_is_better: bool) -> &'static str {
+    match change(number, decimals).chars().next() {
+        Some('+') => {
+            if more_is_better {
+                "better"
+            } else {
+                "worse"
+            }
+        }
+        Some('−') => {
+            if more_is_better {
+                "worse"
+            } else {
+                "better"
+            }
+        }
+        _ => "",
+    }
+}
+
 /// `part` of `whole` in percent, as exact as is of interest.
 pub fn share(part: usize, whole: usize) -> String {
     let percent = 100.0 * part as f64 / whole.max(1) as f64;
@@ -118,6 +140,8 @@ mod tests {
         assert_eq!(change(-2.0, 1), "−2.0");
         assert_eq!(change(0.001, 1), "0.0");
         assert_eq!(change(f64::INFINITY, 1), "–");
+        assert_eq!(["better", "worse", ""], [0.006, -0.006, 0.004].map(|x| verdict(x, 2, true)));
+        assert_eq!(["worse", "better", ""], [1.0, -1.0, f64::NAN].map(|x| verdict(x, 0, false)));
         assert_eq!(share(0, 0), "0\u{202f}%");
         assert_eq!(share(1, 1_000_000), "&lt;\u{202f}0.1\u{202f}%");
         assert_eq!(share(1, 3), "33\u{202f}%");

@@ -20,7 +20,8 @@ const FARTHEST: f32 = 1000.0;
 
 /// A drawing over a square texture.
 pub struct UvLayout {
-    /// An `<svg>` with the classes `uv`, and `border` and `inside` for its lines.
+    /// An `<svg>` with the class `uv`; its lines have the classes `inside`, and `border`
+    /// with a `halo` behind, so that they show on any colour.
     pub svg: String,
     /// What was left out, if anything, in words.
     pub left_out: Option<&'static str>,
@@ -63,7 +64,8 @@ pub fn uv_layout(mesh: &Mesh) -> Option<UvLayout> {
     let svg = format!(
         concat!(
             r#"<svg class="uv" viewBox="0 0 {units} {units}" aria-hidden="true">"#,
-            r#"<path class="inside" d="{inside}"/><path class="border" d="{borders}"/></svg>"#
+            r##"<path class="inside" d="{inside}"/><defs><path id="borders" d="{borders}"/></defs>"##,
+            r##"<use class="halo" href="#borders"/><use class="border" href="#borders"/></svg>"##
         ),
         units = UNITS,
         inside = path(&inside),
@@ -108,13 +110,15 @@ mod tests {
         let uvs = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let svg = uv_layout(&mesh(&uvs, &[[0, 1, 2], [0, 2, 3]])).unwrap().svg;
         assert!(svg.contains(r#"class="inside" d="M0 0l4096 4096""#), "{svg}");
-        assert_eq!(svg.matches('l').count() - svg.matches("class").count(), 4 + 1, "{svg}");
+        let borders = "M0 0l0 4096M0 0l4096 0M0 4096l4096 0M4096 0l0 4096";
+        assert!(svg.contains(&format!(r#"id="borders" d="{borders}""#)), "{svg}");
     }
 
     /// Protects the page from coordinates without measure.
     #[test]
     fn odd_coordinates_stay_finite() {
-        let uvs = [[f32::NAN, 0.0], [f32::INFINITY, 1.0], [1e30, 0.5], [2.5, -3.5], [2.75, -3.5], [2.5, -3.25]];
+        let uvs =
+            [[f32::NAN, 0.0], [f32::INFINITY, 1.0], [1e30, 0.5], [2.5, -3.5], [2.75, -3.5], [2.5, -3.25]];
         let layout = uv_layout(&mesh(&uvs, &[[0, 1, 2], [0, 3, 4], [2, 3, 4], [3, 4, 5]])).unwrap();
         assert!(!layout.svg.contains("NaN") && !layout.svg.contains("inf\""), "{}", layout.svg);
         assert!(layout.svg.contains("M2048 2048"), "repeats into the texture: {}", layout.svg);

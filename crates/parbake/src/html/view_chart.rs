@@ -1,5 +1,5 @@
-//! Each compared view's decibels before and after, so that no bad view hides behind
-//! a mean.
+//! Each compared view's decibels before and after, on the first of the backgrounds,
+//! so that no bad view hides behind a mean.
 
 use super::axes::Axes;
 use super::figures::Evaluated;
@@ -8,9 +8,8 @@ use std::fmt::Write;
 
 /// The chart with its legend.
 pub fn view_chart(evaluated: &Evaluated) -> String {
-    // The grey background is the fair one: dark outlines do not vanish before it.
     let pairs: Vec<(f64, f64)> =
-        evaluated.views.iter().map(|v| (v.projected.psnr[0], v.baked.psnr[0])).collect();
+        evaluated.views.iter().map(|v| (v.projected[0].psnr, v.baked[0].psnr)).collect();
     // A free place at either end keeps the marks off the frame.
     let axes = Axes::new(pairs.len() + 1, pairs.iter().flat_map(|&(a, b)| [a, b]));
     let mut content = String::new();
@@ -20,8 +19,8 @@ pub fn view_chart(evaluated: &Evaluated) -> String {
             content,
             concat!(
                 r#"<g><title>view {}: {} dB projected, {} dB baked ({} dB)</title>"#,
-                r#"<path class="gain" d="M{:.1} {:.1}V{:.1}"/><circle class="move0" cx="{:.1}" cy="{:.1}" r="4.5"/>"#,
-                r#"<circle class="baked" cx="{:.1}" cy="{:.1}" r="5.5"/></g>"#
+                r#"<path class="gain" d="M{:.1} {:.1}V{:.1}"/><circle class="ring" cx="{:.1}" cy="{:.1}" r="5.5"/>"#,
+                r#"<circle class="baked" cx="{:.1}" cy="{:.1}" r="4"/></g>"#
             ),
             i + 1,
             decimal(before, 2),
@@ -40,7 +39,7 @@ pub fn view_chart(evaluated: &Evaluated) -> String {
         (0..=pairs.len()).map(|i| if i == 0 { String::new() } else { i.to_string() }).collect();
     axes.svg("PSNR of each view before and after", ("view", "dB"), &labels, &content)
         + concat!(
-            r#"<ul class="legend"><li><svg viewBox="0 0 14 14" aria-hidden="true"><circle class="move0" cx="7" cy="7" r="5"/></svg>projected</li>"#,
-            r#"<li><svg viewBox="0 0 14 14" aria-hidden="true"><circle class="baked" cx="7" cy="7" r="5.5"/></svg>baked</li></ul>"#
+            r#"<ul class="legend"><li><svg viewBox="0 0 14 14" aria-hidden="true"><circle class="ring" cx="7" cy="7" r="5.5"/></svg>projected</li>"#,
+            r#"<li><svg viewBox="0 0 14 14" aria-hidden="true"><circle class="baked" cx="7" cy="7" r="4"/></svg>baked</li></ul>"#
         )
 }

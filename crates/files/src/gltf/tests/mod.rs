@@ -1,9 +1,11 @@
-//! Reading and writing glTF: tiny documents made by hand.
+//! Reading glTF: tiny documents made by hand.
+
+mod textures;
+mod writing;
 
 use super::*;
 use crate::NoResources;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
-use parbake_model::{Image, Material, Mesh, TextureSlot, UvTransform, Wrap};
 use serde_json::{Value, json};
 
 fn read_value(document: &Value) -> Result<Loaded, String> {
@@ -248,96 +250,90 @@ fn primitives_with_different_attributes_merge() {
     assert_eq!(model.materials[1].base_color, [1.0, 0.0, 0.0, 1.0]);
 }
 
-/// Protects models without their pictures: a warning, and no texture.
+/// Protects documents with several scenes, and nodes that are switched off.
 #[test]
-fn missing_images_are_warnings() {
+fn only_the_default_scene_is_shown() {
     let mut document = document(&TRIANGLE);
-    document["materials"] = json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
-    document["textures"] = json!([{ "source": 0 }]);
-    document["images"] = json!([{ "uri": "gone.png" }]);
-    document["meshes"][0]["primitives"][0]["material"] = 0.into();
-    let loaded = read_value(&document).unwrap();
-    assert_eq!(loaded.model.materials[0].base_color_texture, None);
-    assert!(loaded.warnings[0].contains("gone.png"), "{:?}", loaded.warnings);
-    document["images"] = json!([{ "uri": "data:image/png;base64,AAAA" }]);
-    assert!(read_value(&document).unwrap_err().contains("image \"image 0\""));
+    document["nodes"] = json!([
+        { "mesh": 0 },
+        { "mesh": 0, "translation": [5, 0, 0], "children": [2] },
+        { "mesh": 0, "extensions": { "KHR_node_visibility": { "visible": false } }, "children": [3] },
+        { "mesh": 0 },
+    ]);
+    document["scenes"] = json!([{ "nodes": [0] }, { "nodes": [1] }]);
+    let positions = |d: &Value| read_value(d).unwrap().model.mesh.positions;
+    assert_eq!(positions(&document)[0], Vec3::ZERO, "the first, as no default is given");
+    document["scene"] = 1.into();
+    assert_eq!(positions(&document).len(), 3, "invisible nodes take their children along");
+    assert_eq!(positions(&document)[0], Vec3::X * 5.0);
+    assert!(read_value(&document).unwrap().warnings[0].contains("invisible"));
 }
 
-fn model() -> Model {
-    let mesh = Mesh {
-        positions: vec![Vec3::ZERO, Vec3::X, Vec3::new(0.1, 0.2, -0.3), Vec3::splat(3.3)],
-        normals: vec![Vec3::Z, Vec3::X, Vec3::Y, Vec3::new(0.6, 0.8, 0.0)],
-        tangents: vec![
-            Vec4::new(1.0, 0.0, 0.0, -1.0),
-            Vec4::Y + Vec4::W,
-            Vec4::Z + Vec4::W,
-            Vec4::Z + Vec4::W,
-        ],
-        uvs: vec![Vec2::new(0.1, -0.7), Vec2::ONE, Vec2::X, Vec2::Y],
-        uvs1: vec![Vec2::new(0.3, 0.9); 4],
-        colors: vec![Vec4::splat(0.3), Vec4::ONE, Vec4::W, Vec4::ONE],
-        triangles: vec![[0, 1, 2], [3, 2, 1]],
-        triangle_materials: vec![0, 0],
-    };
-    let transform = UvTransform { offset: Vec2::X * 0.1, rotation: 0.7, scale: Vec2::new(2.0, 3.0) };
-    let slot = TextureSlot { image: 0, uv_set: 1, wrap: [Wrap::Clamp, Wrap::Mirror], transform };
-    let material = Material {
-        name: "m".into(),
-        base_color: [0.1, 0.2, 0.3, 1.0],
-        base_color_texture: Some(slot),
-        normal_texture: Some(TextureSlot { image: 1, ..TextureSlot::default() }),
-        normal_scale: 0.3,
-        ..Material::default()
-    };
-    let images = vec![Image::solid("a", 2, 3, [1, 2, 3, 4]), Image::solid("b", 3, 2, [5, 6, 7, 255])];
-    Model { name: "x".into(), mesh, materials: vec![material], images }
-}
-
-/// Protects every bit of a model on its way through a GLB file.
+/// Protects EXT_mesh_gpu_instancing: each instance is placed inside its node.
 #[test]
-fn glb_comes_back_the_same() {
-    let model = model();
-    let bytes = glb_bytes(&model).unwrap();
-    assert_eq!(bytes, glb_bytes(&model).unwrap(), "deterministic");
-    let loaded = read_gltf_bytes(Path::new("x.glb"), &bytes, &NoResources, &Limits::default()).unwrap();
-    assert_eq!(loaded.warnings, [""; 0]);
-    assert_eq!(loaded.model, model);
+fn instances_are_placed() {
+    let mut document = document(&TRIANGLE);
+    let half = 0.5f32.sqrt();
+    let translation = add(&mut document, "VEC3", 5126, 2, &floats(&[0., 0., 0., 0., 0., 1.]));
+    let rotation = add(&mut document, "VEC4", 5126, 2, &floats(&[0., 0., 0., 1., 0., 0., half, half]));
+    document["nodes"][0] = json!({ "mesh": 0, "scale": [1, 1, 4], "extensions": { "EXT_mesh_gpu_instancing": {
+        "attributes": { "TRANSLATION": translation, "ROTATION": rotation } } } });
+    let mesh = read_value(&document).unwrap().model.mesh;
+    assert_eq!((mesh.triangles.len(), mesh.positions[0], mesh.positions[1]), (2, Vec3::ZERO, Vec3::X));
+    assert!(mesh.positions[4].distance(Vec3::new(0.0, 1.0, 4.0)) < 1e-6, "{}", mesh.positions[4]);
+    document["accessors"][rotation]["count"] = 1.into();
+    assert!(read_value(&document).unwrap_err().contains("differ in number"));
 }
 
-/// Protects the file's validity where the model has faults that can be mended.
+/// Protects the time that nodes can cost without adding triangles.
 #[test]
-fn invalid_vectors_and_missing_uvs_are_mended() {
-    let mut broken = model();
-    broken.mesh.normals[1] = Vec3::ZERO;
-    broken.mesh.tangents[2] = Vec4::ZERO;
-    broken.mesh.uvs.clear();
-    broken.mesh.uvs1.clear();
-    broken.mesh.triangle_materials[1] = 1;
-    broken.materials.push(Material::default());
-    let bytes = glb_bytes(&broken).unwrap();
-    let loaded = read_gltf_bytes(Path::new("x.glb"), &bytes, &NoResources, &Limits::default()).unwrap();
-    let mesh = &loaded.model.mesh;
-    assert!(mesh.normals.iter().all(|n| n.is_normalized()));
-    assert!(mesh.tangents.iter().all(|t| t.truncate().is_normalized() && t.w.abs() == 1.0));
-    assert!(mesh.uvs.iter().chain(&mesh.uvs1).all(|&uv| uv == Vec2::ZERO) && !mesh.uvs1.is_empty());
-    assert_eq!(loaded.model.materials.len(), 2);
+fn placings_are_bounded() {
+    let mut document = document(&TRIANGLE);
+    document["meshes"][0]["primitives"] = json!(vec![json!({ "attributes": {} }); 30]);
+    document["nodes"] = json!(vec![json!({ "mesh": 0 }); 30]);
+    document["scenes"] = json!([{ "nodes": (0..30).collect::<Vec<_>>() }]);
+    let limits = Limits { max_json_objects: 500, ..Limits::default() };
+    let error = read_limited(&document, &limits).unwrap_err();
+    assert!(error.contains("primitives placed by nodes: 510"), "{error}");
 }
 
-/// Protects large meshes: from 65536 vertices on indices take four bytes.
+/// Protects the words about documents that have no surface, and that they give way
+/// to the reason where there is one.
 #[test]
-fn many_vertices_take_long_indices() {
-    let mut large = model();
-    let last = large.mesh.positions.len();
-    large.mesh.positions.resize(65_536, Vec3::Z);
-    large.mesh.positions[last..].iter_mut().enumerate().for_each(|(i, p)| p.x = i as f32);
-    large.mesh = Mesh {
-        positions: std::mem::take(&mut large.mesh.positions),
-        triangles: (0..65_534).map(|i| [i, (i + 1) % 4, i + 2]).collect(),
-        triangle_materials: vec![0; 65_534],
-        ..Mesh::default()
-    };
-    let bytes = glb_bytes(&large).unwrap();
-    let loaded = read_gltf_bytes(Path::new("x.glb"), &bytes, &NoResources, &Limits::default()).unwrap();
-    assert_eq!(loaded.model.mesh.positions, large.mesh.positions);
-    assert!(loaded.model.mesh.triangles.contains(&[65_533, 2, 65_535]));
+fn emptiness_is_explained() {
+    type Change = fn(&mut Value);
+    let cases: [(Change, &str); 8] = [
+        (|d| d["meshes"] = json!([]), "/nodes/0/mesh: mesh 0"),
+        (
+            |d| {
+                d["meshes"] = json!([]);
+                d["nodes"] = json!([{}])
+            },
+            "the document has no meshes",
+        ),
+        (|d| d["meshes"][0]["primitives"] = json!([]), "its meshes are empty"),
+        (|d| d["meshes"][0]["primitives"][0]["mode"] = 1.into(), "only points and lines"),
+        (|d| d["meshes"][0]["primitives"][0]["attributes"] = json!({}), "its meshes have no positions"),
+        (|d| d["nodes"] = json!([{}]), "no mesh with triangles is in its scene"),
+        (
+            |d| {
+                d["nodes"] = json!([{}]);
+                d["textures"] = json!([{ "source": 3 }])
+            },
+            "/textures/0/source: image 3",
+        ),
+        (
+            |d| {
+                d["nodes"] = json!([{}]);
+                d["bufferViews"][0]["buffer"] = 2.into()
+            },
+            "/bufferViews/0/buffer: buffer 2",
+        ),
+    ];
+    for (change, expected) in cases {
+        let mut document = document(&TRIANGLE);
+        change(&mut document);
+        let error = read_value(&document).unwrap_err();
+        assert!(error.contains(expected), "{expected}: {error}");
+    }
 }

@@ -1,0 +1,174 @@
+//! The page: its head, what is most important, its sections in order.
+
+use super::figures::{BACKGROUNDS, Evaluated};
+use super::gallery::gallery;
+use super::loss_curve::loss_curve;
+use super::pictures::{AMPLIFIED, Side};
+use super::settings::settings;
+use super::tables;
+use super::text::{bytes, change, count, decimal, duration, escape, verdict};
+use super::textures::textures;
+use super::view_chart::view_chart;
+use crate::bake::Baked;
+use crate::error::BakeError;
+use crate::report::BakeReport;
+use parbake_model::Model;
+use std::fmt::Write;
+
+const STYLE: &str = include_str!("style.css");
+
+/// Puts everything together.
+pub fn page(high: &Model, baked: &Baked, evaluated: &Evaluated, sides: &[Side]) -> Result<String, BakeError> {
+    let report = &baked.report;
+    let name = match baked.model.name.trim() {
+        "" => "a model without a name".into(),
+        name => escape(name),
+    };
+    let mut out = format!(
+        concat!(
+            "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">",
+            r#"<meta name="viewport" content="width=device-width,initial-scale=1">"#,
+            r#"<meta name="color-scheme" content="light dark">"#,
+            // The browser itself keeps the page from fetching or running anything.
+            r#"<meta http-equiv="Content-Security-Policy" content="default-src 'none';img-src data:;style-src 'unsafe-inline'">"#,
+            "<title>{name} – Parbake</title><style>{style}</style></head>\n<body><main>"
+        ),
+        name = name,
+        style = STYLE
+    );
+    out += &header(&name, high, report, evaluated);
+    out += &notes(report, evaluated);
+    section(
+        &mut out,
+        "looks",
+        "Before and after",
+        &format!(
+            "Projected is what an ordinary baker delivers, baked is the result. Point at a picture, or tap it, to see \
+             the high-poly in its place. Differences are those of the values on screen, {AMPLIFIED} times as strong. \
+             The decibels are PSNR of these very pictures, on dark grey."
+        ),
+        &gallery(sides)?,
+    );
+    section(
+        &mut out,
+        "figures",
+        "Figures",
+        "",
+        &format!(
+            r#"<div class="pair"><div>{}</div><div><h3>Each view, on {}</h3>{}</div></div>"#,
+            tables::figures(evaluated),
+            BACKGROUNDS[0].0,
+            view_chart(evaluated)
+        ),
+    );
+    section(
+        &mut out,
+        "textures",
+        "Textures",
+        "",
+        &format!("{}<h3>Texels</h3>{}", textures(&baked.model)?, tables::texels(report)),
+    );
+    section(
+        &mut out,
+        "run",
+        "The run",
+        "",
+        &format!(
+            concat!(
+                r#"<div class="pair"><div><h3>Agreement with the training views</h3>{}</div>"#,
+                r#"<div><h3>Times</h3>{}</div></div><h3>Settings</h3>{}"#
+            ),
+            loss_curve(&report.losses),
+            tables::stages(report),
+            settings(&report.options)
+        ),
+    );
+    let _ = writeln!(out, "</main><footer>Parbake {}</footer></body></html>", env!("CARGO_PKG_VERSION"));
+    Ok(out)
+}
+
+fn section(out: &mut String, id: &str, title: &str, lead: &str, content: &str) {
+    let _ = write!(out, r#"<section id="{id}"><h2>{title}</h2>"#);
+    if !lead.is_empty() {
+        let _ = write!(out, r#"<p class="lead">{lead}</p>"#);
+    }
+    let _ = writeln!(out, "{content}</section>");
+}
+
+/// Name, headline figures and facts.
+fn header(name: &str, high: &Model, report: &BakeReport, evaluated: &Evaluated) -> String {
+    let mut out =
+        format!(r#"<header><p class="kicker">Parbake report</p><h1>{name}</h1><div class="headline">"#);
+    for (k, (background, _)) in BACKGROUNDS.iter().enumerate() {
+        let (before, after) = (evaluated.mean.projected[k].psnr, evaluated.mean.baked[k].psnr);
+        let _ = write!(
+            out,
+            concat!(
+                r#"<div><p class="where"><i class="{background}"></i>PSNR on {background}</p>"#,
+                r#"<p class="numbers"><span class="before">{before}</span> → <span class="after">{after}</span> dB</p>"#,
+                r#"<p class="gain"><span class="{verdict}">{gain} dB</span> <small>projected → baked</small></p></div>"#
+            ),
+            background = background,
+            before = decimal(before, 2),
+            after = decimal(after, 2),
+            verdict = verdict(after - before, 2, true),
+            gain = change(after - before, 2)
+        );
+    }
+    out += r#"</div><dl class="facts">"#;
+    let high_name = match high.name.trim() {
+        "" => String::new(),
+        name => format!(" <small>({})</small>", escape(name)),
+    };
+    let size = report.options.texture_size;
+    let mut facts = vec![
+        ("high-poly", format!("{} triangles{high_name}", count(report.high_triangles))),
+        ("low-poly", format!("{} triangles", count(report.low_triangles))),
+        ("textures", format!("{size} × {size}")),
+        ("training", format!("{} views, {} samples", count(report.views), count(report.samples))),
+        ("baked in", duration(tables::total_seconds(report))),
+    ];
+    if let Some(peak) = report.peak_memory {
+        facts.push(("peak memory", bytes(peak)));
+    }
+    for (term, fact) in facts {
+        let _ = write!(out, "<div><dt>{term}</dt><dd>{fact}</dd></div>");
+    }
+    out + "</dl></header>"
+}
+
+/// What a reader must not miss.
+fn notes(report: &BakeReport, evaluated: &Evaluated) -> String {
+    let mut notes: Vec<String> = report.warnings.iter().map(|w| escape(w)).collect();
+    if report.stopped_early {
+        notes.push("The run was stopped early; this is the best state it had reached.".into());
+    }
+    let worse: Vec<&str> =
+        (BACKGROUNDS.iter().zip(evaluated.mean.projected.iter().zip(&evaluated.mean.baked)))
+            .filter(|(_, (projected, baked))| verdict(baked.psnr - projected.psnr, 2, true) == "worse")
+            .map(|((name, _), _)| *name)
+            .collect();
+    if worse.len() == BACKGROUNDS.len() {
+        notes.push(
+            "The baked textures measure below the projected ones. That happens where training views are too few for \
+             the textures' size: try more <code>--views</code>, a slower <code>--preset</code> or a smaller \
+             <code>--texture-size</code>."
+                .into(),
+        );
+    } else if !worse.is_empty() {
+        let advice = if report.options.silhouette > 0.0 {
+            " Where the low-poly reaches beyond the high-poly's outline it was fitted to another background; a lower \
+             <code>--silhouette</code> treats all backgrounds more alike."
+        } else {
+            ""
+        };
+        notes.push(format!(
+            "On {} the baked textures measure below the projected ones.{advice}",
+            worse.join(" and ")
+        ));
+    }
+    if notes.is_empty() {
+        return String::new();
+    }
+    format!(r#"<ul class="notes"><li>{}</li></ul>"#, notes.join("</li><li>"))
+}
