@@ -120,4 +120,8 @@ impl Watcher for Console {
     fn stopped(&self) -> bool {
         interrupted() || self.deadline.is_some_and(|d| Instant::now() >= d)
     }
+
+    fn seconds_left(&self) -> Option<f64> {
+        self.deadline.map(|d| d.saturating_duration_since(Instant::now()).as_secs_f64())
+    }
 }

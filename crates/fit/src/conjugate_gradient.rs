@@ -6,7 +6,7 @@
 //! in double precision, row by row in order: the result does not depend on the
 //! number of threads.
 
-use crate::stencil::{Block, Stencil};
+use crate::stencil::{Block, Stencil, dot};
 use parbake_model::glam::Vec4;
 use rayon::prelude::*;
 
@@ -28,15 +28,6 @@ pub struct Outcome {
     pub reduction: f64,
 }
 
-fn dot(size: usize, a: &[Vec4], b: &[Vec4]) -> f64 {
-    let rows: Vec<f64> = a
-        .par_chunks(size)
-        .zip(b.par_chunks(size))
-        .map(|(a, b)| a.iter().zip(b).map(|(a, b)| f64::from(a.dot(*b))).sum())
-        .collect();
-    rows.iter().sum()
-}
-
 /// Solves `A x = b`, starting at zero. `free`, if given, holds 1 in lanes that may
 /// move and 0 in those that must not.
 pub fn solve<B: Block>(
@@ -51,30 +42,37 @@ pub fn solve<B: Block>(
     let inverse: Vec<B> = matrix.rows.par_iter().map(|r| r.centre.inverse()).collect();
     let mut x = vec![Vec4::ZERO; count];
     let mut r: Vec<Vec4> = right.par_iter().enumerate().map(|(i, b)| *b * mask(i)).collect();
-    let precondition = |r: &[Vec4], z: &mut [Vec4]| {
-        z.par_iter_mut().enumerate().for_each(|(i, z)| *z = inverse[i].product(r[i]) * mask(i));
-    };
-    let mut z = vec![Vec4::ZERO; count];
-    precondition(&r, &mut z);
+    // z is r preconditioned; masked like r, it keeps the direction p inside the mask,
+    // so that A p needs no mask of its own before it meets p.
+    let mut z: Vec<Vec4> =
+        r.par_iter().zip(&inverse).enumerate().map(|(i, (r, m))| m.product(*r) * mask(i)).collect();
     let mut p = z.clone();
     let mut q = vec![Vec4::ZERO; count];
-    let first = dot(size, &r, &z);
-    let mut rho = first;
-    let mut steps = 0;
+    let dots: Vec<f64> = r.par_chunks(size).zip(z.par_chunks(size)).map(|(r, z)| dot(r, z)).collect();
+    let first: f64 = dots.iter().sum();
+    let (mut rho, mut steps) = (first, 0);
     while steps < effort.steps && rho > first * effort.tolerance * effort.tolerance && rho > 1e-30 {
-        matrix.product(&p, &mut q);
-        if free.is_some() {
-            q.par_iter_mut().enumerate().for_each(|(i, q)| *q *= mask(i));
-        }
-        let curvature = dot(size, &p, &q);
+        let curvature = matrix.product(&p, &mut q);
         if curvature <= 0.0 {
             break;
         }
         let alpha = (rho / curvature) as f32;
-        x.par_iter_mut().zip(&p).for_each(|(x, p)| *x += *p * alpha);
-        r.par_iter_mut().zip(&q).for_each(|(r, q)| *r -= *q * alpha);
-        precondition(&r, &mut z);
-        let next = dot(size, &r, &z);
+        // One pass over all vectors: the memory is what they wait for.
+        let dots: Vec<f64> = (x.par_chunks_mut(size).zip(r.par_chunks_mut(size)))
+            .zip(z.par_chunks_mut(size))
+            .enumerate()
+            .map(|(row, ((x, r), z))| {
+                let mut sum = 0.0;
+                for (k, i) in (row * size..(row + 1) * size).enumerate() {
+                    x[k] += p[i] * alpha;
+                    r[k] -= q[i] * mask(i) * alpha;
+                    z[k] = inverse[i].product(r[k]) * mask(i);
+                    sum += f64::from(r[k].dot(z[k]));
+                }
+                sum
+            })
+            .collect();
+        let next: f64 = dots.iter().sum();
         let beta = (next / rho) as f32;
         p.par_iter_mut().zip(&z).for_each(|(p, z)| *p = *z + *p * beta);
         rho = next;

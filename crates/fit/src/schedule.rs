@@ -181,7 +181,8 @@ pub fn fit_textures(
             }
         }
     }
-    if !samples.is_empty() && !stopped {
+    // Also when there is no time left: what the last step brought would be lost.
+    if !samples.is_empty() && last != Move::Start {
         log.note(last, loss(&color_problem, &color, &normal), &color, &normal);
     }
     if let Some((_, c, n)) = log.best.take() {
@@ -194,6 +195,7 @@ pub fn fit_textures(
     gutter::fill(&mut normal, &known);
     let normal_picture = normal_image("normal", &normal);
     let rounded = normal_canvas(&normal_picture);
+    last = Move::Rounding;
     for _ in 0..schedule.final_steps {
         if samples.is_empty() || !advance(&mut stopped) {
             break;
@@ -202,6 +204,12 @@ pub fn fit_textures(
         let (loss, _) = color_step(&final_problem, &mut color, &rounded, &start.color, &mut color_rows);
         log.note(last, loss, &before, &rounded);
         last = Move::Color;
+    }
+    if last == Move::Color {
+        log.note(last, loss(&color_problem, &color, &rounded), &color, &rounded);
+    }
+    if let Some((_, best, _)) = log.best.take() {
+        color = best;
     }
     gutter::fill(&mut color, &known);
     let color_picture = color_image("base color", &color, srgb);

@@ -206,31 +206,50 @@ impl<B: Block> Stencil<B> {
         self.rows.par_iter().map(|r| r.right).collect()
     }
 
-    /// `y = A x`; `y` has the size of `x`.
-    pub fn product(&self, x: &[Vec4], y: &mut [Vec4]) {
+    /// `y = A x`; `y` has the size of `x`. Returns `xᵀ y`, summed by rows in order.
+    pub fn product(&self, x: &[Vec4], y: &mut [Vec4]) -> f64 {
         let size = self.size;
-        y.par_chunks_mut(size).enumerate().for_each(|(row, out)| {
-            let here = row * size;
-            let above = if row == 0 { size * (size - 1) } else { here - size };
-            let below = block(here, size)[2];
-            let (own, upper) = (&self.rows[here..here + size], &self.rows[above..above + size]);
-            let (x1, x0, x2) = (&x[here..here + size], &x[above..above + size], &x[below..below + size]);
-            for (i, out) in out.iter_mut().enumerate() {
-                let west = if i == 0 { size - 1 } else { i - 1 };
-                let east = if i + 1 == size { 0 } else { i + 1 };
-                let r = &own[i];
-                *out = r.centre.product(x1[i])
-                    + r.east.product(x1[east])
-                    + own[west].east.product(x1[west])
-                    + r.south.product(x2[i])
-                    + r.south_east.product(x2[east])
-                    + r.south_west.product(x2[west])
-                    + upper[i].south.product(x0[i])
-                    + upper[west].south_east.product(x0[west])
-                    + upper[east].south_west.product(x0[east]);
-            }
-        });
+        let dots: Vec<f64> = (y.par_chunks_mut(size).enumerate())
+            .map(|(row, out)| {
+                self.row_product(row, x, out);
+                dot(&x[row * size..(row + 1) * size], out)
+            })
+            .collect();
+        dots.iter().sum()
     }
+
+    fn row_product(&self, row: usize, x: &[Vec4], out: &mut [Vec4]) {
+        let size = self.size;
+        let here = row * size;
+        let above = if row == 0 { size * (size - 1) } else { here - size };
+        let below = block(here, size)[2];
+        let (own, upper) = (&self.rows[here..here + size], &self.rows[above..above + size]);
+        let (x1, x0, x2) = (&x[here..here + size], &x[above..above + size], &x[below..below + size]);
+        for (i, out) in out.iter_mut().enumerate() {
+            let r = &own[i];
+            // A texel that nothing pulls at is coupled to nothing: half a texture is empty.
+            if r.centre.trace() == 0.0 {
+                *out = Vec4::ZERO;
+                continue;
+            }
+            let west = if i == 0 { size - 1 } else { i - 1 };
+            let east = if i + 1 == size { 0 } else { i + 1 };
+            *out = r.centre.product(x1[i])
+                + r.east.product(x1[east])
+                + own[west].east.product(x1[west])
+                + r.south.product(x2[i])
+                + r.south_east.product(x2[east])
+                + r.south_west.product(x2[west])
+                + upper[i].south.product(x0[i])
+                + upper[west].south_east.product(x0[west])
+                + upper[east].south_west.product(x0[east]);
+        }
+    }
+}
+
+/// `aᵀ b` in double precision.
+pub fn dot(a: &[Vec4], b: &[Vec4]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| f64::from(a.dot(*b))).sum()
 }
 
 #[cfg(test)]

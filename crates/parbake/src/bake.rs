@@ -1,17 +1,17 @@
 //! A bake, from two models to a third.
 //!
 //! ```text
-//! high ─ make_shadeable ─ Scene ─ reference views ─┐
-//!                           └──── projection ──┐   │
-//! low ── make_shadeable ─ texel map, charts ─ start ┴ samples ─ fit ─ Model
+//! high ─ placed ─┬ Scene ──────┬ reference views ─┐
+//!                └ HighSurface ┴ projection ──┐   │
+//! low ── LowPoly (texel map, charts) ─────── start ┴ samples ─ fit ─ Model
 //! ```
 
 use crate::error::BakeError;
+use crate::low::LowPoly;
 use crate::message::{Message, Stage, Watcher};
 use crate::options::BakeOptions;
-use crate::pair::{common_frame, make_shadeable};
+use crate::pair::{common_frame, placed};
 use crate::report::{BakeReport, StageTime};
-use parbake_fit::atlas::Atlas;
 use parbake_fit::quantise::{color_image, normal_image};
 use parbake_fit::reference::render_references;
 use parbake_fit::samples::{Beyond, collect_samples};
@@ -19,20 +19,16 @@ use parbake_fit::schedule::fit_textures;
 use parbake_fit::start::project;
 use parbake_fit::views::{Rig, view_pool};
 use parbake_fit::watch;
-use parbake_mesh::{HighSurface, charts, texel_map};
+use parbake_mesh::HighSurface;
 use parbake_model::{Image, Material, Mesh, Model, TextureSlot, Wrap};
 use parbake_render::camera::Projection;
 use parbake_render::scene::Scene;
 use parbake_render::shade::Lambert;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// The training cameras: the paper's distance, and the field of view at which a
 /// model fills most of the picture.
 const RIG: Rig = Rig { radius: 3.5, projection: Projection::Perspective(0.4) };
-
-/// Charts are grown by so many texels: bilinear fetches reach one, the rest is for
-/// the borders of thin triangles.
-const CHART_RINGS: usize = 2;
 
 /// A finished bake.
 #[derive(Clone, Debug)]
@@ -46,7 +42,21 @@ pub struct Baked {
 }
 
 /// Passes the fit's messages on, and its question whether to stop.
-struct Bridge<'a, W>(&'a W);
+struct Bridge<'a, W> {
+    watcher: &'a W,
+    /// When a budget is spent, besides what the watcher says.
+    until: Option<Instant>,
+}
+
+impl<W: Watcher> Bridge<'_, W> {
+    /// The same for a stage that may take this share of the time that is left.
+    fn share(&self, share: f64) -> Self {
+        let own = self.until.map(|until| until.saturating_duration_since(Instant::now()).as_secs_f64());
+        let left = own.into_iter().chain(self.watcher.seconds_left()).reduce(f64::min);
+        let until = left.map(|left| Instant::now() + Duration::from_secs_f64((left * share).clamp(0.0, 1e9)));
+        Self { watcher: self.watcher, until }
+    }
+}
 
 impl<W: Watcher> watch::Watch for Bridge<'_, W> {
     fn progress(&self, stage: watch::Stage, done: usize, total: usize) {
@@ -56,13 +66,16 @@ impl<W: Watcher> watch::Watch for Bridge<'_, W> {
             watch::Stage::Sampling => Stage::Sampling,
             watch::Stage::Solve => Stage::Solve,
         };
-        self.0.message(Message::Progress { stage, done, total });
+        self.watcher.message(Message::Progress { stage, done, total });
     }
 
     fn should_stop(&self) -> bool {
-        self.0.stopped()
+        self.watcher.stopped() || self.until.is_some_and(|until| Instant::now() >= until)
     }
 }
+
+/// The reference pictures' share of a time budget: what they show must be solved for.
+const REFERENCE_SHARE: f64 = 0.3;
 
 struct Clock {
     since: Instant,
@@ -90,41 +103,26 @@ pub fn bake(
     options.check()?;
     let plan = options.plan();
     let (convention, size) = (options.convention, options.texture_size);
-    let bridge = Bridge(watcher);
-    let mut clock = Clock { since: Instant::now(), stages: Vec::new() };
-    let mut warnings = Vec::new();
-    let mut warn = |text: String| {
-        watcher.message(Message::Warning(text.clone()));
-        warnings.push(text);
-    };
-
-    let mut high = high.clone();
-    let frame = common_frame(&high)?;
-    make_shadeable(&mut high, false, false);
-    frame.apply(&mut high.mesh);
-    let mut written = low.clone();
-    if written.mesh.uvs.is_empty() {
-        return Err(BakeError::NoTextureCoordinates { model: low.name.clone() });
+    let begin = Instant::now();
+    let until = options.time_budget.map(|seconds| begin + Duration::from_secs_f64(seconds.min(1e9)));
+    let bridge = Bridge { watcher, until };
+    let mut clock = Clock { since: begin, stages: Vec::new() };
+    let frame = common_frame(high)?;
+    let mesh = placed(high, &frame);
+    let (low_poly, (scene, surface)) = rayon::join(
+        || LowPoly::new(low, &frame, size),
+        || {
+            rayon::join(
+                || Scene::new(mesh.clone(), &high.materials, &high.images, convention.interpretation()),
+                || HighSurface::new(&mesh),
+            )
+        },
+    );
+    let LowPoly { written, placed, map, atlas, warnings } = low_poly?;
+    drop(mesh);
+    for warning in &warnings {
+        watcher.message(Message::Warning(warning.clone()));
     }
-    let repaired = make_shadeable(&mut written, true, true);
-    if repaired > 0 && !low.mesh.normals.is_empty() {
-        warn(format!("{}: repaired {repaired} unusable normals", low.name));
-    }
-    let mut placed = written.mesh.clone();
-    frame.apply(&mut placed);
-    let map = texel_map(&placed, size);
-    let atlas = Atlas::new(&map, &charts(&placed), CHART_RINGS);
-    if !atlas.covered.contains(&true) {
-        return Err(BakeError::FlatTextureCoordinates { model: low.name.clone() });
-    }
-    if map.overlaps * 50 > size * size {
-        warn(format!(
-            "{}: {} texels are shared by several triangles and show a compromise; unwrap without overlaps to avoid that",
-            low.name, map.overlaps
-        ));
-    }
-    let scene = Scene::new(&high, convention.interpretation());
-    let surface = HighSurface::new(&high.mesh);
     clock.lap(Stage::Prepare);
 
     let start = project(&placed, &map, &atlas, &scene, &surface, 2.0 * options.reach);
@@ -132,7 +130,8 @@ pub fn bake(
     clock.lap(Stage::Start);
 
     let pool = view_pool(plan.views, &RIG, options.seed);
-    let references = render_references(&scene, &Lambert, &pool, &plan.reference, 1, &bridge);
+    let references =
+        render_references(&scene, &Lambert, &pool, &plan.reference, 1, &bridge.share(REFERENCE_SHARE));
     clock.lap(Stage::Reference);
 
     let beyond = match options.silhouette {
@@ -167,11 +166,11 @@ pub fn bake(
     };
     let projected = textured(
         low,
-        &written.mesh,
+        &written,
         color_image("base color", &start.color, srgb),
         normal_image("normal", &start.normal),
     );
-    Ok(Baked { model: textured(low, &written.mesh, fitted.color, fitted.normal), projected, report })
+    Ok(Baked { model: textured(low, &written, fitted.color, fitted.normal), projected, report })
 }
 
 /// The low-poly with one material of these two textures.

@@ -3,7 +3,7 @@
 
 use crate::error::BakeError;
 use crate::message::{Message, Stage, Watcher};
-use crate::pair::{common_frame, make_shadeable};
+use crate::pair::{common_frame, scene};
 use parbake_metric::Rgb;
 use parbake_model::Model;
 use parbake_render::camera::{Camera, Projection, fibonacci_sphere};
@@ -180,13 +180,8 @@ pub fn evaluate(
 ) -> Result<Evaluation, BakeError> {
     let background = options.checked_background()?;
     let frame = common_frame(high)?;
-    let scene = |model: &Model| {
-        let mut model = model.clone();
-        make_shadeable(&mut model, false, false);
-        frame.apply(&mut model.mesh);
-        Scene::new(&model, options.interpretation())
-    };
-    let (high, low) = (scene(high), scene(low));
+    let interpretation = options.interpretation();
+    let (high, low) = (scene(high, &frame, interpretation), scene(low, &frame, interpretation));
     let display = Display { gain: options.gain, curve: Curve::Srgb };
     let done = AtomicUsize::new(0);
     let views: Vec<ViewFigures> = fibonacci_sphere(options.views, 0.0)

@@ -20,6 +20,7 @@ mod bake;
 mod error;
 mod evaluate;
 mod html;
+mod low;
 mod memory;
 mod message;
 mod models;

@@ -51,6 +51,12 @@ pub trait Watcher: Sync {
     fn stopped(&self) -> bool {
         false
     }
+
+    /// Seconds until [`Watcher::stopped`] will be true, where that is known: long
+    /// stages then leave time to those after them.
+    fn seconds_left(&self) -> Option<f64> {
+        None
+    }
 }
 
 /// Nobody watches.

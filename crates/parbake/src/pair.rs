@@ -4,22 +4,30 @@
 
 use crate::error::BakeError;
 use parbake_mesh::{compute_tangents, ensure_normals};
-use parbake_model::{Bounds, Model, Placement};
-
-/// Gives a model what shading needs: unit normals, and tangents where a normal map
-/// asks for them or `tangents` says so. Tangents of the file are kept unless `fresh`.
-pub fn make_shadeable(model: &mut Model, tangents: bool, fresh: bool) -> usize {
-    let repaired = ensure_normals(&mut model.mesh);
-    let wanted = tangents || model.materials.iter().any(|m| m.normal_texture.is_some());
-    if wanted && (fresh || repaired > 0 || model.mesh.tangents.is_empty()) {
-        compute_tangents(&mut model.mesh);
-    }
-    repaired
-}
+use parbake_model::{Bounds, Mesh, Model, Placement};
+use parbake_render::scene::{Interpretation, Scene};
 
 /// The common frame of a pair.
 pub fn common_frame(high: &Model) -> Result<Placement, BakeError> {
     Bounds::of(&high.mesh)
         .and_then(|bounds| Placement::unit_box(&bounds))
         .ok_or_else(|| BakeError::NoExtent { model: high.name.clone() })
+}
+
+/// A copy of the model's mesh in the common frame, with all that its materials need
+/// for shading: unit normals, and tangents where there is a normal map.
+pub fn placed(model: &Model, frame: &Placement) -> Mesh {
+    let mut mesh = model.mesh.clone();
+    let repaired = ensure_normals(&mut mesh);
+    let mapped = model.materials.iter().any(|m| m.normal_texture.is_some());
+    if mapped && (repaired > 0 || mesh.tangents.is_empty()) {
+        compute_tangents(&mut mesh);
+    }
+    frame.apply(&mut mesh);
+    mesh
+}
+
+/// The model in the common frame, ready for rendering.
+pub fn scene(model: &Model, frame: &Placement, interpretation: Interpretation) -> Scene {
+    Scene::new(placed(model, frame), &model.materials, &model.images, interpretation)
 }

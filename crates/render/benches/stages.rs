@@ -1,8 +1,13 @@
 //! What each stage costs for each pixel that the model covers, forward and adjoint.
 //!
 //! The scene is a torus of 2,304 triangles in a view of 512², with 512² textures and
-//! mip levels. The small stages run on one thread; those of the whole view (`view_*`)
-//! on rayon's. Reported are items, covered pixels, per second.
+//! mip levels. Items are covered pixels, so nanoseconds a pixel are 1000 over the
+//! reported Mitem/s. What a stage reads comes from memory, what it returns goes there
+//! (`black_box`): in the pipeline most of it stays in registers, see `view_*`.
+//!
+//! Rasterisation and the stages of one pixel run on one thread, the others on rayon's:
+//! set `RAYON_NUM_THREADS=1` to compare all of them with one core's ceilings, which
+//! the bench `machine` measures.
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
@@ -11,9 +16,12 @@ use parbake_render::antialias::{Blends, find_blends};
 use parbake_render::background::{Background, Composer};
 use parbake_render::camera::{Camera, Projection};
 use parbake_render::display::{Curve, Display};
+use parbake_render::display_table::DisplayTable;
 use parbake_render::edges::EdgeAdjacency;
 use parbake_render::frame::{TangentLight, tangent_light, tangent_light_adjoint};
-use parbake_render::interpolate::{Barycentrics, barycentrics, barycentrics_adjoint, footprint_adjoint};
+use parbake_render::interpolate::{
+    Barycentrics, barycentrics, barycentrics_adjoint, footprint_adjoint, interpolate,
+};
 use parbake_render::loss::{Comparison, ImageLoss, Reference, compare};
 use parbake_render::pipeline::{self, Gradients, Surface, Textures, View};
 use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
@@ -138,6 +146,10 @@ impl Bench {
         ItemsCount::new(self.samples.len())
     }
 
+    fn texels(&self) -> ItemsCount {
+        ItemsCount::new(self.color.levels[0].texels.len())
+    }
+
     /// Each covered sample's coordinate, one that changes from pixel to pixel as a
     /// real one does.
     fn coordinates(&self) -> Vec<Vec2> {
@@ -146,9 +158,29 @@ impl Bench {
     }
 }
 
-const SURFACE: TangentLight =
-    TangentLight { light: Vec3::new(0.2, -0.3, 0.8), gram: [0.9, 0.7, 0.8, 0.1, -0.2, 0.05] };
-const GRADIENT: Vec3 = Vec3::new(0.4, -0.3, 0.2);
+/// What one sample's shading reads, and the gradients that come back.
+struct Shaded {
+    surface: TangentLight,
+    color: Vec3,
+    map_normal: Vec3,
+    gradient: Vec3,
+}
+
+const SHADED: Shaded = Shaded {
+    surface: TangentLight { light: Vec3::new(0.2, -0.3, 0.8), gram: [0.9, 0.7, 0.8, 0.1, -0.2, 0.05] },
+    color: Vec3::new(0.6, 0.5, 0.3),
+    map_normal: Vec3::new(0.1, 0.2, 0.9),
+    gradient: Vec3::new(0.4, -0.3, 0.2),
+};
+
+/// What one sample's frame reads besides its vertices.
+struct Lit {
+    to_light: Vec3,
+    handedness: f32,
+    facing: f32,
+}
+
+const LIT: Lit = Lit { to_light: Vec3::new(0.3, 0.2, 0.93), handedness: 1.0, facing: -1.0 };
 
 #[divan::bench]
 fn raster(bencher: Bencher) {
@@ -175,7 +207,8 @@ fn interpolate_adjoint(bencher: Bencher) {
     let b = Bench::new();
     bencher.counter(b.pixels()).bench_local(|| {
         for &(t, x, y) in &b.samples {
-            black_box(barycentrics_adjoint(&b.screen.triangles[t], x, y, [0.3, 0.2, 0.1]));
+            let gradient = black_box([0.3, 0.2, 0.1]);
+            black_box(barycentrics_adjoint(&b.screen.triangles[t], x, y, gradient));
         }
     });
 }
@@ -186,7 +219,28 @@ fn interpolate_adjoint_with_footprint(bencher: Bencher) {
     let g = Barycentrics { weights: [0.3, 0.2, 0.1], per_x: [1.0, 2.0, 3.0], per_y: [3.0, 2.0, 1.0] };
     bencher.counter(b.pixels()).bench_local(|| {
         for &(t, x, y) in &b.samples {
-            black_box(footprint_adjoint(&b.screen.triangles[t], x, y, &g, &g));
+            let g = black_box(&g);
+            black_box(footprint_adjoint(&b.screen.triangles[t], x, y, g, g));
+        }
+    });
+}
+
+/// What the vertices carry, blended: texture coordinate with its footprint, position,
+/// normal and tangent.
+#[divan::bench]
+fn interpolate_attributes(bencher: Bencher) {
+    let b = Bench::new();
+    let weights =
+        Barycentrics { weights: [0.3, 0.2, 0.5], per_x: [0.1, 0.2, -0.3], per_y: [-0.1, 0.3, -0.2] };
+    bencher.counter(b.pixels()).bench_local(|| {
+        for &(t, ..) in &b.samples {
+            let corners = b.triangles[t].map(|i| i as usize);
+            let w = black_box(&weights);
+            let uvs = corners.map(|i| b.uvs[i]);
+            black_box([w.weights, w.per_x, w.per_y].map(|w| interpolate(uvs, w)));
+            black_box(interpolate(corners.map(|i| b.positions[i]), w.weights));
+            black_box(interpolate(corners.map(|i| b.normals[i]), w.weights));
+            black_box(interpolate(corners.map(|i| b.tangents[i].truncate()), w.weights));
         }
     });
 }
@@ -196,8 +250,9 @@ fn frame_forward(bencher: Bencher) {
     let b = Bench::new();
     bencher.counter(b.pixels()).bench_local(|| {
         for &(t, ..) in &b.samples {
-            let v = b.triangles[t][0] as usize;
-            black_box(tangent_light(b.normals[v], b.tangents[v].truncate(), 1.0, Vec3::Z, 1.0));
+            let (v, lit) = (b.triangles[t][0] as usize, black_box(&LIT));
+            let tangent = b.tangents[v].truncate();
+            black_box(tangent_light(b.normals[v], tangent, lit.handedness, lit.to_light, lit.facing));
         }
     });
 }
@@ -207,13 +262,35 @@ fn frame_adjoint(bencher: Bencher) {
     let b = Bench::new();
     bencher.counter(b.pixels()).bench_local(|| {
         for &(t, ..) in &b.samples {
-            let v = b.triangles[t][0] as usize;
-            let tangent = b.tangents[v].truncate();
-            black_box(tangent_light_adjoint(b.normals[v], tangent, 1.0, Vec3::Z, 1.0, &SURFACE));
+            let (v, lit) = (b.triangles[t][0] as usize, black_box(&LIT));
+            let (normal, tangent) = (b.normals[v], b.tangents[v].truncate());
+            let gradient = &black_box(&SHADED).surface;
+            black_box(tangent_light_adjoint(
+                normal,
+                tangent,
+                lit.handedness,
+                lit.to_light,
+                lit.facing,
+                gradient,
+            ));
         }
     });
 }
 
+/// The level of detail of a footprint: one logarithm.
+#[divan::bench]
+fn texture_lod(bencher: Bencher) {
+    let b = Bench::new();
+    let footprint = (Vec2::new(0.004, 0.001), Vec2::new(-0.001, 0.003));
+    bencher.counter(b.pixels()).bench_local(|| {
+        for _ in &b.samples {
+            let (per_x, per_y) = *black_box(&footprint);
+            black_box(b.color.lod(per_x, per_y));
+        }
+    });
+}
+
+/// Bilinear at level of detail 0, trilinear at 0.7.
 #[divan::bench(args = [0.0, 0.7])]
 fn texture_forward(bencher: Bencher, lod: f32) {
     let b = Bench::new();
@@ -231,7 +308,8 @@ fn texture_adjoint_slopes(bencher: Bencher, lod: f32) {
     let uvs = b.coordinates();
     bencher.counter(b.pixels()).bench_local(|| {
         for &uv in &uvs {
-            black_box(b.color.slopes_at(&b.color.reach(uv, lod)).adjoint(&GRADIENT.to_array()));
+            let gradient = black_box([0.4, -0.3, 0.2]);
+            black_box(b.color.slopes_at(&b.color.reach(uv, lod)).adjoint(&gradient));
         }
     });
 }
@@ -240,7 +318,7 @@ fn texture_adjoint_slopes(bencher: Bencher, lod: f32) {
 fn texture_adjoint_scatter(bencher: Bencher, lod: f32) {
     let b = Bench::new();
     let fetches: Vec<_> = b.coordinates().into_iter().map(|uv| Fetch { uv, lod }).collect();
-    let gradients = vec![GRADIENT.to_array(); fetches.len()];
+    let gradients = vec![[0.4, -0.3, 0.2]; fetches.len()];
     let mut into = b.color.zeros_like();
     bencher.counter(b.pixels()).bench_local(|| {
         let gradients: Vec<_> = gradients.chunks(2048).collect();
@@ -253,7 +331,8 @@ fn shade_forward(bencher: Bencher) {
     let b = Bench::new();
     bencher.counter(b.pixels()).bench_local(|| {
         for _ in &b.samples {
-            black_box(Lambert.forward(black_box(&SURFACE), Vec3::ONE, Vec3::Z));
+            let s = black_box(&SHADED);
+            black_box(Lambert.forward(&s.surface, s.color, s.map_normal));
         }
     });
 }
@@ -263,11 +342,13 @@ fn shade_adjoint(bencher: Bencher) {
     let b = Bench::new();
     bencher.counter(b.pixels()).bench_local(|| {
         for _ in &b.samples {
-            black_box(Lambert.adjoint(black_box(&SURFACE), Vec3::ONE, Vec3::Z, GRADIENT));
+            let s = black_box(&SHADED);
+            black_box(Lambert.adjoint(&s.surface, s.color, s.map_normal, s.gradient));
         }
     });
 }
 
+/// Finding the silhouettes, which both directions share.
 #[divan::bench]
 fn antialias_find(bencher: Bencher) {
     let b = Bench::new();
@@ -275,36 +356,123 @@ fn antialias_find(bencher: Bencher) {
 }
 
 #[divan::bench]
-fn antialias_forward_and_adjoint(bencher: Bencher) {
+fn antialias_forward(bencher: Bencher) {
     let b = Bench::new();
     let (blends, mut rgba) = (b.blends(), b.picture.clone());
+    bencher.counter(b.pixels()).bench_local(|| blends.forward(&mut rgba));
+}
+
+#[divan::bench]
+fn antialias_adjoint(bencher: Bencher) {
+    let b = Bench::new();
+    let (blends, mut rgba) = (b.blends(), b.picture.clone());
+    let tape = blends.forward(&mut rgba);
+    bencher.counter(b.pixels()).bench_local(|| blends.adjoint(&tape, &mut rgba));
+}
+
+/// Values of a covered pixel that change from pixel to pixel, as curves see them.
+fn lights(b: &Bench) -> Vec<[f32; 4]> {
+    let at = |&(_, x, y): &(usize, f64, f64)| {
+        [x as f32 / SIZE as f32, y as f32 / SIZE as f32, 0.3, 1.0 - (x as f32) / (4 * SIZE) as f32]
+    };
+    b.samples.iter().map(at).collect()
+}
+
+/// Background and display together, as a pixel meets them.
+#[divan::bench]
+fn background_and_display_forward(bencher: Bencher) {
+    let b = Bench::new();
+    let lights = lights(&b);
     bencher.counter(b.pixels()).bench_local(|| {
-        let tape = blends.forward(&mut rgba);
-        blends.adjoint(&tape, &mut rgba)
+        for light in &lights {
+            black_box(b.composer.forward(light, 10, 20));
+        }
+    });
+}
+
+#[divan::bench]
+fn background_and_display_adjoint(bencher: Bencher) {
+    let b = Bench::new();
+    let composed: Vec<_> = lights(&b).iter().map(|light| b.composer.forward(light, 10, 20)).collect();
+    bencher.counter(b.pixels()).bench_local(|| {
+        for at in &composed {
+            let gradient = black_box([0.4, -0.3, 0.2]);
+            black_box(b.composer.adjoint(at, gradient, 10, 20));
+        }
+    });
+}
+
+/// The display curve alone, three channels a pixel.
+#[divan::bench]
+fn display_forward(bencher: Bencher) {
+    let b = Bench::new();
+    let (lights, display) = (lights(&b), Display { gain: 1.0, curve: Curve::Srgb });
+    bencher.counter(b.pixels()).bench_local(|| {
+        for &[r, g, b, _] in &lights {
+            black_box([r, g, b].map(|x| display.encode(x)));
+        }
+    });
+}
+
+/// Value and slope by a power, which is what the adjoint costs.
+#[divan::bench]
+fn display_with_derivative(bencher: Bencher) {
+    let b = Bench::new();
+    let (lights, display) = (lights(&b), Display { gain: 1.0, curve: Curve::Srgb });
+    bencher.counter(b.pixels()).bench_local(|| {
+        for &[r, g, b, _] in &lights {
+            black_box([r, g, b].map(|x| display.encode_with_derivative(x)));
+        }
+    });
+}
+
+/// The same from the table that the solvers use.
+#[divan::bench]
+fn display_table_with_derivative(bencher: Bencher) {
+    let b = Bench::new();
+    let (lights, display) = (lights(&b), DisplayTable::new(&Display { gain: 1.0, curve: Curve::Srgb }));
+    bencher.counter(b.pixels()).bench_local(|| {
+        for &[r, g, b, _] in &lights {
+            black_box([r, g, b].map(|x| display.encode_with_derivative(x)));
+        }
+    });
+}
+
+/// The loss of three channels and its derivative: one function gives both.
+#[divan::bench(args = [ImageLoss::L1, ImageLoss::L2, ImageLoss::LogL1])]
+fn loss_forward_and_adjoint(bencher: Bencher, image: ImageLoss) {
+    let b = Bench::new();
+    let lights = lights(&b);
+    bencher.counter(b.pixels()).bench_local(|| {
+        for &[r, g, b, wanted] in &lights {
+            black_box([r, g, b].map(|x| image.with_derivative(x, wanted)));
+        }
     });
 }
 
 /// Background, display and loss, forward and adjoint in one pass over all pixels.
 #[divan::bench(args = [ImageLoss::L1, ImageLoss::L2, ImageLoss::LogL1])]
-fn display_and_loss(bencher: Bencher, image: ImageLoss) {
+fn compare_picture(bencher: Bencher, image: ImageLoss) {
     let b = Bench::new();
     let comparison = Comparison { image, coverage: 1.0 };
     bencher.counter(b.pixels()).bench_local(|| compare(&b.picture, &b.composer, &b.reference, &comparison));
 }
 
+/// Items are texels of the finest level.
 #[divan::bench]
 fn mip_forward(bencher: Bencher) {
     let b = Bench::new();
     bencher
-        .counter(b.pixels())
+        .counter(b.texels())
         .with_inputs(|| b.color.levels[0].clone())
         .bench_local_values(Pyramid::from_base);
 }
 
+/// Items are texels of the finest level.
 #[divan::bench]
 fn mip_adjoint(bencher: Bencher) {
     let b = Bench::new();
-    bencher.counter(b.pixels()).with_inputs(|| b.color.clone()).bench_local_values(|p| p.base_adjoint());
+    bencher.counter(b.texels()).with_inputs(|| b.color.clone()).bench_local_values(|p| p.base_adjoint());
 }
 
 #[divan::bench]

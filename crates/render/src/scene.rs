@@ -16,7 +16,7 @@ use crate::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 use crate::shade::Shading;
 use crate::texture::{Level, Pyramid};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
-use parbake_model::{Image, Mesh, Model, TextureSlot};
+use parbake_model::{Image, Material, Mesh, TextureSlot};
 use rayon::prelude::*;
 
 /// What a file's numbers mean when they are rendered.
@@ -89,12 +89,17 @@ impl Scene {
     /// Unpacks every texture that a material uses.
     ///
     /// The mesh must have normals, and tangents if a material has a normal map.
-    pub fn new(model: &Model, interpretation: Interpretation) -> Self {
+    pub fn new(
+        mut mesh: Mesh,
+        materials: &[Material],
+        images: &[Image],
+        interpretation: Interpretation,
+    ) -> Self {
         let mut pyramids: Vec<Pyramid<3>> = Vec::new();
         let mut built: Vec<(usize, bool, [parbake_model::Wrap; 2], usize)> = Vec::new();
         let mut map = |slot: &Option<TextureSlot>, is_color: bool| {
             let slot = (*slot)?;
-            let image = model.images.get(slot.image)?;
+            let image = images.get(slot.image)?;
             let key = (slot.image, is_color, slot.wrap);
             let pyramid = match built.iter().find(|b| (b.0, b.1, b.2) == key) {
                 Some(b) => b.3,
@@ -117,8 +122,7 @@ impl Scene {
             };
             Some(Map { slot, pyramid, moved: slot.transform != Default::default() })
         };
-        let surfaces = model
-            .materials
+        let surfaces = materials
             .iter()
             .map(|m| {
                 let linear = Vec4::from(m.base_color).truncate();
@@ -134,7 +138,6 @@ impl Scene {
                 }
             })
             .collect();
-        let mut mesh = model.mesh.clone();
         if !interpretation.decode_srgb {
             for c in &mut mesh.colors {
                 *c = Vec4::from(c.to_array().map(encode_srgb));

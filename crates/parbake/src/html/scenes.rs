@@ -2,7 +2,7 @@
 
 use crate::bake::Baked;
 use crate::error::BakeError;
-use crate::pair::{common_frame, make_shadeable};
+use crate::pair::{common_frame, scene};
 use parbake_model::Model;
 use parbake_render::display::Display;
 use parbake_render::scene::Scene;
@@ -24,13 +24,7 @@ impl Scenes {
     pub fn new(high: &Model, baked: &Baked) -> Result<Self, BakeError> {
         let convention = baked.report.options.convention;
         let frame = common_frame(high)?;
-        // As `evaluate` does it, so that the figures are the same.
-        let scene = |model: &Model| {
-            let mut model = model.clone();
-            make_shadeable(&mut model, false, false);
-            frame.apply(&mut model.mesh);
-            Scene::new(&model, convention.interpretation())
-        };
+        let scene = |model: &Model| scene(model, &frame, convention.interpretation());
         Ok(Self {
             high: scene(high),
             projected: scene(&baked.projected),

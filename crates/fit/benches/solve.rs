@@ -1,0 +1,211 @@
+//! What the fit costs: making samples of views, one step of each texture, and the
+//! linear solver that both steps share.
+//!
+//! The scene is the built-in pair of models with 128 views of 192² and textures of
+//! 512², a fifth of a default bake. Items are samples, or texels and solver steps; all
+//! benches run on rayon's threads (set `RAYON_NUM_THREADS=1` for one core).
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use parbake_fit::atlas::Atlas;
+use parbake_fit::canvas::{Canvas, block};
+use parbake_fit::color::{Problem, color_step, footprint, loss};
+use parbake_fit::conjugate_gradient::{Effort, solve};
+use parbake_fit::membrane::Membrane;
+use parbake_fit::normal::normal_step;
+use parbake_fit::reference::{Reference, Sampling, render_references};
+use parbake_fit::samples::{Beyond, SampleSet, collect_samples};
+use parbake_fit::stencil::{Block, Diagonal, Row, Stencil, Symmetric, add_diagonal, add_symmetric};
+use parbake_fit::views::{Rig, view_pool};
+use parbake_mesh::demo::{demo_low, demo_model};
+use parbake_mesh::{charts, compute_tangents, ensure_normals, texel_map};
+use parbake_model::Mesh;
+use parbake_model::glam::{Vec3, Vec4};
+use parbake_render::camera::Projection;
+use parbake_render::display::{Curve, Display};
+use parbake_render::display_table::DisplayTable;
+use parbake_render::scene::{Interpretation, Scene};
+use parbake_render::shade::Lambert;
+use std::sync::LazyLock;
+
+const VIEWS: usize = 128;
+const VIEW_SIZE: usize = 192;
+const TEXTURE_SIZE: usize = 512;
+const DISPLAY: Display = Display { gain: 1.0, curve: Curve::Srgb };
+
+/// Solver steps of a bench: those of a step of the fit.
+const EFFORT: Effort = Effort { steps: 6, tolerance: 0.0 };
+
+fn main() {
+    divan::main();
+}
+
+struct Bench {
+    low: Mesh,
+    references: Vec<Reference>,
+    atlas: Atlas,
+    samples: SampleSet,
+    display: DisplayTable,
+    color: Canvas,
+    normal: Canvas,
+}
+
+/// Rendering the references takes longer than all benches.
+static BENCH: LazyLock<Bench> = LazyLock::new(|| {
+    let mut high = demo_model();
+    let mut low = demo_low(&high);
+    ensure_normals(&mut high.mesh);
+    ensure_normals(&mut low);
+    compute_tangents(&mut low);
+    let scene = Scene::new(&high, Interpretation::default());
+    let rig = Rig { radius: 3.5, projection: Projection::Perspective(0.4) };
+    let pool = view_pool(VIEWS, &rig, 0);
+    let sampling = Sampling { size: VIEW_SIZE, filter: 0.1875, samples: 1 };
+    let references = render_references(&scene, &Lambert, &pool, &sampling, VIEWS, &());
+    let atlas = Atlas::new(&texel_map(&low, TEXTURE_SIZE), &charts(&low), 2);
+    Bench {
+        samples: collect(&low, &references),
+        display: DisplayTable::new(&DISPLAY),
+        color: Canvas::solid(TEXTURE_SIZE, Vec4::new(0.5, 0.5, 0.5, 0.0)),
+        normal: Canvas::solid(TEXTURE_SIZE, Vec4::new(0.0, 0.0, 1.0, 0.0)),
+        low,
+        references,
+        atlas,
+    }
+});
+
+fn collect(low: &Mesh, references: &[Reference]) -> SampleSet {
+    let beyond = Beyond::Background([0.0; 3], 0.5);
+    collect_samples(low, references, VIEW_SIZE, TEXTURE_SIZE, &DISPLAY, beyond, &())
+}
+
+impl Bench {
+    fn problem(&self, membrane: Membrane) -> Problem<'_> {
+        let Self { samples, atlas, display, .. } = self;
+        Problem { samples, atlas, display, membrane, effort: EFFORT }
+    }
+
+    fn count(&self) -> ItemsCount {
+        ItemsCount::new(self.samples.len())
+    }
+
+    /// A matrix of all samples, of one block each, with something on the diagonal.
+    fn matrix<B: Block>(&self, add: impl Fn(&mut [Row<B>], [usize; 4], [f32; 4])) -> Stencil<B> {
+        let mut rows = vec![Row::default(); TEXTURE_SIZE * TEXTURE_SIZE];
+        for sample in self.samples.bands.iter().flatten() {
+            let (_, weights) = footprint(sample, TEXTURE_SIZE);
+            add(&mut rows, block(sample.texel as usize, TEXTURE_SIZE), weights);
+        }
+        for row in &mut rows {
+            row.centre.add(&B::identity(0.1));
+        }
+        Stencil { size: TEXTURE_SIZE, rows }
+    }
+
+    fn diagonal(&self) -> Stencil<Diagonal> {
+        self.matrix(|rows, places, w| add_diagonal(rows, places, w, Vec4::ONE, Vec4::ONE))
+    }
+
+    fn symmetric(&self) -> Stencil<Symmetric> {
+        let pull = Symmetric::outer(Vec3::new(0.3, 0.2, 0.9), 1.0);
+        self.matrix(|rows, places, w| add_symmetric(rows, places, w, &pull, Vec4::ONE))
+    }
+}
+
+const COLOR_MEMBRANE: Membrane = Membrane { stiffness: 3e-3, tether: 1e-5 };
+const NORMAL_MEMBRANE: Membrane = Membrane { stiffness: 0.2, tether: 1e-3 };
+
+/// From rendered views to samples sorted by their place on the texture.
+#[divan::bench(sample_size = 1, sample_count = 15)]
+fn sampling(bencher: Bencher) {
+    let b = &*BENCH;
+    bencher.counter(b.count()).bench_local(|| collect(&b.low, &b.references));
+}
+
+/// The loss alone: the forward half of a step.
+#[divan::bench(sample_size = 1, sample_count = 15)]
+fn loss_forward(bencher: Bencher) {
+    let b = &*BENCH;
+    let problem = b.problem(COLOR_MEMBRANE);
+    bencher.counter(b.count()).bench_local(|| loss(&problem, &b.color, &b.normal));
+}
+
+/// A whole step of the colours, solver included.
+#[divan::bench(sample_size = 1, sample_count = 15)]
+fn step_of_colors(bencher: Bencher) {
+    let b = &*BENCH;
+    let (problem, mut rows) = (b.problem(COLOR_MEMBRANE), Vec::new());
+    bencher
+        .counter(b.count())
+        .with_inputs(|| b.color.clone())
+        .bench_local_values(|mut color| color_step(&problem, &mut color, &b.normal, &b.color, &mut rows));
+}
+
+/// The same without solver steps: what is left is accumulation.
+#[divan::bench(sample_size = 1, sample_count = 15)]
+fn step_of_colors_unsolved(bencher: Bencher) {
+    let b = &*BENCH;
+    let problem = Problem { effort: Effort { steps: 0, ..EFFORT }, ..b.problem(COLOR_MEMBRANE) };
+    let mut rows = Vec::new();
+    bencher
+        .counter(b.count())
+        .with_inputs(|| b.color.clone())
+        .bench_local_values(|mut color| color_step(&problem, &mut color, &b.normal, &b.color, &mut rows));
+}
+
+/// A whole step of the normals, solver included.
+#[divan::bench(sample_size = 1, sample_count = 15)]
+fn step_of_normals(bencher: Bencher) {
+    let b = &*BENCH;
+    let (problem, mut rows) = (b.problem(NORMAL_MEMBRANE), Vec::new());
+    bencher.counter(b.count()).with_inputs(|| b.normal.clone()).bench_local_values(|mut normal| {
+        normal_step(&problem, &b.color, &mut normal, &b.normal, 6.0, &mut rows)
+    });
+}
+
+/// The same without solver steps.
+#[divan::bench(sample_size = 1, sample_count = 15)]
+fn step_of_normals_unsolved(bencher: Bencher) {
+    let b = &*BENCH;
+    let problem = Problem { effort: Effort { steps: 0, ..EFFORT }, ..b.problem(NORMAL_MEMBRANE) };
+    let mut rows = Vec::new();
+    bencher.counter(b.count()).with_inputs(|| b.normal.clone()).bench_local_values(|mut normal| {
+        normal_step(&problem, &b.color, &mut normal, &b.normal, 6.0, &mut rows)
+    });
+}
+
+fn product<B: Block>(bencher: Bencher, matrix: &Stencil<B>) {
+    let x = matrix.right();
+    let mut y = x.clone();
+    bencher.counter(ItemsCount::new(x.len())).bench_local(|| matrix.product(&x, &mut y));
+}
+
+fn conjugate_gradients<B: Block>(bencher: Bencher, matrix: &Stencil<B>) {
+    let right = matrix.right();
+    let items = ItemsCount::new(right.len() * EFFORT.steps);
+    bencher.counter(items).bench_local(|| solve(matrix, &right, None, &EFFORT));
+}
+
+/// Items are texels.
+#[divan::bench(sample_size = 1, sample_count = 30)]
+fn product_of_colors(bencher: Bencher) {
+    product(bencher, &BENCH.diagonal());
+}
+
+/// Items are texels.
+#[divan::bench(sample_size = 1, sample_count = 30)]
+fn product_of_normals(bencher: Bencher) {
+    product(bencher, &BENCH.symmetric());
+}
+
+/// Items are texels times solver steps.
+#[divan::bench(sample_size = 1, sample_count = 15)]
+fn solver_of_colors(bencher: Bencher) {
+    conjugate_gradients(bencher, &BENCH.diagonal());
+}
+
+/// Items are texels times solver steps.
+#[divan::bench(sample_size = 1, sample_count = 15)]
+fn solver_of_normals(bencher: Bencher) {
+    conjugate_gradients(bencher, &BENCH.symmetric());
+}
