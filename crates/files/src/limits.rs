@@ -31,7 +31,7 @@ impl Default for Limits {
             max_image_side: 16_384,
             max_image_pixels: 1 << 28,
             max_total_pixels: 1 << 29,
-            max_json_objects: 4_000_000,
+            max_json_objects: 2_000_000,
         }
     }
 }

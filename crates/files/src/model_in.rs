@@ -1,7 +1,7 @@
 //! One door for all model formats: chosen by the first bytes, then the extension.
 
 use crate::context::{Context, Textures};
-use crate::resources::read_file;
+use crate::resources::{begins_with, read_file};
 use crate::{FileError, Folder, Limits, Place, gltf, obj};
 use parbake_model::Model;
 use std::path::Path;
@@ -40,25 +40,27 @@ pub fn read_geometry(path: &Path, limits: &Limits) -> Result<Loaded, FileError> 
 fn read(path: &Path, limits: &Limits, textures: Textures) -> Result<Loaded, FileError> {
     let extension = path.extension().map(|e| e.to_ascii_lowercase()).unwrap_or_default();
     let known = ["obj", "gltf", "glb"].iter().any(|e| extension == *e);
-    let bytes = read_file(path, limits.max_file_bytes).map_err(|source| FileError::Read {
-        path: path.into(),
-        place: Place::File,
-        source,
-    })?;
+    let unreadable = |source| FileError::Read { path: path.into(), place: Place::File, source };
+    // What is no model may be gigabytes long; its first bytes are enough to say so.
+    if !known && !begins_with(path, gltf::MAGIC).map_err(unreadable)? {
+        return Err(FileError::UnknownFormat { path: path.into(), supported: SUPPORTED });
+    }
+    let bytes = read_file(path, limits.max_file_bytes).map_err(unreadable)?;
     let resources = Folder::beside(path);
     let context = Context::new(path, &resources, limits, textures);
-    if bytes.starts_with(gltf::MAGIC) || known && extension != "obj" {
+    if bytes.starts_with(gltf::MAGIC) || extension != "obj" {
         gltf::read(context, &bytes)
-    } else if known {
-        obj::read(context, &bytes)
     } else {
-        Err(FileError::UnknownFormat { path: path.into(), supported: SUPPORTED })
+        obj::read(context, &bytes)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::glb_bytes;
+    use parbake_model::glam::Vec3;
+    use parbake_model::{Material, Mesh};
 
     /// Protects the message for other formats: it says what can be read.
     #[test]
@@ -70,6 +72,33 @@ mod tests {
         assert!(error.contains("a.fbx") && error.contains(".obj"), "{error}");
         let missing = read_model(&folder.path().join("b.obj"), &Limits::default()).unwrap_err();
         assert!(missing.to_string().contains("cannot be read"), "{missing}");
+    }
+
+    /// Protects users from extensions that say nothing or the wrong thing, and from
+    /// what is no file.
+    #[test]
+    fn first_bytes_count_more_than_extensions() {
+        let folder = tempfile::tempdir().unwrap();
+        let model = Model {
+            mesh: Mesh {
+                positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+                triangles: vec![[0, 1, 2]],
+                triangle_materials: vec![0],
+                ..Mesh::default()
+            },
+            materials: vec![Material::default()],
+            ..Model::default()
+        };
+        let glb = glb_bytes(&model).unwrap();
+        for name in ["download", "a.bin", "a.obj", "a.gltf"] {
+            let path = folder.path().join(name);
+            std::fs::write(&path, &glb).unwrap();
+            assert_eq!(read_model(&path, &Limits::default()).unwrap().model.mesh, model.mesh, "{name}");
+        }
+        for path in [folder.path().to_path_buf(), folder.path().join("no/a.obj"), "/dev/zero".into()] {
+            let error = read_model(&path, &Limits::default()).unwrap_err();
+            assert!(matches!(error, FileError::Read { .. }), "{error}");
+        }
     }
 
     /// Protects capital extensions, as old exporters write them.

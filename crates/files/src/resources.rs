@@ -53,14 +53,27 @@ impl Resources for Folder {
     }
 }
 
+/// The length of a regular file; an error for anything else. To be asked before
+/// opening: opening a pipe would wait for its writer.
+fn length(path: &Path) -> io::Result<u64> {
+    match std::fs::metadata(path)? {
+        m if m.is_file() => Ok(m.len()),
+        m if m.is_dir() => Err(io::Error::from(io::ErrorKind::IsADirectory)),
+        _ => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file")),
+    }
+}
+
+/// Whether a file begins with these bytes.
+pub(crate) fn begins_with(path: &Path, magic: &[u8]) -> io::Result<bool> {
+    length(path)?;
+    let mut bytes = Vec::new();
+    File::open(path)?.take(magic.len() as u64).read_to_end(&mut bytes)?;
+    Ok(bytes == magic)
+}
+
 /// A whole file, if it is a regular one of at most `max_bytes`.
 pub(crate) fn read_file(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
-    // Asked before opening: opening a pipe would wait for its writer.
-    let length = match std::fs::metadata(path)? {
-        m if m.is_file() => m.len(),
-        m if m.is_dir() => return Err(io::Error::from(io::ErrorKind::IsADirectory)),
-        _ => return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file")),
-    };
+    let length = length(path)?;
     let too_large =
         |n: u64| io::Error::new(io::ErrorKind::FileTooLarge, format!("{n} bytes, the limit is {max_bytes}"));
     if length > max_bytes {

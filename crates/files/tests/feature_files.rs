@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// Reads a model that must have nothing odd about it.
 fn load(data: &Path, name: &str) -> Model {
-    let loaded = read_model(&data.join(name), &Limits::default()).unwrap();
+    let loaded = read_model(&data.join(name), &Limits::default()).expect(name);
     assert_eq!(loaded.warnings, [""; 0], "{name}");
     loaded.model
 }
@@ -32,7 +32,7 @@ fn texel(image: &Image, uv: Vec2) -> [u8; 4] {
 }
 
 fn named<'m>(model: &'m Model, name: &str) -> (usize, &'m Material) {
-    model.materials.iter().enumerate().find(|(_, m)| m.name == name).unwrap()
+    model.materials.iter().enumerate().find(|(_, m)| m.name == name).expect(name)
 }
 
 /// Protects KHR_texture_transform, its direction of turning and its own texCoord:

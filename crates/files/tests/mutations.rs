@@ -150,7 +150,7 @@ const GLTF: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0
     "pbrMetallicRoughness":{"baseColorFactor":[1,1,0.5,1],"baseColorTexture":{"index":0,"texCoord":0,
     "extensions":{"KHR_texture_transform":{"offset":[0,1],"scale":[2,2],"rotation":0.5}}}}}],
     "textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071,"wrapT":33648}],
-    "images":[{"uri":"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmMIQAAAABJRU5ErkJggg=="}],
+    "images":[{"uri":"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAAD0lEQVR4nGPUMLJhYGAAAALoAJiVjOJnAAAAAElFTkSuQmCC"}],
     "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
     {"bufferView":1,"componentType":5120,"normalized":true,"count":3,"type":"VEC3"},
     {"bufferView":1,"componentType":5123,"normalized":true,"count":3,"type":"VEC2"},
@@ -172,7 +172,7 @@ fn glb() -> Vec<u8> {
     };
     let base_color_texture = Some(TextureSlot::default());
     let materials = vec![Material { base_color_texture, ..Material::default() }];
-    glb_bytes(&Model { name: "m".into(), mesh, materials, images: vec![picture()] }).unwrap()
+    glb_bytes(&Model { name: "m".into(), mesh, materials, images: vec![picture()] }).expect("a whole model")
 }
 
 fn picture() -> Image {
@@ -212,7 +212,7 @@ fn check(result: Result<Loaded, FileError>) {
 
 /// Whole files, damaged in turn.
 fn seeds() -> Vec<Vec<u8>> {
-    let png = encode_png(&picture()).unwrap();
+    let png = encode_png(&picture()).expect("a whole picture");
     let mut seeds = vec![OBJ.into(), GLTF.into(), glb(), MTL.into(), png];
     // Not asked for through `data_folder`: the test is whole without them.
     let data = std::env::var_os("PARBAKE_DATA").map(PathBuf::from);

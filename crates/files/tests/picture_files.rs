@@ -8,7 +8,7 @@ use parbake_model::Image;
 use std::path::Path;
 
 fn read(data: &Path, name: &str) -> Image {
-    read_image(&data.join("bad").join(name), &Limits::default()).unwrap()
+    read_image(&data.join("bad").join(name), &Limits::default()).expect(name)
 }
 
 /// The mean difference of colour channels, in steps of 8 bits.

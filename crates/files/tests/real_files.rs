@@ -56,7 +56,7 @@ fn by_material(mesh: &Mesh) -> Vec<usize> {
 }
 
 /// The texels that a slot shows, and how.
-fn shown<'m>(model: &'m Model, slot: Option<TextureSlot>) -> Option<(&'m [[u8; 4]], TextureSlot)> {
+fn shown(model: &Model, slot: Option<TextureSlot>) -> Option<(&[[u8; 4]], TextureSlot)> {
     slot.map(|s| (model.images[s.image].pixels.as_slice(), TextureSlot { image: 0, ..s }))
 }
 

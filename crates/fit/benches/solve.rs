@@ -57,7 +57,7 @@ static BENCH: LazyLock<Bench> = LazyLock::new(|| {
     ensure_normals(&mut high.mesh);
     ensure_normals(&mut low);
     compute_tangents(&mut low);
-    let scene = Scene::new(&high, Interpretation::default());
+    let scene = Scene::new(high.mesh, &high.materials, &high.images, Interpretation::default());
     let rig = Rig { radius: 3.5, projection: Projection::Perspective(0.4) };
     let pool = view_pool(VIEWS, &rig, 0);
     let sampling = Sampling { size: VIEW_SIZE, filter: 0.1875, samples: 1 };

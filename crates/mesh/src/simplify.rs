@@ -54,19 +54,23 @@ enum Attempt {
     Clustered,
 }
 
-/// A coarser mesh. It misses the target by more than half only where even
-/// clustering does, or where `max_error` stops it.
+/// A result this near to the target is good enough: the logarithm of 1.5.
+const ENOUGH: f64 = 0.405;
+
+/// A coarser mesh: of the attempts the first that comes within half of the target,
+/// else the one that comes nearest.
 pub fn simplify(mesh: &Mesh, options: SimplifyOptions) -> Mesh {
     let target = options.target_triangles.max(1);
     let mut best = Mesh { tangents: Vec::new(), ..mesh.clone() };
+    let off = |mesh: &Mesh| (mesh.triangles.len() as f64 / target as f64).ln().abs();
     if mesh.triangles.len() > target {
         use Attempt::*;
         for attempt in [AllSeams, TextureSeams, CrossingSeams, ShapeOnly, Clustered] {
             let coarse = attempt.run(mesh, target, &options);
-            if !coarse.triangles.is_empty() && coarse.triangles.len() < best.triangles.len() {
+            if !coarse.triangles.is_empty() && off(&coarse) < off(&best) {
                 best = coarse;
             }
-            if 2 * best.triangles.len() <= 3 * target {
+            if off(&best) <= ENOUGH {
                 break;
             }
         }
@@ -89,6 +93,8 @@ impl Attempt {
             _ => {
                 let (attributes, weights) = attributes(&work, &positions, options, self == Self::AllSeams);
                 let unlocked = vec![false; positions.len()];
+                // Nothing is pruned while there are seams to keep: small parts cost less
+                // than seams, and all but the largest part of a model would go.
                 let flags = if self == Self::CrossingSeams { Flags::Permissive } else { Flags::None };
                 meshopt::simplify_with_attributes_and_locks_decoder(
                     &indices,
@@ -99,7 +105,7 @@ impl Attempt {
                     &unlocked,
                     count,
                     error,
-                    flags | Flags::Prune,
+                    flags,
                     None,
                 )
             }

@@ -3,6 +3,7 @@
 use crate::error::BakeError;
 use parbake_fit::atlas::Atlas;
 use parbake_mesh::{TexelMap, charts, compute_tangents, ensure_normals, texel_map};
+use parbake_model::glam::Vec2;
 use parbake_model::{Mesh, Model, Placement};
 
 /// Charts are grown by so many texels: bilinear fetches reach one, the rest is for
@@ -33,6 +34,7 @@ impl LowPoly {
         if written.uvs.is_empty() {
             return Err(BakeError::NoTextureCoordinates { model: model.name.clone() });
         }
+        written.uvs = texture_coordinates(model);
         let mut warnings = Vec::new();
         let repaired = ensure_normals(&mut written);
         if repaired > 0 && !model.mesh.normals.is_empty() {
@@ -55,5 +57,49 @@ impl LowPoly {
             ));
         }
         Ok(Self { written, placed, map, atlas, warnings })
+    }
+}
+
+/// Where each vertex falls on the low-poly's own texture: its first material's set
+/// of coordinates, moved as that material says. What is written is read without.
+fn texture_coordinates(model: &Model) -> Vec<Vec2> {
+    let mesh = &model.mesh;
+    let mut uvs = mesh.uvs.clone();
+    let mut moved = vec![false; uvs.len()];
+    for (triangle, &material) in mesh.triangles.iter().zip(&mesh.triangle_materials) {
+        let slot = model.materials.get(material as usize).and_then(|m| m.base_color_texture);
+        let Some(slot) = slot else { continue };
+        for corner in triangle.map(|i| i as usize) {
+            if !std::mem::replace(&mut moved[corner], true) {
+                let own = if slot.uv_set == 1 { mesh.uvs1.get(corner) } else { mesh.uvs.get(corner) };
+                uvs[corner] = slot.transform.apply(own.copied().unwrap_or_default());
+            }
+        }
+    }
+    uvs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parbake_model::{Material, TextureSlot, UvTransform};
+
+    /// Protects quantised files, whose raw coordinates lie far outside the texture,
+    /// and files that keep their unwrapped layout in the second set.
+    #[test]
+    fn the_materials_coordinates_are_baked_on() {
+        let transform = UvTransform { scale: Vec2::splat(0.5), ..UvTransform::default() };
+        let slot = TextureSlot { uv_set: 1, transform, ..TextureSlot::default() };
+        let mesh = Mesh {
+            uvs: vec![Vec2::ZERO; 4],
+            uvs1: vec![Vec2::ONE, Vec2::X, Vec2::Y, Vec2::ONE],
+            triangles: vec![[0, 1, 2]],
+            triangle_materials: vec![0],
+            ..Mesh::default()
+        };
+        let material = Material { base_color_texture: Some(slot), ..Material::default() };
+        let model = Model { mesh, materials: vec![material], ..Model::default() };
+        let half = Vec2::splat(0.5);
+        assert_eq!(texture_coordinates(&model), [half, Vec2::X * 0.5, Vec2::Y * 0.5, Vec2::ZERO]);
     }
 }

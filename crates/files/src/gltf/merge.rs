@@ -72,7 +72,7 @@ impl<'a, 'd> Merge<'a, 'd> {
         let Some(mesh) = meshes.get(instance.mesh) else {
             return Err(buffers.missing(&instance.from, "mesh", instance.mesh, meshes.len()));
         };
-        self.placed = self.placed.saturating_add(mesh.primitives.len() as u64);
+        self.placed = self.placed.saturating_add(mesh.primitives.len().max(1) as u64);
         let limit = buffers.context.limits.max_json_objects as u64;
         buffers.context.within(
             pointer(instance.from.clone()),

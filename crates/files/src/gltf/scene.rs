@@ -19,9 +19,16 @@ pub(super) struct Instance {
     pub world: DAffine3,
 }
 
-/// A node on the way to be visited: the node, its parent's transform, and by
-/// whom it was named (a parent or nobody; the place in the list).
-type Pending = (usize, DAffine3, Option<usize>, usize);
+/// The children of one node that are yet to be visited. One of these for each level
+/// is all that waits: lists of children may be long and say the same again and again.
+struct Level<'d> {
+    /// `None`: the scene, whose children are its roots.
+    parent: Option<usize>,
+    children: &'d [usize],
+    next: usize,
+    /// From the parent's space to the world.
+    world: DAffine3,
+}
 
 /// Calls `each` for every placing of a mesh, in the document's order.
 pub(super) fn visit(
@@ -37,10 +44,14 @@ pub(super) fn visit(
     }
     let (scene, roots) = roots(buffers)?;
     let mut visited = vec![false; document.nodes.len()];
-    // Reversed, as the last is taken first.
-    let mut pending: Vec<Pending> =
-        roots.iter().enumerate().rev().map(|(k, &n)| (n, DAffine3::IDENTITY, None, k)).collect();
-    while let Some((index, parent_world, parent, k)) = pending.pop() {
+    let mut levels = vec![Level { parent: None, children: &roots, next: 0, world: DAffine3::IDENTITY }];
+    while let Some(level) = levels.last_mut() {
+        let (k, parent, parent_world) = (level.next, level.parent, level.world);
+        let Some(&index) = level.children.get(k) else {
+            levels.pop();
+            continue;
+        };
+        level.next += 1;
         let from = || match parent {
             Some(parent) => format!("/nodes/{parent}/children/{k}"),
             None => format!("/scenes/{scene}/nodes/{k}"),
@@ -70,7 +81,7 @@ pub(super) fn visit(
                 None => each(Instance { mesh, from, world })?,
             }
         }
-        pending.extend(node.children.iter().enumerate().rev().map(|(k, &n)| (n, world, Some(index), k)));
+        levels.push(Level { parent: Some(index), children: &node.children, next: 0, world });
     }
     Ok(())
 }

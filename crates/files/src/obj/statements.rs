@@ -67,7 +67,7 @@ pub(super) fn read(bytes: &[u8], context: &Context<'_>) -> Result<Statements, Fi
                     corners.push(corner.map_err(|reason| context.invalid(Place::Line(line), reason))?);
                 }
                 let id = *material.get_or_insert_with(|| name_id(b"", &mut ids, &mut out.material_names));
-                out.face(&corners, id, context)?;
+                out.face(&corners, id, line, context)?;
             }
             b"usemtl" => material = Some(name_id(words.remainder(), &mut ids, &mut out.material_names)),
             b"mtllib" => out.libraries.push(words.remainder().to_vec()),
@@ -125,7 +125,13 @@ impl Statements {
         Ok(())
     }
 
-    fn face(&mut self, corners: &[Corner], material: u32, context: &Context<'_>) -> Result<(), FileError> {
+    fn face(
+        &mut self,
+        corners: &[Corner],
+        material: u32,
+        line: usize,
+        context: &Context<'_>,
+    ) -> Result<(), FileError> {
         let [first, rest @ ..] = corners else {
             self.short_faces += 1;
             return Ok(());
@@ -133,7 +139,7 @@ impl Statements {
         self.short_faces += usize::from(rest.len() < 2);
         let found = self.triangles.len() + rest.len().saturating_sub(1);
         let limit = context.limits.max_triangles.min(MOST_TRIANGLES);
-        context.within(Place::File, "triangles", found as u64, limit as u64)?;
+        context.within(Place::Line(line), "triangles", found as u64, limit as u64)?;
         if rest.len() > 2 {
             self.polygons.push((self.triangles.len() as u32, rest.len() as u32 - 1));
         }
@@ -252,7 +258,7 @@ mod tests {
             ("v 1 2 x", "\"x\" is not a number"),
             ("v 1 2 nan", "line 7: the position is not finite"),
             ("v 1 2 1e40", "line 7: the position is not finite"),
-            ("f 1 2 3 4 1 2 3 4", "triangles: 6, and the limit is 5"),
+            ("f 1 2 3 4 1 2 3 4", "line 7: triangles: 6, and the limit is 5"),
         ] {
             let error = with(text).err().unwrap_or_default();
             assert!(error.starts_with("a.obj") && error.contains(expected), "{text}: {error}");

@@ -10,12 +10,11 @@ use std::path::{Path, PathBuf};
 /// that leads nowhere is a failure, lest a test passes by looking at nothing.
 pub fn data_folder() -> Option<PathBuf> {
     let Some(folder) = std::env::var_os("PARBAKE_DATA").map(PathBuf::from) else {
-        // Not eprintln!, which the test runner swallows when a test passes.
         let test = std::thread::current().name().unwrap_or_default().to_string();
-        let _ = writeln!(
-            std::io::stderr(),
-            "SKIPPED {test}: set PARBAKE_DATA to the folder of test data to run it"
-        );
+        let line = format!("SKIPPED {test}: set PARBAKE_DATA to the folder of test data to run it\n");
+        // Not eprintln!, which the test runner swallows when a test passes; and in
+        // one piece, as tests run side by side.
+        let _ = std::io::stderr().write_all(line.as_bytes());
         return None;
     };
     assert!(folder.is_dir(), "PARBAKE_DATA is {}, which is no folder", folder.display());

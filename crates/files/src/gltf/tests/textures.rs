@@ -100,12 +100,12 @@ fn images_of_all_kinds() {
     document["images"] = json!([{ "name": "inside", "mimeType": "image/png", "bufferView": inside }]);
     let image = read_value(&document).unwrap().model.images.swap_remove(0);
     assert_eq!((image.name.as_str(), image.pixels[0]), ("inside", [4, 5, 6, 7]));
-    // One black texel.
-    let webp = "data:image/webp;base64,UklGRhoAAABXRUJQVlA4TA0AAAAvAAAAEAcQERGIiP4HAA==";
+    // One texel of (10, 20, 30).
+    let webp = "data:image/webp;base64,UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQiirUo/+BiOh/AAA=";
     document["images"] = json!([{ "uri": webp }]);
     document["textures"][0] = json!({ "extensions": { "EXT_texture_webp": { "source": 0 } } });
     document["extensionsRequired"] = json!(["EXT_texture_webp"]);
-    assert_eq!(read_value(&document).unwrap().model.images[0].width, 1);
+    assert_eq!(read_value(&document).unwrap().model.images[0].pixels, [[10, 20, 30, 255]]);
     document["textures"][0] = json!({ "extensions": { "KHR_texture_basisu": { "source": 0 } } });
     let loaded = read_value(&document).unwrap();
     assert!(loaded.warnings[0].contains("no image that can be read"), "{:?}", loaded.warnings);

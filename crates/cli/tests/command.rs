@@ -1,0 +1,124 @@
+//! The command as scripts and people meet it: files, exit codes, words, bytes.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{SMALL, demo_pair, json, parbake, run, text};
+use std::fs;
+
+/// Protects the first minute: everything from nothing, and better than projected.
+#[test]
+fn demo_makes_bakes_and_reports() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    run(folder, &[&["demo"][..], &SMALL].concat());
+    let out = folder.join("out");
+    assert_eq!(fs::read(out.join("demo.glb")).unwrap()[..4], *b"glTF");
+    assert!(fs::read_to_string(out.join("demo.html")).unwrap().contains("</html>"));
+    let report = json(&out.join("demo.json"));
+    let losses = report["losses"].as_array().unwrap();
+    let loss = |i: usize| losses[i]["mean_square"].as_f64().unwrap();
+    assert!(loss(losses.len() - 1) < 0.8 * loss(0), "{losses:?}");
+}
+
+/// Protects reproducible builds: the same bytes whatever the number of threads, and
+/// from a report's options; other bytes from another seed.
+#[test]
+fn the_same_question_has_the_same_answer() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    let bake = |name: &str, more: &[&str]| {
+        let arguments = ["bake", "demo_high.glb", "demo_low.glb", "-q", "-o", name];
+        run(folder, &[&arguments[..], more].concat());
+        fs::read(folder.join(name)).unwrap()
+    };
+    let one = bake("1.glb", &[&SMALL[..], &["--threads", "1", "--json", "1.json"]].concat());
+    assert!(one == bake("2.glb", &[&SMALL[..], &["--threads", "2"]].concat()));
+    assert!(one == bake("5.glb", &[&SMALL[..], &["--threads", "5"]].concat()));
+    let report = json(&folder.join("1.json"));
+    fs::write(folder.join("options.json"), report["options"].to_string()).unwrap();
+    assert!(one == bake("again.glb", &["--options", "options.json"]));
+    assert!(one != bake("seed.glb", &["--options", "options.json", "--seed", "7"]));
+}
+
+/// Protects scripts: one sentence that names the culprit, the right exit code, and
+/// nothing left behind.
+#[test]
+fn mistakes_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    fs::write(folder.join("bad.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 nan\nf 1 2 3\n").unwrap();
+    fs::write(folder.join("bare.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    fs::write(folder.join("typo.json"), r#"{"texture_sise": 64}"#).unwrap();
+    let pair = |a: &'static str, b: &'static str| vec!["bake", a, b, "-o", "never.glb"];
+    let good = || pair("demo_high.glb", "demo_low.glb");
+    let with = |more: &[&'static str]| [&good()[..], more].concat();
+    let cases = [
+        (pair("nothing.obj", "demo_low.glb"), 1, "nothing.obj"),
+        (pair("bad.obj", "demo_low.glb"), 1, "bad.obj, line 3"),
+        (pair("demo_high.glb", "bare.obj"), 1, "no texture coordinates"),
+        (with(&["--texture-size", "3"]), 2, "16 to 8192"),
+        (with(&["--options", "typo.json"]), 2, "texture_sise"),
+        (with(&["--no-such-option"]), 2, "--no-such-option"),
+        (vec!["bake", "demo_high.glb", "demo_low.glb", "-o", "never.fbx"], 2, ".glb or .obj"),
+        (vec!["bake", "demo_high.glb", "demo_low.glb", "-o", "nowhere/never.glb"], 2, "nowhere"),
+    ];
+    for (arguments, code, words) in cases {
+        let output = parbake(folder).args(&arguments).output().unwrap();
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
+        assert!(said.contains(words) && said.contains("error: "), "{arguments:?}: {said}");
+        assert!(!said.contains("panicked"), "{said}");
+    }
+    let left = fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+    assert!(left.into_iter().all(|name| !name.contains("never")), "nothing half done is left");
+}
+
+/// Protects pipelines with a deadline: a budget that is spent at once still gives a
+/// whole model, the projection.
+#[test]
+fn a_spent_budget_gives_the_projection() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    let arguments = ["bake", "demo_high.glb", "demo_low.glb", "-o", "a.glb", "--texture-size", "64"];
+    run(folder, &[&arguments[..], &["--time-budget", "0", "--json", "a.json"]].concat());
+    assert_eq!(json(&folder.join("a.json"))["stopped_early"], true);
+    run(folder, &["simplify", "a.glb", "-o", "b.glb", "--triangles", "100"]);
+}
+
+/// Protects people who lose patience: Ctrl-C writes the best state so far.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_writes_what_there_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    let mut child = parbake(folder)
+        .args(["bake", "demo_high.glb", "demo_low.glb", "-o", "a.glb", "-q"])
+        .args(["--rounds", "100", "--views", "64", "--json", "a.json"])
+        .spawn()
+        .unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(1500));
+    std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(fs::read(folder.join("a.glb")).unwrap()[..4], *b"glTF");
+    assert_eq!(json(&folder.join("a.json"))["stopped_early"], true);
+}
+
+/// Protects other tools' users: OBJ out is read again, with the same look.
+#[test]
+fn obj_and_glb_look_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    for name in ["a.glb", "a.obj"] {
+        let arguments = ["bake", "demo_high.glb", "demo_low.glb", "-q", "-o", name];
+        run(folder, &[&arguments[..], &SMALL].concat());
+    }
+    let same = common::psnr(folder, "a.glb".as_ref(), "a.obj".as_ref());
+    assert!(same > 60.0, "{same} dB");
+}

@@ -1,0 +1,68 @@
+//! Runs the built command as a user would, in a folder of its own.
+
+#![allow(dead_code, clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+use tempfile::TempDir;
+
+/// Options with which a bake takes a fraction of a second.
+pub const SMALL: [&str; 8] = ["--texture-size", "64", "--views", "12", "--view-size", "64", "--rounds", "1"];
+
+/// The command in this folder.
+pub fn parbake(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_parbake"));
+    command.current_dir(folder);
+    command
+}
+
+/// Runs it and wants success.
+pub fn run(folder: &Path, arguments: &[&str]) -> Output {
+    let output = parbake(folder).args(arguments).output().unwrap();
+    assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+    output
+}
+
+/// What it printed.
+pub fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// A JSON file.
+pub fn json(path: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+/// The built-in pair as files in this folder: `demo_high.glb` and `demo_low.glb`.
+pub fn demo_pair(folder: &Path) {
+    // Made once a program: its report takes longer than most of these tests.
+    static MADE: OnceLock<TempDir> = OnceLock::new();
+    let made = MADE.get_or_init(|| {
+        let made = tempfile::tempdir().unwrap();
+        run(made.path(), &[&["demo", "-o", ".", "-q"][..], &SMALL].concat());
+        made
+    });
+    for name in ["demo_high.glb", "demo_low.glb"] {
+        std::fs::copy(made.path().join(name), folder.join(name)).unwrap();
+    }
+}
+
+/// The folder of real models, or none with a word about it.
+pub fn real_models() -> Option<PathBuf> {
+    let folder = std::env::var_os("PARBAKE_DATA").map(PathBuf::from);
+    if folder.is_none() {
+        eprintln!("skipped: set PARBAKE_DATA to the folder of real models to run this test");
+    }
+    folder
+}
+
+/// PSNR of a comparison under the evaluator's own conventions.
+pub fn psnr(folder: &Path, high: &Path, low: &Path) -> f64 {
+    let arguments = ["eval", high.to_str().unwrap(), low.to_str().unwrap()];
+    let output =
+        run(folder, &[&arguments[..], &["--views", "24", "--no-flip", "--json", "-", "-q"]].concat());
+    let evaluation: Value = serde_json::from_slice(&output.stdout).unwrap();
+    evaluation["mean"]["psnr"].as_f64().unwrap()
+}

@@ -1,0 +1,59 @@
+//! Whole bakes of real models, by the figures that users would measure. Needs
+//! PARBAKE_DATA; the floors lie 0.3 dB below what was measured, since another
+//! machine's mathematics may differ in the last digit, not in decibels.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{psnr, real_models, run};
+use std::path::{Path, PathBuf};
+
+fn obj_in(folder: &Path) -> PathBuf {
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    files.sort();
+    files.into_iter().find(|p| p.extension().is_some_and(|e| e == "obj")).unwrap()
+}
+
+/// Protects the product's first promise: on low-polys of 34 to 104 triangles a bake
+/// looks far more like the high-poly than a projection.
+#[test]
+fn coarsest_levels_reach_their_figures() {
+    let Some(data) = real_models() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for (name, floor, gain) in [
+        ("chinese_hand_fan", 25.3, 2.4),
+        ("lego_figure", 24.2, 1.5),
+        ("lemon", 27.3, 0.7),
+        ("mask", 26.0, 1.9),
+    ] {
+        let pair = data.join("pairs").join(name);
+        let (high, low) = (pair.join("high/hp.obj"), obj_in(&pair.join("low_simplygon50")));
+        let bake = |output: &str, more: &[&str]| {
+            let arguments = ["bake", high.to_str().unwrap(), low.to_str().unwrap(), "-q", "-o", output];
+            run(folder, &[&arguments[..], more].concat());
+            psnr(folder, &high, output.as_ref())
+        };
+        let (baked, projected) = (bake("baked.glb", &[]), bake("projected.glb", &["--rounds", "0"]));
+        eprintln!("{name}: {projected:.2} dB projected, {baked:.2} dB baked");
+        assert!(baked >= floor && baked - projected >= gain, "{name}: {projected} {baked}");
+    }
+}
+
+/// Protects the way of a modern asset: a GLB with several textures is simplified,
+/// baked and compared, GLB to GLB.
+#[test]
+fn a_glb_goes_the_whole_way() {
+    let Some(data) = real_models() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let high = data.join("pbr/ExplodingBarrel/ExplodingBarrel.glb");
+    let name = high.to_str().unwrap();
+    run(folder, &["simplify", name, "-o", "low.glb", "--triangles", "800", "-q"]);
+    run(folder, &["bake", name, "low.glb", "-o", "baked.glb", "--preset", "fast", "-q"]);
+    let (before, after) =
+        (psnr(folder, &high, "low.glb".as_ref()), psnr(folder, &high, "baked.glb".as_ref()));
+    eprintln!("{before:.2} dB with the original's textures, {after:.2} dB baked");
+    assert!(after > before);
+}
