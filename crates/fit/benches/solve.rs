@@ -89,7 +89,8 @@ impl Bench {
         ItemsCount::new(self.samples.len())
     }
 
-    /// A matrix of all samples, of one block each, with something on the diagonal.
+    /// A matrix of all samples, of one block each, with something on the diagonal: no
+    /// texel is skipped, as those that nothing pulls at are in a bake.
     fn matrix<B: Block>(&self, add: impl Fn(&mut [Row<B>], [usize; 4], [f32; 4])) -> Stencil<B> {
         let mut rows = vec![Row::default(); TEXTURE_SIZE * TEXTURE_SIZE];
         for sample in self.samples.bands.iter().flatten() {

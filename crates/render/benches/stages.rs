@@ -155,7 +155,8 @@ impl Bench {
     /// Each covered sample's coordinate, one that changes from pixel to pixel as a
     /// real one does.
     fn coordinates(&self) -> Vec<Vec2> {
-        let at = |&(_, x, y): &(usize, f64, f64)| Vec2::new(x as f32, y as f32) * (1.7 / SIZE as f32);
+        let at =
+            |&(_, x, y): &(usize, f64, f64)| (Vec2::new(x as f32, y as f32) * (1.7 / SIZE as f32)).fract();
         self.samples.iter().map(at).collect()
     }
 }
