@@ -202,6 +202,8 @@ impl BakeOptions {
         };
         let view_size = self.view_size.unwrap_or(view_size);
         let rounds = self.rounds.unwrap_or(rounds);
+        // A projection is only looked at, to report its loss.
+        let views = if rounds == 0 { 16 } else { views };
         Plan {
             views: self.views.unwrap_or(views),
             reference: Sampling {
