@@ -6,8 +6,8 @@ use crate::options_file::merged;
 use crate::progress::{Console, interrupted};
 use clap::ArgMatches;
 use parbake::{
-    BakeOptions, BakeReport, Baked, Limits, Loaded, Message, Model, Stage, Watcher, bake, html_report,
-    read_model, with_threads, write_file, write_glb, write_obj,
+    BakeOptions, BakeReport, Baked, Limits, Loaded, Message, Model, Stage, StageTime, Watcher, bake,
+    html_report, read_model, with_threads, write_file, write_glb, write_obj,
 };
 use std::path::Path;
 
@@ -17,10 +17,10 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
     check_output(&command.output)?;
     let console = Console::new(command.talk, options.time_budget);
     with_threads(options.threads, || {
-        let (high, low) = read_pair(&command.high, &command.low, &console)?;
-        let baked = bake_and_write(&high, &low, &options, &command.output, &console)?;
+        let pair = read_pair(&command.high, &command.low, &console)?;
+        let baked = bake_and_write(&pair, &options, &command.output, &console)?;
         if let Some(path) = &command.report {
-            write_report(path, &high, &baked, &console)?;
+            write_report(path, &pair.high, &baked, &console)?;
         }
         if let Some(path) = &command.json {
             write_json(path, &baked.report)?;
@@ -55,43 +55,54 @@ pub fn write_model(path: &Path, model: &Model) -> Result<(), Failure> {
 }
 
 /// Reads one model and passes its warnings on.
-pub fn read(path: &Path, console: &Console) -> Result<Model, Failure> {
-    let Loaded { model, warnings } = read_model(path, &Limits::default())?;
-    for warning in warnings {
-        console.message(Message::Warning(warning));
+pub fn read(path: &Path, console: &Console) -> Result<Loaded, Failure> {
+    let loaded = read_model(path, &Limits::default())?;
+    for warning in &loaded.warnings {
+        console.message(Message::Warning(warning.clone()));
     }
-    Ok(model)
+    Ok(loaded)
+}
+
+/// Both models of a bake.
+pub struct Pair {
+    /// The detailed one.
+    pub high: Model,
+    /// The coarse one.
+    pub low: Model,
+    /// What their readers had to say.
+    pub warnings: Vec<String>,
+    /// Seconds that reading took; none for models that were not read.
+    pub seconds: Option<f64>,
 }
 
 /// Reads both models at once.
-pub fn read_pair(high: &Path, low: &Path, console: &Console) -> Result<(Model, Model), Failure> {
+pub fn read_pair(high: &Path, low: &Path, console: &Console) -> Result<Pair, Failure> {
     console.message(Message::Progress { stage: Stage::Read, done: 0, total: 2 });
     let begin = console.seconds();
     let (high, low) = parbake::join(|| read(high, console), || read(low, console));
-    let pair = (high?, low?);
-    console.detail(&format!("{:24} {:7.3} s", "reading", console.seconds() - begin));
-    Ok(pair)
+    let (high, low) = (high?, low?);
+    let warnings = [high.warnings, low.warnings].concat();
+    Ok(Pair { high: high.model, low: low.model, warnings, seconds: Some(console.seconds() - begin) })
 }
 
-/// Bakes and writes the model.
+/// Bakes and writes the model; completes the report with what happened around it.
 pub fn bake_and_write(
-    high: &Model,
-    low: &Model,
+    pair: &Pair,
     options: &BakeOptions,
     output: &Path,
     console: &Console,
 ) -> Result<Baked, Failure> {
-    let baked = bake(high, low, options, console)?;
-    for stage in &baked.report.stages {
-        console.detail(&format!(
-            "{:24} {:7.3} s",
-            format!("{:?}", stage.stage).to_lowercase(),
-            stage.seconds
-        ));
-    }
+    let mut baked = bake(&pair.high, &pair.low, options, console)?;
     let begin = console.seconds();
     write_model(output, &baked.model)?;
-    console.detail(&format!("{:24} {:7.3} s", "writing", console.seconds() - begin));
+    let report = &mut baked.report;
+    report.warnings.splice(0..0, pair.warnings.iter().cloned());
+    let reading = pair.seconds.map(|seconds| StageTime { stage: Stage::Read, seconds });
+    report.stages.splice(0..0, reading);
+    report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
+    for stage in &report.stages {
+        console.detail(&format!("{:24} {:7.3} s", stage.stage.label(), stage.seconds));
+    }
     Ok(baked)
 }
 

@@ -1,7 +1,7 @@
 //! `parbake demo`: everything from nothing.
 
 use crate::arguments::DemoCommand;
-use crate::bake::{bake_and_write, tell, write_json, write_report};
+use crate::bake::{Pair, bake_and_write, tell, write_json, write_report};
 use crate::failure::{Ending, Failure};
 use crate::progress::{Console, interrupted};
 use clap::ArgMatches;
@@ -18,9 +18,10 @@ pub fn run(command: &DemoCommand, _: &ArgMatches) -> Result<Ending, Failure> {
         write_glb(&folder.join("demo_high.glb"), &high)?;
         write_glb(&folder.join("demo_low.glb"), &low)?;
         let output = folder.join("demo.glb");
-        let baked = bake_and_write(&high, &low, &command.bake, &output, &console)?;
+        let pair = Pair { high, low, warnings: Vec::new(), seconds: None };
+        let baked = bake_and_write(&pair, &command.bake, &output, &console)?;
         let report = folder.join("demo.html");
-        write_report(&report, &high, &baked, &console)?;
+        write_report(&report, &pair.high, &baked, &console)?;
         write_json(&folder.join("demo.json"), &baked.report)?;
         console.finish();
         tell(&console, command.talk, &baked.report, &output);

@@ -10,8 +10,8 @@ use parbake::{ViewFigures, evaluate, with_threads};
 pub fn run(command: &EvalCommand) -> Result<Ending, Failure> {
     let console = Console::new(command.talk, None);
     with_threads(command.threads, || {
-        let (high, low) = read_pair(&command.high, &command.low, &console)?;
-        let evaluation = evaluate(&high, &low, &command.evaluate, &console)?;
+        let pair = read_pair(&command.high, &command.low, &console)?;
+        let evaluation = evaluate(&pair.high, &pair.low, &command.evaluate, &console)?;
         console.finish();
         let to_stdout = command.json.as_ref().is_some_and(|p| p.as_os_str() == "-");
         if let Some(path) = &command.json {

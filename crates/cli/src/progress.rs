@@ -38,19 +38,6 @@ pub struct Console {
     stage: Mutex<Option<(Stage, Instant)>>,
 }
 
-fn label(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Read => "reading",
-        Stage::Prepare => "preparing",
-        Stage::Reference => "rendering the high-poly",
-        Stage::Start => "projecting",
-        Stage::Sampling => "finding samples",
-        Stage::Solve => "solving for textures",
-        Stage::Evaluate => "comparing pictures",
-        Stage::Write => "writing",
-    }
-}
-
 /// Kept back from a time budget for encoding and writing, as a share and at least
 /// so many seconds.
 const RESERVE: (f64, f64) = (0.15, 0.12);
@@ -109,7 +96,7 @@ impl Watcher for Console {
                 {
                     *current = Some((stage, Instant::now()));
                     self.bar.reset();
-                    self.bar.set_message(label(stage));
+                    self.bar.set_message(stage.label());
                 }
                 self.bar.set_length(total as u64);
                 self.bar.set_position(done as u64);

@@ -13,7 +13,7 @@ pub fn run(command: &SimplifyCommand) -> Result<Ending, Failure> {
         return Err(Failure::Usage(format!("--triangles {}: at least 4", command.triangles)));
     }
     let console = Console::new(command.talk, None);
-    let model = read(&command.model, &console)?;
+    let model = read(&command.model, &console)?.model;
     let result = match command.subdivide {
         Some(times @ 1..=6) => (0..times).fold(model.clone(), |m, _| subdivided(&m)),
         Some(times) => return Err(Failure::Usage(format!("--subdivide {times}: 1 to 6"))),

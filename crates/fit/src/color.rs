@@ -35,6 +35,15 @@ pub struct Problem<'a> {
     pub effort: Effort,
 }
 
+impl Problem<'_> {
+    /// Compares the light at a sample with what it wants; also its part of the loss.
+    #[inline]
+    pub fn respond(&self, light: Vec4, sample: &Sample) -> (Response, f64) {
+        let response = respond(self.display, light, sample.target());
+        (response, f64::from(response.residual.length_squared() * sample.weight()))
+    }
+}
+
 /// Residual and slope of each channel's display value.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Response {
@@ -50,7 +59,7 @@ const DARK: f32 = 0.01;
 
 /// Compares what linear `light` shows with what was wanted.
 #[inline]
-pub fn respond(display: &DisplayTable, light: Vec4, target: Vec4) -> Response {
+fn respond(display: &DisplayTable, light: Vec4, target: Vec4) -> Response {
     let mut out = Response::default();
     for lane in 0..3 {
         let (mut shown, slope) = display.encode_with_derivative(light[lane].max(DARK));
@@ -91,8 +100,7 @@ pub fn loss(problem: &Problem, color: &Canvas, normal: &Canvas) -> f64 {
                 .map(|s| {
                     let (texels, w) = footprint(s, size);
                     let k = cosine(&s.light(), normal.fetch(texels, w).truncate()).max(0.0);
-                    let r = respond(problem.display, color.fetch(texels, w) * k, s.target()).residual;
-                    f64::from(r.length_squared() * s.weight())
+                    problem.respond(color.fetch(texels, w) * k, s).1
                 })
                 .sum()
         })
@@ -117,9 +125,9 @@ pub fn color_step(
             for s in &problem.samples.bands[band] {
                 let (texels, w) = footprint(s, size);
                 let k = cosine(&s.light(), normal.fetch(texels, w).truncate()).max(0.0);
-                let response = respond(problem.display, color.fetch(texels, w) * k, s.target());
+                let (response, share) = problem.respond(color.fetch(texels, w) * k, s);
+                loss += share;
                 let weight = s.weight();
-                loss += f64::from(response.residual.length_squared() * weight);
                 let j = response.slope * k;
                 let right = j * response.residual * -weight;
                 add_diagonal(local, local_places(texels, first, size), w, j * j * weight, right);

@@ -9,7 +9,7 @@
 //! turn towards the light if the reference is brighter, and left alone otherwise.
 
 use crate::canvas::{Canvas, gather};
-use crate::color::{Problem, footprint, local_places, respond};
+use crate::color::{Problem, footprint, local_places};
 use crate::conjugate_gradient::{Outcome, solve};
 use crate::membrane::{add_membrane, mean_pull};
 use crate::stencil::{Block, Row, Stencil, Symmetric, add_symmetric};
@@ -44,9 +44,9 @@ pub fn normal_step(
                 let (texels, w) = footprint(s, size);
                 let albedo = color.fetch(texels, w);
                 let (k, per_normal) = cosine_with_derivative(&s.light(), normal.fetch(texels, w).truncate());
-                let response = respond(problem.display, albedo * k.max(0.0), s.target());
+                let (response, share) = problem.respond(albedo * k.max(0.0), s);
+                loss += share;
                 let weight = s.weight();
-                loss += f64::from(response.residual.length_squared() * weight);
                 let j = response.slope * albedo;
                 let curvature = j.length_squared() * weight;
                 let pull = -j.dot(response.residual) * weight;

@@ -24,6 +24,22 @@ pub enum Stage {
     Write,
 }
 
+impl Stage {
+    /// What a person reads: "rendering the high-poly".
+    pub fn label(self) -> &'static str {
+        match self {
+            Stage::Read => "reading files",
+            Stage::Prepare => "preparing",
+            Stage::Reference => "rendering the high-poly",
+            Stage::Start => "projecting",
+            Stage::Sampling => "finding samples",
+            Stage::Solve => "solving for textures",
+            Stage::Evaluate => "comparing pictures",
+            Stage::Write => "writing files",
+        }
+    }
+}
+
 /// One message.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {

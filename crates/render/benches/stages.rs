@@ -23,10 +23,11 @@ use parbake_render::interpolate::{
     Barycentrics, barycentrics, barycentrics_adjoint, footprint_adjoint, interpolate,
 };
 use parbake_render::loss::{Comparison, ImageLoss, Reference, compare};
-use parbake_render::pipeline::{self, Gradients, Surface, Textures, View};
+use parbake_render::pipeline::{self, Gradients, View};
 use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 use parbake_render::scatter::{Fetch, Scatter};
 use parbake_render::shade::{Lambert, Shading};
+use parbake_render::surface::{Surface, Textures};
 use parbake_render::texture::{Level, Pyramid};
 use std::hint::black_box;
 

@@ -10,7 +10,8 @@
 //!
 //! `pipeline.rs` goes the whole way and back; `patch.rs` is its inner loop, from a
 //! triangle's samples to light. `slopes.rs` and `scatter.rs` are the two halves of the
-//! texture's adjoint: towards the coordinates and towards the texels. `scene.rs` renders
+//! texture's adjoint: towards the coordinates and towards the texels. `surface.rs` is
+//! what goes in. `scene.rs` renders
 //! whole models, forward only.
 //!
 //! Stages are pure functions over plain data: no hidden state, so that a GPU
@@ -33,4 +34,5 @@ pub mod scatter;
 pub mod scene;
 pub mod shade;
 pub mod slopes;
+pub mod surface;
 pub mod texture;

@@ -12,11 +12,11 @@
 use crate::camera::{Camera, Projection};
 use crate::frame::{TangentLight, tangent_light, tangent_light_adjoint};
 use crate::interpolate::{Barycentrics, barycentrics, footprint_adjoint, interpolate, planes_adjoint};
-use crate::pipeline::{Surface, Textures};
 use crate::raster::ScreenTriangle;
 use crate::scatter::Fetch;
 use crate::shade::Shading;
 use crate::slopes::Reach;
+use crate::surface::{Surface, Textures};
 use glam::DVec3;
 use parbake_model::glam::{Vec2, Vec3};
 

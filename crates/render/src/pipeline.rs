@@ -12,50 +12,15 @@
 use crate::antialias::{BlendTape, Blends, find_blends};
 use crate::background::Composer;
 use crate::camera::Camera;
-use crate::edges::EdgeAdjacency;
 use crate::loss::{Comparison, LossValue, Reference, compare};
 use crate::patch::{CornerGradients, Patch};
 use crate::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 use crate::scatter::{Fetch, Scatter};
 use crate::shade::Shading;
+use crate::surface::{Surface, Textures};
 use crate::texture::Pyramid;
-use parbake_model::glam::{Vec2, Vec3, Vec4};
+use parbake_model::glam::{Vec2, Vec3};
 use rayon::prelude::*;
-
-/// The mesh to be rendered.
-#[derive(Clone, Copy, Debug)]
-pub struct Surface<'a> {
-    /// V positions in the common frame.
-    pub positions: &'a [Vec3],
-    /// V normals, or none where the shading does not ask for them.
-    pub normals: &'a [Vec3],
-    /// V tangents with handedness, or none; only used with a normal texture.
-    pub tangents: &'a [Vec4],
-    /// V texture coordinates, v down.
-    pub uvs: &'a [Vec2],
-    /// F triangles.
-    pub triangles: &'a [[u32; 3]],
-    /// Of these triangles; needed for antialiasing only.
-    pub edges: &'a EdgeAdjacency,
-}
-
-/// What the surface is covered with. A pyramid of one level is fetched bilinearly.
-#[derive(Clone, Copy, Debug)]
-pub struct Textures<'a> {
-    /// Colours as shading sees them.
-    pub color: &'a Pyramid<3>,
-    /// Tangent-space normals, not normalised.
-    pub normal: Option<&'a Pyramid<3>>,
-    /// Both have the same sizes and wrap modes: most of the work on fetches is done once.
-    pub(crate) shared: bool,
-}
-
-impl<'a> Textures<'a> {
-    /// A colour texture and perhaps a normal texture, of any sizes.
-    pub fn new(color: &'a Pyramid<3>, normal: Option<&'a Pyramid<3>>) -> Self {
-        Self { color, normal, shared: normal.is_some_and(|map| map.same_shape(color)) }
-    }
-}
 
 /// From where the surface is seen, and what the picture is compared with.
 #[derive(Clone, Copy, Debug)]

@@ -13,8 +13,9 @@ use parbake_render::camera::{Camera, Projection};
 use parbake_render::display::{Curve, Display};
 use parbake_render::edges::EdgeAdjacency;
 use parbake_render::loss::{Comparison, ImageLoss, Reference};
-use parbake_render::pipeline::{Gradients, Surface, Tape, Textures, View, adjoint, forward};
+use parbake_render::pipeline::{Gradients, Tape, View, adjoint, forward};
 use parbake_render::shade::{Lambert, Unlit};
+use parbake_render::surface::{Surface, Textures};
 use parbake_render::texture::{Level, Pyramid};
 
 /// Uniform numbers (PCG's multiplier, top bits only).

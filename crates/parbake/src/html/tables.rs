@@ -4,7 +4,6 @@ use super::figures::{BACKGROUNDS, Evaluated};
 use super::settings::flags;
 use super::text::{NOTHING, change, count, decimal, duration, share, verdict};
 use crate::evaluate::{EvaluateOptions, ViewFigures};
-use crate::message::Stage;
 use crate::report::BakeReport;
 use std::fmt::Write;
 
@@ -101,19 +100,6 @@ pub fn texels(report: &BakeReport) -> String {
     out + "</tbody></table>"
 }
 
-fn stage_name(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Read => "reading files",
-        Stage::Prepare => "preparing",
-        Stage::Reference => "rendering the high-poly",
-        Stage::Start => "projecting",
-        Stage::Sampling => "finding samples",
-        Stage::Solve => "solving for textures",
-        Stage::Evaluate => "comparing pictures",
-        Stage::Write => "writing files",
-    }
-}
-
 /// Seconds of all stages together.
 pub fn total_seconds(report: &BakeReport) -> f64 {
     report.stages.iter().map(|s| s.seconds).sum()
@@ -128,7 +114,7 @@ pub fn stages(report: &BakeReport) -> String {
         let _ = write!(
             out,
             r#"<tr><th scope="row">{}</th><td>{}</td><td class="bar"><i style="width:{:.1}%"></i></td></tr>"#,
-            stage_name(stage.stage),
+            stage.stage.label(),
             duration(stage.seconds),
             if percent.is_finite() { percent } else { 0.0 }
         );
@@ -137,7 +123,7 @@ pub fn stages(report: &BakeReport) -> String {
         out,
         concat!(
             r#"<tr class="total"><th scope="row">together</th><td>{}</td><td></td></tr></tbody></table>"#,
-            r#"<p class="note">Without reading and writing files and without this report.</p>"#
+            r#"<p class="note">Without writing this report.</p>"#
         ),
         duration(total)
     );
