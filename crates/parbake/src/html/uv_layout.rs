@@ -64,7 +64,7 @@ pub fn uv_layout(mesh: &Mesh) -> Option<UvLayout> {
     let svg = format!(
         concat!(
             r#"<svg class="uv" viewBox="0 0 {units} {units}" aria-hidden="true">"#,
-            r##"<path class="inside" d="{inside}"/><defs><path id="borders" fill="none" d="{borders}"/></defs>"##,
+            r##"<path class="inside" d="{inside}"/><defs><path id="borders" d="{borders}" fill="none"/></defs>"##,
             r##"<use class="halo" href="#borders"/><use class="border" href="#borders"/></svg>"##
         ),
         units = UNITS,
