@@ -107,7 +107,7 @@ pub struct EvalCommand {
     #[arg(long)]
     pub per_view: bool,
 
-    /// Threads to work with, 0 for one a core
+    /// Threads to work with, 0 to 256, 0 for one a core
     #[arg(long, value_name = "COUNT", default_value_t = 0)]
     pub threads: usize,
 

@@ -4,7 +4,7 @@
 //! Vertices are split by material first: the triangles' materials can then be told
 //! from their vertices afterwards, and meshoptimizer keeps the two sides of a
 //! material's border together as it does those of a texture seam. Models that
-//! resist are tried again, each time with less to preserve; see [`Attempt`].
+//! resist are tried again, each time with less to preserve; see `Attempt`.
 //!
 //! Contract: the result uses only the input's vertices, is not empty unless the
 //! input is, and has no tangents.

@@ -130,7 +130,7 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "NUMBER", default_value_t = 0))]
     pub seed: u64,
 
-    /// Threads to work with, 0 for one a core; the result does not depend on it
+    /// Threads to work with, 0 to 256, 0 for one a core; the result does not depend on it
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 0))]
     pub threads: usize,
 
@@ -187,7 +187,7 @@ impl BakeOptions {
         within("views", self.views.unwrap_or(1) as f64, 1.0, 4096.0)?;
         within("view-size", self.view_size.unwrap_or(32) as f64, 32.0, 2048.0)?;
         within("rounds", self.rounds.unwrap_or(0) as f64, 0.0, 100.0)?;
-        within("threads", self.threads as f64, 0.0, 1024.0)?;
+        within("threads", self.threads as f64, 0.0, crate::threads::MOST_THREADS as f64)?;
         within("time-budget", self.time_budget.unwrap_or(0.0), 0.0, 1e9)
     }
 

@@ -2,8 +2,18 @@
 
 use crate::error::BakeError;
 
-/// Runs `work` on a pool of this many threads; 0 for one a core.
+/// More threads than any machine has cores would only take memory.
+pub(crate) const MOST_THREADS: usize = 256;
+
+/// Runs `work` on a pool of this many threads, at most 256; 0 for one a core.
 pub fn with_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> Result<R, BakeError> {
+    if threads > MOST_THREADS {
+        return Err(BakeError::Option {
+            option: "threads",
+            value: threads.to_string(),
+            range: format!("0 to {MOST_THREADS}"),
+        });
+    }
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
