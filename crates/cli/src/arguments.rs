@@ -35,7 +35,7 @@ pub struct Talk {
     #[arg(short, long)]
     pub verbose: bool,
 
-    /// Tell nothing but errors
+    /// Tell nothing but errors and what was asked for
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,
 }
@@ -53,7 +53,8 @@ pub struct BakeCommand {
     #[arg(short, long, value_name = "FILE", default_value = "baked.glb")]
     pub output: PathBuf,
 
-    /// A JSON file of options, as in a JSON report's "options"; the command line wins over it
+    /// A JSON file of options, or a JSON report whose options are taken; the command line wins
+    /// over it
     #[arg(long, value_name = "FILE")]
     pub options: Option<PathBuf>,
 
@@ -77,7 +78,7 @@ pub struct BakeCommand {
 /// Arguments of `demo`.
 #[derive(Args, Debug)]
 pub struct DemoCommand {
-    /// Folder for demo.glb, demo.html and the two models
+    /// Folder for demo.glb, demo.html, demo.json and the two models
     #[arg(short, long, value_name = "FOLDER", default_value = "out")]
     pub output: PathBuf,
 

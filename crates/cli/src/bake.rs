@@ -9,33 +9,49 @@ use parbake::{
     BakeOptions, BakeReport, Baked, Limits, Loaded, Message, Model, Stage, StageTime, Watcher, bake,
     html_report, read_model, with_threads, write_file, write_glb, write_obj,
 };
+use std::io::Write;
 use std::path::Path;
 
 /// Runs the command.
 pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure> {
     let options = merged(&command.bake, given, command.options.as_deref())?;
+    options.check()?;
     check_output(&command.output)?;
-    let console = Console::new(command.talk, options.time_budget);
+    check_outputs(command)?;
+    let console = Console::for_bake(command.talk, options.time_budget);
     with_threads(options.threads, || {
         let pair = read_pair(&command.high, &command.low, &console)?;
         let baked = bake_and_write(&pair, &options, &command.output, &console)?;
-        if let Some(path) = &command.report {
-            write_report(path, &pair.high, &baked, &console)?;
-        }
         if let Some(path) = &command.json {
             write_json(path, &baked.report)?;
         }
+        if let Some(path) = &command.report {
+            write_report(path, &pair.high, &baked, &console)?;
+        }
         console.finish();
         tell(&console, command.talk, &baked.report, &command.output);
-        Ok(if interrupted() { Ending::Interrupted } else { Ending::Finished })
+        Ok(ending(&baked.report))
     })?
 }
 
-/// Refuses what cannot be written before any work is done.
+/// Interrupted only if that cost anything: a report is finished all the same.
+pub fn ending(report: &BakeReport) -> Ending {
+    if interrupted() && report.stopped_early { Ending::Interrupted } else { Ending::Finished }
+}
+
+/// Refuses what cannot be written, before any work is done.
 pub fn check_output(path: &Path) -> Result<(), Failure> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     if !matches!(extension.as_str(), "glb" | "obj") {
         return Err(Failure::Usage(format!("{}: the output must end in .glb or .obj", path.display())));
+    }
+    check_place(path)
+}
+
+/// Refuses a file that has no folder to lie in, or would take a folder's place.
+fn check_place(path: &Path) -> Result<(), Failure> {
+    if path.is_dir() {
+        return Err(Failure::Usage(format!("{}: this is a folder; give it a file's name", path.display())));
     }
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
     match folder {
@@ -46,6 +62,42 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
         ))),
         _ => Ok(()),
     }
+}
+
+/// Refuses to write over an input: artists keep their only copy in such files.
+pub fn check_not_input(output: &Path, inputs: &[&Path]) -> Result<(), Failure> {
+    let whole = |path: &Path| path.canonicalize().ok();
+    // An OBJ takes its material file with it.
+    let written = [output.to_path_buf(), output.with_extension("mtl")];
+    for input in inputs {
+        let read = [input.to_path_buf(), input.with_extension("mtl")];
+        let hit = written
+            .iter()
+            .any(|w| whole(w).is_some_and(|w| read.iter().any(|r| whole(r).as_ref() == Some(&w))));
+        if hit {
+            return Err(Failure::Usage(format!(
+                "{}: this would overwrite the input {}; choose another name",
+                output.display(),
+                input.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn check_outputs(command: &BakeCommand) -> Result<(), Failure> {
+    let inputs = [command.high.as_path(), command.low.as_path()];
+    check_not_input(&command.output, &inputs)?;
+    let json = command.json.as_deref().filter(|path| path.as_os_str() != "-");
+    let others: Vec<&Path> = json.into_iter().chain(command.report.as_deref()).collect();
+    for (index, path) in others.iter().enumerate() {
+        check_place(path)?;
+        check_not_input(path, &inputs)?;
+        if *path == command.output || others[..index].contains(path) {
+            return Err(Failure::Usage(format!("{}: two outputs have this name", path.display())));
+        }
+    }
+    Ok(())
 }
 
 /// Writes a model as its extension says.
@@ -118,10 +170,19 @@ pub fn write_json(path: &Path, report: &impl serde::Serialize) -> Result<(), Fai
     let json =
         serde_json::to_string_pretty(report).map_err(|e| Failure::Output(format!("no JSON report: {e}")))?;
     if path.as_os_str() == "-" {
-        println!("{json}");
-        return Ok(());
+        return print(&json);
     }
     Ok(write_file(path, json.as_bytes())?)
+}
+
+/// Prints to standard output; a reader that has seen enough is no failure.
+pub fn print(text: &str) -> Result<(), Failure> {
+    match writeln!(std::io::stdout().lock(), "{text}") {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::Output(format!("standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The last lines: what came of it.

@@ -1,18 +1,19 @@
 //! `parbake demo`: everything from nothing.
 
 use crate::arguments::DemoCommand;
-use crate::bake::{Pair, bake_and_write, tell, write_json, write_report};
+use crate::bake::{Pair, bake_and_write, ending, tell, write_json, write_report};
 use crate::failure::{Ending, Failure};
-use crate::progress::{Console, interrupted};
+use crate::progress::Console;
 use clap::ArgMatches;
 use parbake::{demo_pair, with_threads, write_glb};
 
 /// Runs the command.
 pub fn run(command: &DemoCommand, _: &ArgMatches) -> Result<Ending, Failure> {
+    command.bake.check()?;
     let folder = &command.output;
     std::fs::create_dir_all(folder)
         .map_err(|e| Failure::Output(format!("{}: cannot make the folder: {e}", folder.display())))?;
-    let console = Console::new(command.talk, command.bake.time_budget);
+    let console = Console::for_bake(command.talk, command.bake.time_budget);
     with_threads(command.bake.threads, || {
         let (high, low) = demo_pair();
         write_glb(&folder.join("demo_high.glb"), &high)?;
@@ -26,6 +27,6 @@ pub fn run(command: &DemoCommand, _: &ArgMatches) -> Result<Ending, Failure> {
         console.finish();
         tell(&console, command.talk, &baked.report, &output);
         console.say(&format!("look at {}", report.display()));
-        Ok(if interrupted() { Ending::Interrupted } else { Ending::Finished })
+        Ok(ending(&baked.report))
     })?
 }

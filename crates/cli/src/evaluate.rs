@@ -1,14 +1,15 @@
 //! `parbake eval`.
 
 use crate::arguments::EvalCommand;
-use crate::bake::{read_pair, write_json};
+use crate::bake::{print, read_pair, write_json};
 use crate::failure::{Ending, Failure};
 use crate::progress::Console;
 use parbake::{ViewFigures, evaluate, with_threads};
 
 /// Runs the command.
 pub fn run(command: &EvalCommand) -> Result<Ending, Failure> {
-    let console = Console::new(command.talk, None);
+    command.evaluate.check()?;
+    let console = Console::new(command.talk);
     with_threads(command.threads, || {
         let pair = read_pair(&command.high, &command.low, &console)?;
         let evaluation = evaluate(&pair.high, &pair.low, &command.evaluate, &console)?;
@@ -18,13 +19,13 @@ pub fn run(command: &EvalCommand) -> Result<Ending, Failure> {
             write_json(path, &evaluation)?;
         }
         if !to_stdout {
-            println!("view    PSNR dB   MS-SSIM   FLIP");
-            if command.per_view {
-                for (index, view) in evaluation.views.iter().enumerate() {
-                    println!("{index:4}  {}", figures(view));
-                }
+            let mut table = String::from("view    PSNR dB   MS-SSIM   FLIP");
+            let shown = if command.per_view { &evaluation.views[..] } else { &[] };
+            for (index, view) in shown.iter().enumerate() {
+                table += &format!("\n{index:4}  {}", figures(view));
             }
-            println!("mean  {}", figures(&evaluation.mean));
+            table += &format!("\nmean  {}", figures(&evaluation.mean));
+            print(&table)?;
         }
         Ok(Ending::Finished)
     })?

@@ -12,7 +12,14 @@ pub fn merged(typed: &BakeOptions, given: &ArgMatches, file: Option<&Path>) -> R
     let Some(path) = file else { return Ok(typed.clone()) };
     let wrong = |reason: String| Failure::Usage(format!("{}: {reason}", path.display()));
     let text = std::fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
-    let from_file: BakeOptions = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
+    let mut json: Value = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
+    if let Some(options) = json.get_mut("options") {
+        json = options.take();
+    }
+    if !json.is_object() {
+        return Err(wrong("options are an object, {\"texture_size\": 1024, …}".into()));
+    }
+    let from_file: BakeOptions = serde_json::from_value(json).map_err(|e| wrong(e.to_string()))?;
     let as_map = |options: &BakeOptions| match serde_json::to_value(options) {
         Ok(Value::Object(map)) => map,
         _ => serde_json::Map::new(),

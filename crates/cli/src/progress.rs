@@ -43,9 +43,19 @@ pub struct Console {
 const RESERVE: (f64, f64) = (0.15, 0.12);
 
 impl Console {
-    /// Begins the clock of the time budget.
-    pub fn new(talk: Talk, time_budget: Option<f64>) -> Self {
+    /// For work that has nothing to show before its end: Ctrl-C ends it at once.
+    pub fn new(talk: Talk) -> Self {
+        Self::with_deadline(talk, None)
+    }
+
+    /// For a bake, which Ctrl-C ends with the best state so far. Begins the clock of
+    /// the time budget.
+    pub fn for_bake(talk: Talk, time_budget: Option<f64>) -> Self {
         catch_interrupts();
+        Self::with_deadline(talk, time_budget)
+    }
+
+    fn with_deadline(talk: Talk, time_budget: Option<f64>) -> Self {
         let begin = Instant::now();
         let deadline = time_budget.map(|seconds| {
             let work = (seconds - (seconds * RESERVE.0).clamp(RESERVE.1, 2.0)).max(0.0);

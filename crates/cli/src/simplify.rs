@@ -1,7 +1,7 @@
 //! `parbake simplify`.
 
 use crate::arguments::SimplifyCommand;
-use crate::bake::{check_output, read, write_model};
+use crate::bake::{check_not_input, check_output, read, write_model};
 use crate::failure::{Ending, Failure};
 use crate::progress::Console;
 use parbake::{simplified, subdivided};
@@ -9,10 +9,11 @@ use parbake::{simplified, subdivided};
 /// Runs the command.
 pub fn run(command: &SimplifyCommand) -> Result<Ending, Failure> {
     check_output(&command.output)?;
+    check_not_input(&command.output, &[&command.model])?;
     if command.triangles < 4 {
         return Err(Failure::Usage(format!("--triangles {}: at least 4", command.triangles)));
     }
-    let console = Console::new(command.talk, None);
+    let console = Console::new(command.talk);
     let model = read(&command.model, &console)?.model;
     let result = match command.subdivide {
         Some(times @ 1..=6) => (0..times).fold(model.clone(), |m, _| subdivided(&m)),

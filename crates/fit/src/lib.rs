@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! views → reference ─┐
-//!                    ├→ samples → color ⇄ normal → quantise → gutter
+//!                    ├→ samples → color ⇄ normal → gutter → quantise
 //! start (projection) ┘              │        │
 //!                                   └ stencil, conjugate_gradient
 //! ```

@@ -4,6 +4,7 @@ use crate::canvas::Canvas;
 use parbake_model::Image;
 use parbake_model::glam::{Vec3, Vec4};
 use parbake_render::display::{decode_srgb, encode_srgb};
+use rayon::prelude::*;
 
 fn round(x: f32) -> u8 {
     (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
@@ -14,7 +15,7 @@ fn round(x: f32) -> u8 {
 pub fn color_image(name: &str, canvas: &Canvas, srgb: bool) -> Image {
     let pixels = canvas
         .texels
-        .iter()
+        .par_iter()
         .map(|t| {
             let [r, g, b, _] = t.to_array().map(|x| {
                 let x = x.clamp(0.0, 1.0);
@@ -32,7 +33,7 @@ pub fn color_canvas(image: &Image, srgb: bool) -> Canvas {
         (0..=255u32).map(|i| if srgb { decode_srgb(i as f32 / 255.0) } else { i as f32 / 255.0 }).collect();
     let texels = image
         .pixels
-        .iter()
+        .par_iter()
         .map(|p| Vec4::new(table[p[0] as usize], table[p[1] as usize], table[p[2] as usize], 0.0))
         .collect();
     Canvas { size: image.width, texels }
@@ -42,7 +43,7 @@ pub fn color_canvas(image: &Image, srgb: bool) -> Canvas {
 pub fn normal_image(name: &str, canvas: &Canvas) -> Image {
     let pixels = canvas
         .texels
-        .iter()
+        .par_iter()
         .map(|t| {
             let m = t.truncate().normalize_or(Vec3::Z);
             let [x, y, z] = m.to_array().map(|x| round(0.5 * x + 0.5));
@@ -56,7 +57,7 @@ pub fn normal_image(name: &str, canvas: &Canvas) -> Image {
 pub fn normal_canvas(image: &Image) -> Canvas {
     let texels = image
         .pixels
-        .iter()
+        .par_iter()
         .map(|p| {
             let [x, y, z] = [p[0], p[1], p[2]].map(|v| f32::from(v) * (2.0 / 255.0) - 1.0);
             Vec4::new(x, y, z, 0.0)

@@ -149,6 +149,9 @@ pub fn fit_textures(
         !*stopped
     };
     for _ in 0..schedule.rounds {
+        if stopped {
+            break;
+        }
         for _ in 0..schedule.color_steps {
             if !advance(&mut stopped) {
                 break;
@@ -160,7 +163,7 @@ pub fn fit_textures(
         }
         let mut previous: Option<(f64, Canvas)> = None;
         for _ in 0..schedule.normal_steps {
-            if !advance(&mut stopped) {
+            if stopped || !advance(&mut stopped) {
                 break;
             }
             let before = normal.clone();
@@ -197,7 +200,7 @@ pub fn fit_textures(
     let rounded = normal_canvas(&normal_picture);
     last = Move::Rounding;
     for _ in 0..schedule.final_steps {
-        if samples.is_empty() || !advance(&mut stopped) {
+        if samples.is_empty() || stopped || !advance(&mut stopped) {
             break;
         }
         let before = color.clone();

@@ -1,7 +1,7 @@
 //! The start: the high-poly's colour and normal, projected onto the texture.
 //!
-//! Each texel on the surface asks the high-poly along its normal, from outside
-//! (`parbake_mesh::projection`); normals go into the texel's tangent frame,
+//! Each texel on the surface asks the high-poly along its normal, to either side, and
+//! where that finds nothing, for its closest point (`parbake_mesh::projection`); normals go into the texel's tangent frame,
 //! `m = F⁻¹ N` with F as in `frame.rs`, so that an evaluation there finds N again.
 //! Texels off the surface take the value of the nearest chart.
 //!
@@ -27,13 +27,14 @@ pub struct Start {
     pub color: Canvas,
     /// Unit tangent-space normals.
     pub normal: Canvas,
-    /// Texels on the surface that found nothing to project.
+    /// Texels on the surface that found nothing within reach along their normal and had
+    /// to take a point farther away.
     pub missed: usize,
 }
 
 /// Projects the high-poly onto each texel of the map.
 ///
-/// `reach` is how far outside the surface rays begin, in the common frame.
+/// `reach` is how far to either side of the surface a texel looks, in the common frame.
 pub fn project(
     low: &Mesh,
     map: &TexelMap,
@@ -44,7 +45,7 @@ pub fn project(
 ) -> Start {
     let size = map.size;
     let texel_width = texel_widths(low, size);
-    let projected: Vec<Option<(Vec4, Vec4)>> = (0..size * size)
+    let projected: Vec<Option<(Vec4, Vec4, f32)>> = (0..size * size)
         .into_par_iter()
         .map(|texel| {
             let triangle = map.triangle[texel] as usize;
@@ -66,12 +67,15 @@ pub fn project(
             let frame = Mat3::from_cols(tangent, bitangent, normal);
             let flat = frame.determinant().abs() < 1e-6;
             let mapped = if flat { Vec3::Z } else { frame.inverse() * found };
-            Some((color.clamp(Vec3::ZERO, Vec3::ONE).extend(0.0), upright(mapped.extend(0.0))))
+            let color = color.clamp(Vec3::ZERO, Vec3::ONE).extend(0.0);
+            Some((color, upright(mapped.extend(0.0)), hit.distance))
         })
         .collect();
     let known: Vec<bool> = projected.iter().map(Option::is_some).collect();
-    let missed = known.iter().zip(&atlas.covered).filter(|(k, c)| **c && !**k).count();
-    let plane = |of: fn(&(Vec4, Vec4)) -> Vec4, none: Vec4| {
+    let missed = (projected.iter().zip(&atlas.covered))
+        .filter(|(p, covered)| **covered && p.is_none_or(|(.., distance)| distance > reach))
+        .count();
+    let plane = |of: fn(&(Vec4, Vec4, f32)) -> Vec4, none: Vec4| {
         let texels = projected.iter().map(|p| p.as_ref().map_or(none, of)).collect();
         let mut canvas = Canvas { size, texels };
         gutter::fill(&mut canvas, &known);

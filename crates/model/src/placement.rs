@@ -38,24 +38,19 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Puts this box into [−1, 1]³. `None` when the box is a point.
+    /// Puts this box into [−1, 1]³. `None` when the box is a point, or has no measure in
+    /// single precision.
     pub fn unit_box(bounds: &Bounds) -> Option<Self> {
         let longest = bounds.size().max_element();
-        (longest > 0.0 && (2.0 / longest).is_finite())
-            .then(|| Self { centre: (bounds.min + bounds.max) * 0.5, scale: 2.0 / longest })
+        let placement = Self { centre: (bounds.min + bounds.max) * 0.5, scale: 2.0 / longest };
+        let usable = longest > 0.0 && longest.is_finite() && placement.scale.is_finite();
+        (usable && placement.centre.is_finite()).then_some(placement)
     }
 
     /// Into the common frame. Directions do not change.
     pub fn apply(&self, mesh: &mut Mesh) {
         for p in &mut mesh.positions {
             *p = (*p - self.centre) * self.scale;
-        }
-    }
-
-    /// Back into the file's frame.
-    pub fn undo(&self, mesh: &mut Mesh) {
-        for p in &mut mesh.positions {
-            *p = *p / self.scale + self.centre;
         }
     }
 }

@@ -142,6 +142,9 @@ pub fn bake(
     let samples = collect_samples(&placed, &references, plan.reference.size, size, &display, beyond, &bridge);
     let views = references.len();
     drop(references);
+    if samples.is_empty() {
+        return Err(BakeError::OutOfView { low: low.name.clone(), high: high.name.clone() });
+    }
     clock.lap(Stage::Sampling);
 
     let srgb = convention.decodes_srgb();

@@ -34,10 +34,20 @@ pub enum BakeError {
         model: String,
     },
     /// Nothing to look at.
-    #[error("{model}: all vertices lie in one point, so there is nothing to render")]
+    #[error("{model}: its vertices lie in one point or beyond all measure, so there is nothing to render")]
     NoExtent {
         /// The model's name.
         model: String,
+    },
+    /// No training view shows any of the low-poly.
+    #[error(
+        "{low} lies outside of every view of {high}; give both the same unit, origin and axes, so that they overlap"
+    )]
+    OutOfView {
+        /// The low-poly's name.
+        low: String,
+        /// The high-poly's name.
+        high: String,
     },
     /// The operating system refused to start threads.
     #[error("could not start {threads} threads: {source}")]

@@ -40,12 +40,12 @@ pub struct EvaluateOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", default_value_t = 43.602_818))]
     pub fov: f32,
 
-    /// Half the width of an orthographic view, in half lengths, instead of perspective
+    /// Half the width of an orthographic view, in half lengths, instead of perspective, 0.001 to 100
     /// [default: perspective]
     #[cfg_attr(feature = "clap", arg(long, value_name = "HALF_WIDTH"))]
     pub ortho: Option<f32>,
 
-    /// Strength of the light
+    /// Strength of the light, 0.001 to 100
     #[cfg_attr(feature = "clap", arg(long, default_value_t = 1.59))]
     pub gain: f32,
 
@@ -85,7 +85,11 @@ impl Default for EvaluateOptions {
 }
 
 impl EvaluateOptions {
-    /// Checks ranges and reads the background.
+    /// Checks every range; the error names the option and what it may be.
+    pub fn check(&self) -> Result<(), BakeError> {
+        self.checked_background().map(|_| ())
+    }
+
     fn checked_background(&self) -> Result<[f32; 3], BakeError> {
         let fail = |option, value: String, range: &str| {
             Err(BakeError::Option { option, value, range: range.into() })
@@ -107,9 +111,10 @@ impl EvaluateOptions {
         match self.background.as_str() {
             "black" => Ok([0.0; 3]),
             "white" => Ok([1.0; 3]),
-            "grey" | "gray" => Ok([0.5; 3]),
+            "grey" | "gray" => Ok([GREY; 3]),
             other => {
-                let numbers: Vec<f32> = other.split(',').filter_map(|n| n.trim().parse().ok()).collect();
+                let numbers: Result<Vec<f32>, _> = other.split(',').map(|n| n.trim().parse()).collect();
+                let numbers = numbers.unwrap_or_default();
                 match numbers[..] {
                     [r, g, b] if numbers.iter().all(|n| (0.0..=1.0).contains(n)) => Ok([r, g, b]),
                     _ => fail("background", other.into(), "black, white, grey or R,G,B"),
@@ -152,6 +157,9 @@ pub struct Evaluation {
     /// Each view's figures.
     pub views: Vec<ViewFigures>,
 }
+
+/// Linear light of a grey background, the independent evaluator's too.
+pub const GREY: f32 = 0.5;
 
 /// FLIP's viewing distance: pixels per degree of its authors' default monitor.
 const PIXELS_PER_DEGREE: f32 = 67.020_64;

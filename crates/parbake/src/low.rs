@@ -4,7 +4,7 @@ use crate::error::BakeError;
 use parbake_fit::atlas::Atlas;
 use parbake_mesh::{TexelMap, charts, compute_tangents, ensure_normals, texel_map};
 use parbake_model::glam::Vec2;
-use parbake_model::{Mesh, Model, Placement};
+use parbake_model::{Bounds, Mesh, Model, Placement};
 
 /// Charts are grown by so many texels: bilinear fetches reach one, the rest is for
 /// the borders of thin triangles.
@@ -44,6 +44,7 @@ impl LowPoly {
         compute_tangents(&mut written);
         let mut placed = written.clone();
         frame.apply(&mut placed);
+        warnings.extend(misplaced(model, &placed));
         let map = texel_map(&placed, size);
         let atlas = Atlas::new(&map, &charts(&placed), CHART_RINGS);
         if !atlas.covered.contains(&true) {
@@ -58,6 +59,27 @@ impl LowPoly {
         }
         Ok(Self { written, placed, map, atlas, warnings })
     }
+}
+
+/// A low-poly is as large as its high-poly within this factor, and its centre lies
+/// within half of the high-poly's box.
+const SIZE_FACTOR: f32 = 1.5;
+
+/// A word about a low-poly that is not where its high-poly is: in the common frame
+/// the high-poly's longest side is 2 and its centre the origin.
+fn misplaced(model: &Model, placed: &Mesh) -> Option<String> {
+    let bounds = Bounds::of(placed)?;
+    let factor = bounds.size().max_element() / 2.0;
+    let away = ((bounds.min + bounds.max) * 0.5).length();
+    let fits = (1.0 / SIZE_FACTOR..=SIZE_FACTOR).contains(&factor) && away <= 0.5;
+    (!fits).then(|| {
+        format!(
+            "{}: it is {factor:.3} times as large as the high-poly and lies {:.0} % of its length away; \
+             both should have the same unit, origin and axes",
+            model.name,
+            50.0 * away
+        )
+    })
 }
 
 /// Where each vertex falls on the low-poly's own texture: its first material's set

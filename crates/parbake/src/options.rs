@@ -62,7 +62,7 @@ pub enum Backdrop {
     /// Darkness, which shading at grazing light comes close to by itself.
     #[default]
     Black,
-    /// Middle grey.
+    /// Grey, of half the linear light of white.
     Grey,
     /// White.
     White,
@@ -73,7 +73,7 @@ impl Backdrop {
     pub fn light(self) -> [f32; 3] {
         match self {
             Backdrop::Black => [0.0; 3],
-            Backdrop::Grey => [0.214; 3],
+            Backdrop::Grey => [crate::evaluate::GREY; 3],
             Backdrop::White => [1.0; 3],
         }
     }
@@ -102,16 +102,22 @@ pub struct BakeOptions {
 
     /// How much pixels count where the low-poly reaches beyond the high-poly's silhouette, 0 to 1:
     /// 1 looks best on the backdrop's colour, 0 treats all backgrounds alike
-    #[cfg_attr(feature = "clap", arg(long, value_name = "WEIGHT", default_value_t = 0.5))]
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, allow_negative_numbers = true, value_name = "WEIGHT", default_value_t = 0.5)
+    )]
     pub silhouette: f32,
 
     /// Keep the projected normal map instead of fitting it
     #[cfg_attr(feature = "clap", arg(long))]
     pub keep_normals: bool,
 
-    /// How far outside the low-poly projection looks for the high-poly, as a share of the
-    /// high-poly's longest side, 0 to 1
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", default_value_t = 0.05))]
+    /// How far to either side of the low-poly projection looks for the high-poly, as a share of
+    /// the high-poly's longest side, 0 to 1
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, allow_negative_numbers = true, value_name = "SHARE", default_value_t = 0.05)
+    )]
     pub reach: f32,
 
     /// Training views, 1 to 4096 [default: by preset 160, 640, 1280]
@@ -130,13 +136,14 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "NUMBER", default_value_t = 0))]
     pub seed: u64,
 
-    /// Threads to work with, 0 to 256, 0 for one a core; the result does not depend on it
+    /// Threads to work with, 0 to 256, 0 for one a core; the result does not depend on it unless
+    /// a time budget ends the run
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 0))]
     pub threads: usize,
 
-    /// Seconds after which the best textures so far are written, reading files included
-    /// [default: no limit]
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SECONDS"))]
+    /// Seconds after which the best textures so far are written, 0 to 1e9; reading files counts, for
+    /// a library from the call of `bake`. Projection is always finished [default: no limit]
+    #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "SECONDS"))]
     pub time_budget: Option<f64>,
 }
 

@@ -56,7 +56,8 @@ pub struct BakeReport {
     pub unseen_texels: usize,
     /// Texels that several triangles claim.
     pub overlapping_texels: usize,
-    /// Texels on the surface for which projection found nothing.
+    /// Texels on the surface for which projection found nothing within its reach; they took
+    /// the closest point.
     pub missed_texels: usize,
     /// Loss of the start and after each step.
     pub losses: Vec<LossStep>,

@@ -17,7 +17,7 @@ pub const VIEWS: usize = 8;
 
 /// Backgrounds: name and linear light, as `evaluate` knows them. The first is the
 /// one that `evaluate` takes unless told otherwise.
-pub const BACKGROUNDS: [(&str, f32); 3] = [("black", 0.0), ("grey", 0.5), ("white", 1.0)];
+pub const BACKGROUNDS: [(&str, f32); 3] = [("black", 0.0), ("grey", crate::evaluate::GREY), ("white", 1.0)];
 
 /// Figures of one kind of texture before each of the [`BACKGROUNDS`].
 pub type Figures = [ViewFigures; BACKGROUNDS.len()];
