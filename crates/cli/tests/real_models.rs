@@ -15,7 +15,7 @@ fn obj_in(folder: &Path) -> PathBuf {
     files.into_iter().find(|p| p.extension().is_some_and(|e| e == "obj")).unwrap()
 }
 
-/// Protects the product's first promise: on low-polys of 34 to 104 triangles a bake
+/// Protects the product's first promise: on low-polys of 34 to 218 triangles a bake
 /// looks far more like the high-poly than a projection.
 #[test]
 fn coarsest_levels_reach_their_figures() {
