@@ -120,7 +120,7 @@ pub struct BakeOptions {
     )]
     pub reach: f32,
 
-    /// Training views, 1 to 4096 [default: by preset 160, 640, 1280]
+    /// Training views, 1 to 4096 [default: by preset 240, 640, 1280]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
     pub views: Option<usize>,
 
@@ -128,7 +128,7 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS"))]
     pub view_size: Option<usize>,
 
-    /// Turns that colours and normals take, 0 to 100, 0 for the projection as it is [default: by preset 2, 5, 8]
+    /// Turns that colours and normals take, 0 to 100, 0 for the projection as it is [default: by preset 3, 5, 8]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
     pub rounds: Option<usize>,
 
@@ -203,7 +203,7 @@ impl BakeOptions {
         // Views matter more than their pixels: what a texel looks like depends on the
         // side it is seen from, and few sides are learnt by heart.
         let (views, view_size, rounds, final_steps) = match self.preset {
-            Preset::Fast => (160, 192, 2, 1),
+            Preset::Fast => (240, 192, 3, 1),
             Preset::Balanced => (640, 192, 5, 2),
             Preset::Best => (1280, 256, 8, 3),
         };
