@@ -54,27 +54,29 @@ enum Attempt {
     Clustered,
 }
 
-/// A result this near to the target is good enough: the logarithm of 1.5.
-const ENOUGH: f64 = 0.405;
-
-/// A coarser mesh: of the attempts the first that comes within half of the target,
-/// else the one that comes nearest.
+/// A coarser mesh: of the attempts the first with a half to one and a half of the
+/// wanted triangles, else the one that comes nearest.
 pub fn simplify(mesh: &Mesh, options: SimplifyOptions) -> Mesh {
     let target = options.target_triangles.max(1);
-    let mut best = Mesh { tangents: Vec::new(), ..mesh.clone() };
     let off = |mesh: &Mesh| (mesh.triangles.len() as f64 / target as f64).ln().abs();
+    let mut best: Option<Mesh> = None;
     if mesh.triangles.len() > target {
         use Attempt::*;
         for attempt in [AllSeams, TextureSeams, CrossingSeams, ShapeOnly, Clustered] {
             let coarse = attempt.run(mesh, target, &options);
-            if !coarse.triangles.is_empty() && off(&coarse) < off(&best) {
-                best = coarse;
+            let count = coarse.triangles.len();
+            if count == 0 || count >= mesh.triangles.len() {
+                continue;
             }
-            if off(&best) <= ENOUGH {
+            if best.as_ref().is_none_or(|best| off(&coarse) < off(best)) {
+                best = Some(coarse);
+            }
+            if (target..=3 * target).contains(&(2 * count)) {
                 break;
             }
         }
     }
+    let mut best = best.unwrap_or_else(|| Mesh { tangents: Vec::new(), ..mesh.clone() });
     drop_unused(&mut best);
     best
 }
