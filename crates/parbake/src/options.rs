@@ -124,7 +124,7 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
     pub views: Option<usize>,
 
-    /// Side of a training view in pixels, 32 to 2048 [default: by preset 192, 192, 256]
+    /// Side of a training view in pixels, 32 to 2048 [default: by preset 192, 192, 256, more for textures beyond 1024]
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS"))]
     pub view_size: Option<usize>,
 
@@ -207,7 +207,10 @@ impl BakeOptions {
             Preset::Balanced => (640, 192, 5, 2),
             Preset::Best => (1280, 256, 8, 3),
         };
-        let view_size = self.view_size.unwrap_or(view_size);
+        // A texel that hardly a sample reads is noise: beyond 1024 texels views grow, though
+        // by less than the texture, or bakes would take for ever.
+        let finer = (self.texture_size as f32 / 1024.0).max(1.0).sqrt();
+        let view_size = self.view_size.unwrap_or((view_size as f32 * finer) as usize);
         let rounds = self.rounds.unwrap_or(rounds);
         // A projection is only looked at, to report its loss.
         let views = if rounds == 0 { 16 } else { views };
