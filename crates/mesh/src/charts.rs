@@ -10,14 +10,20 @@ use crate::weld::{ordered_bits, weld_by};
 use parbake_model::Mesh;
 use rayon::prelude::*;
 
-/// For each of the F triangles the index of its chart; charts are numbered in the
-/// order of their first triangles.
-pub fn charts(mesh: &Mesh) -> Vec<u32> {
-    let welded = weld_by(mesh.positions.len(), |v| {
+/// For each of the V vertices the first one at the same position and texture
+/// coordinate.
+pub fn weld_by_position_and_uv(mesh: &Mesh) -> Vec<u32> {
+    weld_by(mesh.positions.len(), |v| {
         let [x, y, z] = mesh.positions[v].to_array().map(ordered_bits);
         let uv = mesh.uvs.get(v).copied().unwrap_or_default();
         [x, y, z, ordered_bits(uv.x), ordered_bits(uv.y)]
-    });
+    })
+}
+
+/// For each of the F triangles the index of its chart; charts are numbered in the
+/// order of their first triangles.
+pub fn charts(mesh: &Mesh) -> Vec<u32> {
+    let welded = weld_by_position_and_uv(mesh);
     let mut edges: Vec<([u32; 2], u32)> = mesh
         .triangles
         .par_iter()
