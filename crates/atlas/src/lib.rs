@@ -2,8 +2,27 @@
 //!
 //! ```text
 //! layout      triangles as they lie in the texture
+//! predicates  orientation and overlap, exactly
+//! check       the proof that a layout is sound, and how good it is
+//! pack        charts into the square
+//! unwrap      a new layout for any mesh
+//! repair      a sound layout from a delivered one
+//! tutte       an embedding of each piece in a circle or square
 //! ```
 
+pub mod check;
+pub mod error;
 pub mod layout;
+pub mod pack;
+pub mod predicates;
+pub mod repair;
+pub mod tutte;
+pub mod unwrap;
 
+pub use check::{UvCheck, check};
+pub use error::AtlasError;
 pub use layout::{BoundaryEdge, Layout};
+pub use pack::{ChartScale, PackOptions, pack};
+pub use repair::{RepairOptions, repair};
+pub use tutte::{TutteBoundary, TutteOptions, TutteWeights, tutte};
+pub use unwrap::{UnwrapOptions, UnwrappedMesh, unwrap};

@@ -1,0 +1,149 @@
+//! Repair: a sound layout from a delivered one, changing as little as possible.
+//!
+//! ```text
+//! nothing wrong                      left as it is
+//! only outside the square            all brought in together
+//! mirrored charts                    mirrored back
+//! charts folded along few lines      cut there
+//! triangles or charts beyond that    these alone laid out afresh
+//! then, or if charts are too close   all packed again, sizes kept
+//! ```
+
+mod faults;
+
+use crate::unwrap::corners::{Corners, Surface};
+use crate::unwrap::sound::{at_fault, settled};
+use crate::{AtlasError, ChartScale, Layout, PackOptions, UnwrapOptions, UvCheck, check, unwrap};
+use faults::{Found, fresh_triangles, unfold};
+use parbake_model::Mesh;
+
+/// What [`repair()`] aims at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RepairOptions {
+    /// Texture size, gutter and packing. Charts keep their relative sizes; `chart_scale`
+    /// is not looked at.
+    pub pack: PackOptions,
+    /// For what is laid out afresh, as in [`UnwrapOptions`].
+    pub max_chart_angle: f32,
+}
+
+impl Default for RepairOptions {
+    fn default() -> Self {
+        let UnwrapOptions { pack, max_chart_angle } = UnwrapOptions::default();
+        Self { pack, max_chart_angle }
+    }
+}
+
+/// Makes a mesh's layout sound, with the gutter asked for between its charts, and says in
+/// one sentence each what was done; no sentences and an equal mesh where nothing was.
+///
+/// Triangles keep their order. Vertices are split where seams run anew; all attributes
+/// are carried along but tangents, which belonged to the layout before.
+///
+/// # Errors
+///
+/// As [`unwrap()`].
+pub fn repair(mesh: &Mesh, options: &RepairOptions) -> Result<(Mesh, Vec<String>), AtlasError> {
+    let size = options.pack.texture_size;
+    let surface = Surface::new(mesh);
+    let unwrapped = |sentence: &str| {
+        let options = UnwrapOptions { pack: options.pack.clone(), max_chart_angle: options.max_chart_angle };
+        unwrap(mesh, &options).map(|u| (u.mesh, vec![sentence.to_string()]))
+    };
+    if mesh.uvs.is_empty() && !mesh.triangles.is_empty() {
+        return unwrapped("The model has no texture coordinates; it was unwrapped.");
+    }
+    let delivered = check(&surface.delivered, size);
+    if is_good(&delivered, &options.pack) {
+        return Ok((mesh.clone(), Vec::new()));
+    }
+    let live = (0..mesh.triangles.len()).filter(|&t| surface.is_live(t));
+    let mut corners = corners_of(&surface);
+    if live.clone().all(|t| surface.delivered.doubled_area(t) == 0.0) {
+        return unwrapped("The texture coordinates cover no area; the model was unwrapped afresh.");
+    }
+    let mut sentences = Vec::new();
+    if delivered.orientations.outside.count > 0 {
+        if let Some(mesh) = brought_in(&surface, &corners, &options.pack) {
+            return Ok((mesh, vec!["Texture coordinates outside the square were brought into it.".into()]));
+        }
+        sentences.push("Texture coordinates outside the square were brought into it.".into());
+    }
+    let mut found = unfold(&surface, &mut corners);
+    let fresh = fresh_triangles(&surface, &mut corners, &mut found, options.max_chart_angle);
+    tell(&mut sentences, &found, fresh);
+    let pack = PackOptions { chart_scale: ChartScale::Keep, ..options.pack.clone() };
+    let packed = settled(&surface, corners, &pack)?;
+    let close = delivered.gutter.as_ref().is_some_and(|g| g.texels < options.pack.gutter_texels);
+    sentences.push(match (delivered.overlaps.pairs > 0, close) {
+        (true, _) => {
+            "Triangles lay on each other; all charts were packed again at their relative sizes.".into()
+        }
+        (false, true) => format!(
+            "Charts lay closer to each other than {} texels; all were packed again at their relative sizes.",
+            options.pack.gutter_texels
+        ),
+        _ => "All charts were packed again at their relative sizes.".into(),
+    });
+    Ok((surface.mesh_with(&packed).0, sentences))
+}
+
+/// Whether there is nothing to do.
+fn is_good(check: &UvCheck, pack: &PackOptions) -> bool {
+    // Half a thousandth of a texel is what rounding takes.
+    check.is_bijective() && check.gutter.as_ref().is_none_or(|g| g.texels > pack.gutter_texels - 5e-4)
+}
+
+fn corners_of(surface: &Surface) -> Corners {
+    let layout = &surface.delivered;
+    let count = layout.triangles.len();
+    let chart = (0..count)
+        .map(|t| if surface.is_live(t) { layout.charts[t] } else { crate::unwrap::corners::NONE })
+        .collect();
+    let next = layout.charts.iter().max().map_or(0, |c| c + 1);
+    Corners { uv: (0..count).map(|t| layout.corners(t)).collect(), chart, next }
+}
+
+/// The whole layout moved, and shrunk if need be, into the square, if nothing else is
+/// wrong with it.
+fn brought_in(surface: &Surface, corners: &Corners, pack: &PackOptions) -> Option<Mesh> {
+    let all = || corners.uv.iter().flatten().copied();
+    let low = all().reduce(|a, b| a.min(b))?;
+    let high = all().reduce(|a, b| a.max(b))?;
+    let border = (0.5 * pack.gutter_texels).max(0.5) / pack.texture_size as f64;
+    let scale = ((1.0 - 2.0 * border) / (high - low).max_element()).min(1.0);
+    let mut moved = corners.clone();
+    moved.uv.iter_mut().flatten().for_each(|p| *p = (*p - low) * scale + border);
+    let mesh = surface.mesh_with(&moved).0;
+    is_good(&check(&Layout::new(&mesh), pack.texture_size), pack).then_some(mesh)
+}
+
+fn tell(sentences: &mut Vec<String>, found: &Found, fresh: usize) {
+    let mut say = |count: usize, one: &str, many: &str| match count {
+        0 => {}
+        1 => sentences.push(format!("1 {one}")),
+        _ => sentences.push(format!("{count} {many}")),
+    };
+    say(found.mirrored, "mirrored chart was mirrored back.", "mirrored charts were mirrored back.");
+    say(
+        found.cut,
+        "chart, folded onto itself, was cut along the fold.",
+        "charts, folded onto themselves, were cut along the folds.",
+    );
+    say(
+        fresh,
+        "triangle that had no area in the texture or lay on others of its chart was laid out afresh.",
+        "triangles that had no area in the texture or lay on others of their charts were laid out afresh.",
+    );
+}
+
+/// Triangles of a layout that are at fault, by [`at_fault`], with the share of their
+/// charts' surface that they make up.
+fn faulty_shares(layout: &Layout) -> (Vec<u32>, Vec<f64>) {
+    let faults = at_fault(layout);
+    let charts = layout.charts.iter().max().map_or(0, |&c| c as usize + 1);
+    let (mut all, mut bad) = (vec![0.0; charts], vec![0.0; charts]);
+    (0..layout.triangles.len()).for_each(|t| all[layout.charts[t] as usize] += layout.rest_area(t));
+    faults.iter().for_each(|&t| bad[layout.charts[t as usize] as usize] += layout.rest_area(t as usize));
+    (faults, bad.iter().zip(all).map(|(bad, all)| bad / all).collect())
+}

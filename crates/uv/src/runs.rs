@@ -1,0 +1,72 @@
+//! Triangles cut into runs, for work that is shared among threads.
+//!
+//! A run's triangles lie near each other in the texture at the start, so that what a
+//! run adds to the texture fits into a small rectangle of its own; rectangles are added
+//! up in the order of the runs, whatever the number of threads.
+
+use crate::signal::Signal;
+use glam::DVec2;
+
+/// Runs of triangles of about the same number of samples.
+#[derive(Clone, Debug, Default)]
+pub struct Runs {
+    /// All F triangles, each once.
+    pub order: Vec<u32>,
+    /// Where each run begins in `order`, and the end.
+    pub first: Vec<usize>,
+}
+
+/// Runs a texture is cut into: enough for many cores, few enough that their rectangles
+/// overlap little.
+const RUNS: usize = 32;
+
+impl Runs {
+    /// Sorts triangles along a Morton curve through their centres.
+    pub fn new(points: &[DVec2], triangles: &[[u32; 3]], signal: &Signal) -> Self {
+        let mut keyed: Vec<(u32, u32)> = triangles
+            .iter()
+            .enumerate()
+            .map(|(t, corners)| {
+                let centre = corners.iter().map(|&i| points[i as usize]).sum::<DVec2>() / 3.0;
+                (morton(centre), t as u32)
+            })
+            .collect();
+        keyed.sort_unstable();
+        let order: Vec<u32> = keyed.into_iter().map(|(_, t)| t).collect();
+        let share = signal.samples.len().div_ceil(RUNS).max(1);
+        let (mut first, mut sum) = (vec![0], 0);
+        for (place, &t) in order.iter().enumerate() {
+            sum += signal.of(t as usize).len();
+            if sum >= share {
+                first.push(place + 1);
+                sum = 0;
+            }
+        }
+        if first.last() != Some(&order.len()) {
+            first.push(order.len());
+        }
+        Self { order, first }
+    }
+
+    /// How many runs there are.
+    pub fn count(&self) -> usize {
+        self.first.len().saturating_sub(1)
+    }
+
+    /// The triangles of a run.
+    pub fn triangles(&self, run: usize) -> impl Iterator<Item = usize> + '_ {
+        self.order[self.first[run]..self.first[run + 1]].iter().map(|&t| t as usize)
+    }
+}
+
+/// Interleaved bits of a point of the unit square.
+fn morton(p: DVec2) -> u32 {
+    let spread = |x: f64| {
+        let mut bits = (x.clamp(0.0, 1.0) * 1023.0) as u32;
+        bits = (bits | (bits << 8)) & 0x00ff_00ff;
+        bits = (bits | (bits << 4)) & 0x0f0f_0f0f;
+        bits = (bits | (bits << 2)) & 0x3333_3333;
+        (bits | (bits << 1)) & 0x5555_5555
+    };
+    spread(p.x) | (spread(p.y) << 1)
+}

@@ -1,0 +1,62 @@
+//! The signal on a surface: what its texture shall show, as samples whose places on
+//! their triangles stay while texture coordinates move.
+//!
+//! A picture on a plane, a model's own texture and a detailed model projected on a
+//! coarse one are all such signals; everything in this crate works on them alone.
+
+use glam::Vec4;
+
+/// One sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// The colour wanted, as the texture stores it, in up to four channels.
+    pub target: Vec4,
+    /// Barycentric weights of the triangle's second and third point.
+    pub barycentric: [f32; 2],
+    /// How much it counts, ≥ 0.
+    pub weight: f32,
+}
+
+/// Samples sorted by triangle.
+///
+/// Contract: `first` ascends from 0 to the number of samples; all numbers are finite.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Signal {
+    /// F + 1 entries: triangle `t` has the samples `first[t]..first[t + 1]`.
+    pub first: Vec<u32>,
+    /// S samples.
+    pub samples: Vec<Sample>,
+}
+
+impl Signal {
+    /// Sorts samples by their triangles, of which there are `triangles`; those of one
+    /// triangle keep their order.
+    pub fn new(triangles: usize, samples: &[(u32, Sample)]) -> Self {
+        let mut first = vec![0u32; triangles + 1];
+        for (triangle, _) in samples {
+            first[*triangle as usize + 1] += 1;
+        }
+        for t in 0..triangles {
+            first[t + 1] += first[t];
+        }
+        let mut next = first.clone();
+        let mut sorted = vec![Sample::default(); samples.len()];
+        for (triangle, sample) in samples {
+            let place = &mut next[*triangle as usize];
+            sorted[*place as usize] = *sample;
+            *place += 1;
+        }
+        Self { first, samples: sorted }
+    }
+
+    /// The samples of a triangle.
+    #[inline]
+    pub fn of(&self, triangle: usize) -> &[Sample] {
+        &self.samples[self.first[triangle] as usize..self.first[triangle + 1] as usize]
+    }
+
+    /// Sum of all weights.
+    pub fn weight(&self) -> f64 {
+        self.samples.iter().map(|s| f64::from(s.weight)).sum()
+    }
+}
