@@ -21,13 +21,13 @@ mod overlaps;
 mod sentences;
 
 use crate::Layout;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Triangles, charts and pairs that a [`UvCheck`] names at most of each kind.
 pub const FIRST: usize = 5;
 
 /// What [`check`] found out about a layout.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UvCheck {
     /// Texels along either side of the texture for which lengths are given.
     pub texture_size: usize,
@@ -53,7 +53,7 @@ pub struct UvCheck {
 }
 
 /// How many there are, and which.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Found {
     /// Number of all.
     pub count: usize,
@@ -62,7 +62,7 @@ pub struct Found {
 }
 
 /// Triangles by the exact signs of their areas.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Orientations {
     /// Triangles with a negative area, in charts that are not mirrored as a whole.
     pub flipped: Found,
@@ -83,7 +83,7 @@ pub struct Orientations {
 }
 
 /// Pairs of triangles whose interiors meet.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Overlaps {
     /// Number of pairs; at least so many where not `complete`.
     pub pairs: usize,
@@ -99,7 +99,7 @@ pub struct Overlaps {
 }
 
 /// Two triangles that lie on each other.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Overlap {
     /// Their indices, the smaller one first.
     pub triangles: [u32; 2],
@@ -111,9 +111,12 @@ pub struct Overlap {
 
 /// Distances between boundary edges of different charts, in texels.
 ///
+/// Charts of triangles that have an area neither in space nor in the texture do not
+/// count.
+///
 /// A chart inside another one is apart from its boundary; that is an overlap, not a
 /// narrow gutter.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gutter {
     /// The smallest distance; 0 where charts touch or their boundaries cross.
     pub texels: f64,
@@ -130,7 +133,7 @@ pub struct Gutter {
 }
 
 /// How unevenly the texels are shared out; formulas at the module `distortion`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Distortion {
     /// L² texture stretch of Sander et al. 2001, 1 or more, over the triangles that
     /// have an area in the texture.
@@ -149,7 +152,7 @@ pub struct Distortion {
 }
 
 /// Values up to which shares of the surface lie.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quantiles {
     /// For 1 %.
     pub q1: f64,

@@ -94,9 +94,22 @@ impl Layout {
 
     /// The boundary edges: those that one triangle alone has, in the direction in which
     /// that triangle runs, with its index. Sorted by triangle.
+    ///
+    /// Triangles with a point twice have no sides and count as absent.
     pub fn boundary(&self) -> Vec<BoundaryEdge> {
+        self.boundary_among(|_| true)
+    }
+
+    /// The boundary edges of those triangles that `is_there` accepts by their indices.
+    pub(crate) fn boundary_among(&self, is_there: impl Fn(usize) -> bool) -> Vec<BoundaryEdge> {
         let mut edges: Vec<([u32; 2], u32, [u32; 2])> = Vec::with_capacity(3 * self.triangles.len());
         for (t, corners) in self.triangles.iter().enumerate() {
+            // Such a triangle goes along one edge to and fro, and would hide that its
+            // neighbour ends there.
+            let [a, b, c] = *corners;
+            if a == b || b == c || c == a || !is_there(t) {
+                continue;
+            }
             for k in 0..3 {
                 let (a, b) = (corners[k], corners[(k + 1) % 3]);
                 edges.push(([a.min(b), a.max(b)], t as u32, [a, b]));
@@ -162,6 +175,20 @@ mod tests {
         }
         assert_eq!(layout.boundary().len(), 4);
         assert_eq!(layout.uvs(), square().uvs);
+    }
+
+    /// Protects a chart's boundary next to a triangle with a point twice.
+    #[test]
+    fn folded_triangles_hide_no_boundary() {
+        let mut layout = Layout::new(&square());
+        let boundary = layout.boundary();
+        let [from, to] = boundary[0].points;
+        for folded in [[from, from, to], [to, from, to], [from, from, from]] {
+            layout.triangles.push(folded);
+            layout.rest.push(DMat2::ZERO);
+            layout.charts.push(0);
+        }
+        assert_eq!(layout.boundary(), boundary);
     }
 
     /// Protects meshes without texture coordinates and triangles without area.

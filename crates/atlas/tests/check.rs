@@ -223,3 +223,28 @@ fn everything_on_everything_ends_soon() {
     assert!(report.problems()[0].starts_with("At least "));
     assert_eq!(run(3), report);
 }
+
+/// Protects the gutter from triangles that show nothing: isolated ones that lie on a
+/// chart, and slivers along one, whose boundary stays.
+#[test]
+fn triangles_without_any_area_have_no_gutter() {
+    let two = [rectangle(dvec2(0.1, 0.1), dvec2(0.2, 0.2)), rectangle(dvec2(0.4, 0.1), dvec2(0.2, 0.2))];
+    let mut layout = layout(&[&two[0], &two[1]]);
+    let clean = check(&layout, 100);
+    let mut add = |points: [u32; 3], chart: u32| {
+        layout.triangles.push(points);
+        layout.rest.push(DMat2::ZERO);
+        layout.charts.push(chart);
+    };
+    let count = 8;
+    // A chart by itself, collapsed onto a corner; one with a length on another chart.
+    add([count, count + 1, count + 2], 2);
+    add([count + 3, count + 3, count + 4], 3);
+    // A sliver on the first rectangle's side that faces the other one.
+    add([2, 1, count + 5], 0);
+    let corner = dvec2(0.4, 0.1);
+    layout.points.extend([corner, corner, corner, corner, dvec2(0.6, 0.3), dvec2(0.3, 0.2)]);
+    let report = check(&layout, 100);
+    assert_eq!(report.gutter, clean.gutter);
+    assert_close(report.gutter.unwrap().texels, 10.0);
+}

@@ -1,14 +1,14 @@
 //! What can be typed.
 
 use clap::{Args, Parser, Subcommand};
-use parbake::{BakeOptions, EvaluateOptions};
+use parbake::{BakeOptions, EvaluateOptions, ImageOptions};
 use std::path::PathBuf;
 
 /// Makes a small 3D model look like a big one
 #[derive(Parser, Debug)]
 #[command(name = "parbake", version, propagate_version = true)]
 #[command(after_help = "Exit codes: 0 done, 1 bad input or failed output, 2 wrong usage, \
-130 interrupted (the best state so far was written).")]
+3 check found problems, 130 interrupted (the best state so far was written).")]
 pub struct Arguments {
     /// What to do
     #[command(subcommand)]
@@ -20,10 +20,14 @@ pub struct Arguments {
 pub enum Command {
     /// Bake a detailed model's look onto a coarse one with texture coordinates
     Bake(BakeCommand),
+    /// Make a plane that shows a picture with a smaller texture
+    Image(ImageCommand),
     /// Make a detailed model and a coarse one, bake, and write a report
     Demo(DemoCommand),
     /// Compare two models picture by picture: PSNR, MS-SSIM, FLIP
     Eval(EvalCommand),
+    /// Prove that a model's texture coordinates are sound, or say what is wrong with them
+    Check(CheckCommand),
     /// Write a coarser copy of a model, which keeps its texture coordinates
     Simplify(SimplifyCommand),
 }
@@ -75,6 +79,33 @@ pub struct BakeCommand {
     pub talk: Talk,
 }
 
+/// Arguments of `image`.
+#[derive(Args, Debug)]
+pub struct ImageCommand {
+    /// The picture: .png, .jpg or .webp
+    pub picture: PathBuf,
+
+    /// Where the plane goes: .glb, or .obj with .mtl and .png beside it
+    #[arg(short, long, value_name = "FILE", default_value = "image.glb")]
+    pub output: PathBuf,
+
+    /// Write figures of the run as JSON to this file, or to standard output for "-"
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+
+    /// Write how the texture coordinates moved as a GIF
+    #[arg(long, value_name = "FILE")]
+    pub animation: Option<PathBuf>,
+
+    /// How to do it
+    #[command(flatten, next_help_heading = "Texture")]
+    pub options: ImageOptions,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = "Messages")]
+    pub talk: Talk,
+}
+
 /// Arguments of `demo`.
 #[derive(Args, Debug)]
 pub struct DemoCommand {
@@ -115,6 +146,39 @@ pub struct EvalCommand {
     /// How to compare
     #[command(flatten, next_help_heading = "Comparison")]
     pub evaluate: EvaluateOptions,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = "Messages")]
+    pub talk: Talk,
+}
+
+/// Arguments of `check`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Triangles of each base colour picture are checked by themselves; different pictures \
+may use the same coordinates. A layout is sound if every triangle has an area and its orientation, \
+none lies on another one, and all lie within the picture; then the exit code is 0, else 3."
+)]
+pub struct CheckCommand {
+    /// The model: .obj, .gltf or .glb
+    pub model: PathBuf,
+
+    /// Texels along a side for lengths, 1 to 65536; by default those of the shorter side of each
+    /// base colour picture, or as of a bake where there is none
+    #[arg(long, value_name = "TEXELS")]
+    pub texture_size: Option<usize>,
+
+    /// The smallest gutter between two charts that will do, 0 or more; 0 to ask for none
+    #[arg(long, value_name = "TEXELS", default_value_t = 0.0)]
+    pub gutter: f64,
+
+    /// Write the figures as JSON to this file, or to standard output for "-"
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+
+    /// Threads to work with, 0 to 256, 0 for one a core
+    #[arg(long, value_name = "COUNT", default_value_t = 0)]
+    pub threads: usize,
 
     /// What to tell
     #[command(flatten, next_help_heading = "Messages")]

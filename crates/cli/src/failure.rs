@@ -9,6 +9,8 @@ use std::process::ExitCode;
 pub enum Ending {
     /// All work is done (or the time budget is spent): 0.
     Finished,
+    /// `check` found problems in a layout: 3.
+    Problems,
     /// Ctrl-C: the best state so far was written: 130.
     Interrupted,
 }
@@ -18,6 +20,7 @@ impl Ending {
     pub fn exit_code(self) -> ExitCode {
         match self {
             Ending::Finished => ExitCode::SUCCESS,
+            Ending::Problems => ExitCode::from(3),
             Ending::Interrupted => ExitCode::from(130),
         }
     }

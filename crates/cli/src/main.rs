@@ -3,9 +3,11 @@
 
 mod arguments;
 mod bake;
+mod check;
 mod demo;
 mod evaluate;
 mod failure;
+mod image;
 mod options_file;
 mod progress;
 mod simplify;
@@ -25,6 +27,8 @@ fn main() -> ExitCode {
         (Command::Bake(command), Some(given)) => bake::run(command, given),
         (Command::Demo(command), Some(given)) => demo::run(command, given),
         (Command::Eval(command), _) => evaluate::run(command),
+        (Command::Image(command), _) => image::run(command),
+        (Command::Check(command), _) => check::run(command),
         (Command::Simplify(command), _) => simplify::run(command),
         _ => Ok(failure::Ending::Finished),
     };

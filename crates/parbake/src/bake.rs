@@ -6,12 +6,14 @@
 //! low ── LowPoly (texel map, charts) ─────── start ┴ samples ─ fit ─ Model
 //! ```
 
+use crate::check::{check_mesh, warning};
 use crate::error::BakeError;
 use crate::low::LowPoly;
 use crate::message::{Message, Stage, Watcher};
 use crate::options::BakeOptions;
 use crate::pair::{common_frame, placed};
 use crate::report::{BakeReport, StageTime};
+use crate::uv_animation::UvMoves;
 use parbake_fit::quantise::{color_image, normal_image};
 use parbake_fit::reference::render_references;
 use parbake_fit::samples::{Beyond, collect_samples};
@@ -39,6 +41,8 @@ pub struct Baked {
     pub projected: Model,
     /// What the run saw.
     pub report: BakeReport,
+    /// The way of the texture coordinates through the run, where they moved.
+    pub uv_moves: Option<UvMoves>,
 }
 
 /// Passes the fit's messages on, and its question whether to stop.
@@ -118,7 +122,7 @@ pub fn bake(
             )
         },
     );
-    let LowPoly { written, placed, map, atlas, warnings } = low_poly?;
+    let LowPoly { written, placed, map, atlas, mut warnings } = low_poly?;
     drop(mesh);
     for warning in &warnings {
         watcher.message(Message::Warning(warning.clone()));
@@ -151,6 +155,11 @@ pub fn bake(
     let fitted = fit_textures(&samples, &atlas, &start, display, srgb, &plan.schedule, &bridge);
     clock.lap(Stage::Solve);
 
+    let uv = check_mesh(&written, size);
+    if let Some(warning) = warning(&low.name, &uv) {
+        watcher.message(Message::Warning(warning.clone()));
+        warnings.push(warning);
+    }
     let report = BakeReport {
         options: options.clone(),
         high_triangles: high.mesh.triangles.len(),
@@ -161,6 +170,7 @@ pub fn bake(
         unseen_texels: fitted.unseen,
         overlapping_texels: map.overlaps,
         missed_texels: start.missed,
+        uv,
         losses: fitted.losses.iter().map(Into::into).collect(),
         stages: clock.stages,
         stopped_early: fitted.stopped || views < plan.views,
@@ -173,7 +183,12 @@ pub fn bake(
         color_image("base color", &start.color, srgb),
         normal_image("normal", &start.normal),
     );
-    Ok(Baked { model: textured(low, &written, fitted.color, fitted.normal), projected, report })
+    Ok(Baked {
+        model: textured(low, &written, fitted.color, fitted.normal),
+        projected,
+        report,
+        uv_moves: None,
+    })
 }
 
 /// The low-poly with one material of these two textures.

@@ -49,6 +49,12 @@ pub enum BakeError {
         /// The high-poly's name.
         high: String,
     },
+    /// The moves of texture coordinates could not be encoded.
+    #[error("cannot make an animation of the texture coordinates' moves: {reason}")]
+    Animation {
+        /// What the encoder said.
+        reason: String,
+    },
     /// The operating system refused to start threads.
     #[error("could not start {threads} threads: {source}")]
     Threads {

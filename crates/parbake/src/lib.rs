@@ -17,6 +17,7 @@
 //! ```
 
 mod bake;
+mod check;
 mod error;
 mod evaluate;
 mod html;
@@ -26,20 +27,26 @@ mod message;
 mod models;
 mod options;
 mod pair;
+mod picture;
 mod report;
 mod threads;
+mod uv_animation;
 
 pub use bake::{Baked, bake};
+pub use check::{LayoutCheck, ModelCheck, check_model};
 pub use error::BakeError;
 pub use evaluate::{EvaluateOptions, Evaluation, ViewFigures, evaluate};
 pub use html::html_report;
 pub use memory::peak_memory;
 pub use message::{Message, Stage, Watcher};
 pub use models::{demo_pair, simplified, subdivided};
-pub use options::{Backdrop, BakeOptions, Convention, Plan, Preset};
+pub use options::{Backdrop, BakeOptions, Convention, Plan, Preset, UvMode};
+pub use parbake_atlas::UvCheck;
 pub use parbake_files::{
-    FileError, Limits, Loaded, read_model, write_atomically as write_file, write_glb, write_obj,
+    FileError, Limits, Loaded, read_image, read_model, write_atomically as write_file, write_glb, write_obj,
 };
 pub use parbake_model::Model;
+pub use picture::{BakedImage, ImageOptions, ImageReport, bake_image};
 pub use report::{BakeReport, LossStep, StageTime};
 pub use threads::{join, with_threads};
+pub use uv_animation::{UvAnimationOptions, UvMoves, uv_animation};

@@ -4,7 +4,7 @@ use crate::error::BakeError;
 use parbake_fit::atlas::Atlas;
 use parbake_mesh::{TexelMap, charts, compute_tangents, ensure_normals, texel_map};
 use parbake_model::glam::Vec2;
-use parbake_model::{Bounds, Mesh, Model, Placement};
+use parbake_model::{Bounds, Material, Mesh, Model, Placement};
 
 /// Charts are grown by so many texels: bilinear fetches reach one, the rest is for
 /// the borders of thin triangles.
@@ -31,10 +31,10 @@ impl LowPoly {
     /// Prepares a model for a texture of `size`² texels.
     pub fn new(model: &Model, frame: &Placement, size: usize) -> Result<Self, BakeError> {
         let mut written = model.mesh.clone();
+        written.uvs = texture_coordinates(&model.mesh, &model.materials);
         if written.uvs.is_empty() {
             return Err(BakeError::NoTextureCoordinates { model: model.name.clone() });
         }
-        written.uvs = texture_coordinates(model);
         let mut warnings = Vec::new();
         let repaired = ensure_normals(&mut written);
         if repaired > 0 && !model.mesh.normals.is_empty() {
@@ -84,12 +84,16 @@ fn misplaced(model: &Model, placed: &Mesh) -> Option<String> {
 
 /// Where each vertex falls on the low-poly's own texture: its first material's set
 /// of coordinates, moved as that material says. What is written is read without.
-fn texture_coordinates(model: &Model) -> Vec<Vec2> {
-    let mesh = &model.mesh;
-    let mut uvs = mesh.uvs.clone();
+///
+/// A mesh without coordinates has none.
+pub(crate) fn texture_coordinates(mesh: &Mesh, materials: &[Material]) -> Vec<Vec2> {
+    let mut uvs = if mesh.uvs.is_empty() { vec![Vec2::ZERO; mesh.uvs1.len()] } else { mesh.uvs.clone() };
+    if uvs.is_empty() {
+        return uvs;
+    }
     let mut moved = vec![false; uvs.len()];
     for (triangle, &material) in mesh.triangles.iter().zip(&mesh.triangle_materials) {
-        let slot = model.materials.get(material as usize).and_then(|m| m.base_color_texture);
+        let slot = materials.get(material as usize).and_then(|m| m.base_color_texture);
         let Some(slot) = slot else { continue };
         for corner in triangle.map(|i| i as usize) {
             if !std::mem::replace(&mut moved[corner], true) {
@@ -104,7 +108,7 @@ fn texture_coordinates(model: &Model) -> Vec<Vec2> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use parbake_model::{Material, TextureSlot, UvTransform};
+    use parbake_model::{TextureSlot, UvTransform};
 
     /// Protects quantised files, whose raw coordinates lie far outside the texture,
     /// and files that keep their unwrapped layout in the second set.
@@ -120,8 +124,12 @@ mod tests {
             ..Mesh::default()
         };
         let material = Material { base_color_texture: Some(slot), ..Material::default() };
-        let model = Model { mesh, materials: vec![material], ..Model::default() };
         let half = Vec2::splat(0.5);
-        assert_eq!(texture_coordinates(&model), [half, Vec2::X * 0.5, Vec2::Y * 0.5, Vec2::ZERO]);
+        let materials = [material];
+        let wanted = [half, Vec2::X * 0.5, Vec2::Y * 0.5, Vec2::ZERO];
+        assert_eq!(texture_coordinates(&mesh, &materials), wanted);
+        let second_alone = Mesh { uvs: Vec::new(), ..mesh };
+        assert_eq!(texture_coordinates(&second_alone, &materials), wanted);
+        assert!(texture_coordinates(&Mesh { uvs1: Vec::new(), ..second_alone }, &materials).is_empty());
     }
 }

@@ -10,6 +10,8 @@ pub enum Stage {
     Read,
     /// Normals, tangents, charts, the search structure of the high-poly.
     Prepare,
+    /// Mending, unwrapping and moving texture coordinates.
+    Unfold,
     /// Rendering the high-poly from the training views.
     Reference,
     /// Projecting the high-poly onto the low-poly's texture.
@@ -30,6 +32,7 @@ impl Stage {
         match self {
             Stage::Read => "reading files",
             Stage::Prepare => "preparing",
+            Stage::Unfold => "moving texture coordinates",
             Stage::Reference => "rendering the high-poly",
             Stage::Start => "projecting",
             Stage::Sampling => "finding samples",

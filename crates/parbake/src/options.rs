@@ -53,6 +53,22 @@ impl Convention {
     }
 }
 
+/// What becomes of texture coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum UvMode {
+    /// They stay as they are.
+    Keep,
+    /// What overlaps, is mirrored or lies outside is mended; sound ones stay.
+    Repair,
+    /// They are made anew.
+    Unwrap,
+    /// They are mended and then moved to where they show most.
+    #[default]
+    Optimize,
+}
+
 /// What lies behind the models while fitting: the low-poly is asked to look like this
 /// where its silhouette goes beyond the high-poly's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -2,6 +2,7 @@
 
 use crate::message::Stage;
 use crate::options::BakeOptions;
+use parbake_atlas::UvCheck;
 use parbake_fit::schedule::{LossPoint, Move};
 use serde::{Deserialize, Serialize};
 
@@ -59,6 +60,8 @@ pub struct BakeReport {
     /// Texels on the surface for which projection found nothing within its reach; they took
     /// the closest point.
     pub missed_texels: usize,
+    /// The check of the texture coordinates that are written.
+    pub uv: UvCheck,
     /// Loss of the start and after each step.
     pub losses: Vec<LossStep>,
     /// Seconds by stage.

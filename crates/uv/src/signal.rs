@@ -4,7 +4,7 @@
 //! A picture on a plane, a model's own texture and a detailed model projected on a
 //! coarse one are all such signals; everything in this crate works on them alone.
 
-use glam::Vec4;
+use glam::{DMat2, Vec4};
 
 /// One sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -26,6 +26,10 @@ pub struct Signal {
     pub first: Vec<u32>,
     /// S samples.
     pub samples: Vec<Sample>,
+    /// What a pixel is on each of the F triangles: how the barycentric weights of the second
+    /// and the third point (rows) change from one pixel to the next along x and y (columns).
+    /// Decides on mip levels; empty for a picture that never minifies.
+    pub pixels: Vec<DMat2>,
 }
 
 impl Signal {
@@ -46,7 +50,7 @@ impl Signal {
             sorted[*place as usize] = *sample;
             *place += 1;
         }
-        Self { first, samples: sorted }
+        Self { first, samples: sorted, pixels: Vec::new() }
     }
 
     /// The samples of a triangle.

@@ -12,7 +12,8 @@
 use crate::contact::Contact;
 use crate::descent::Objective;
 use crate::distortion::Distortion;
-use crate::texture::{Mapped, Solve, Texture, best_texture, error_and_gradient};
+use crate::best_texture::{Mapped, Solve, Texture, best_texture};
+use crate::residual::residual;
 use glam::DVec2;
 
 /// The objective.
@@ -41,7 +42,8 @@ impl Objective for VariableProjection<'_> {
         let mapped = Mapped { points, ..self.mapped };
         let start = std::mem::take(&mut self.texture);
         self.texture = best_texture(&mapped, start, &self.solve);
-        let error = error_and_gradient(&mapped, &self.texture, gradient, None) * self.scale;
+        let left = residual(&mapped, &self.texture, gradient);
+        let error = left.iter().map(|r| r.error).sum::<f64>() * self.scale;
         for g in gradient.iter_mut() {
             *g *= self.scale;
         }

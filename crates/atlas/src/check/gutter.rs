@@ -2,6 +2,8 @@
 //!
 //! A chart ends at its boundary edges, so the distance between two charts that do not
 //! overlap is the smallest one between boundary edges of the one and of the other.
+//! Triangles that have an area neither in space nor in the texture show nothing and
+//! have no boundary: files have them by the thousand, each collapsed onto some chart.
 
 use super::Gutter;
 use super::box_tree::{Bounds, BoxTree, Nearest};
@@ -20,7 +22,7 @@ type Segment = [DVec2; 2];
 /// The distances between charts; `None` where there is but one chart or none.
 pub(super) fn gutter(layout: &Layout, texture_size: usize) -> Option<Gutter> {
     let edges: Vec<(Segment, u32)> = layout
-        .boundary()
+        .boundary_among(|t| shows(layout, t))
         .iter()
         .map(|e| (e.points.map(|p| layout.points[p as usize]), layout.charts[e.triangle as usize]))
         .filter(|([a, b], _)| a.is_finite() && b.is_finite())
@@ -53,6 +55,13 @@ pub(super) fn gutter(layout: &Layout, texture_size: usize) -> Option<Gutter> {
         charts: [chart.min(other_chart), chart.max(other_chart)],
         place: place_between(segment, other).to_array(),
     })
+}
+
+/// Whether a triangle is on the surface or takes a place in the texture.
+fn shows(layout: &Layout, triangle: usize) -> bool {
+    let [a, b, c] = layout.corners(triangle);
+    // What is not finite is decided on by whoever wants edges.
+    layout.rest_area(triangle) > 0.0 || predicates::orientation(a, b, c) != 0.0
 }
 
 /// The smallest distance from a triangle to the border of the square, in texels;

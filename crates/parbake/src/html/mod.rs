@@ -4,7 +4,7 @@
 //! models ─ scenes ─┬─ figures ── tables, view_chart ─┐
 //!                  └─ pictures ─ gallery ────────────┤
 //! report ─ loss_curve, tables, settings ─────────────┼─ page
-//! textures ─ uv_layout, textures ────────────────────┘
+//! textures ─ uv_layout, textures, uv_check, uv_moves ─┘
 //! ```
 //!
 //! Contract: the page does not depend on the number of threads; all that comes from
@@ -27,7 +27,9 @@ mod tables;
 mod tests;
 mod text;
 mod textures;
+mod uv_check;
 mod uv_layout;
+mod uv_moves;
 mod view_chart;
 
 use crate::bake::Baked;

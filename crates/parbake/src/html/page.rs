@@ -8,6 +8,8 @@ use super::settings::settings;
 use super::tables;
 use super::text::{bytes, change, count, decimal, duration, escape, verdict};
 use super::textures::textures;
+use super::uv_check::uv_check;
+use super::uv_moves::uv_moves;
 use super::view_chart::view_chart;
 use crate::bake::Baked;
 use crate::error::BakeError;
@@ -66,7 +68,13 @@ pub fn page(high: &Model, baked: &Baked, evaluated: &Evaluated, sides: &[Side]) 
         "textures",
         "Textures",
         "",
-        &format!("{}<h3>Texels</h3>{}", textures(&baked.model)?, tables::texels(report)),
+        &format!(
+            r#"{}<div class="pair"><div><h3>Texture layout</h3>{}</div><div><h3>Texels</h3>{}{}</div></div>"#,
+            textures(&baked.model)?,
+            uv_check(&report.uv),
+            tables::texels(report),
+            uv_moves(baked.uv_moves.as_ref())?
+        ),
     );
     section(
         &mut out,

@@ -1,0 +1,67 @@
+//! `parbake image`.
+
+use crate::arguments::ImageCommand;
+use crate::bake::{check_not_input, check_output, print, write_json, write_model};
+use crate::failure::{Ending, Failure};
+use crate::progress::{Console, interrupted};
+use parbake::{
+    BakedImage, ImageReport, Limits, UvAnimationOptions, bake_image, read_image, uv_animation, with_threads,
+    write_file,
+};
+use std::path::Path;
+
+/// Runs the command.
+pub fn run(command: &ImageCommand) -> Result<Ending, Failure> {
+    command.options.check()?;
+    check_output(&command.output)?;
+    check_not_input(&command.output, &[&command.picture])?;
+    let console = Console::new(command.talk);
+    with_threads(command.options.threads, || {
+        let picture = read_image(&command.picture, &Limits::default())?;
+        let baked = bake_image(&picture, &command.options, &console)?;
+        write_model(&command.output, &baked.model)?;
+        if let Some(path) = &command.json {
+            write_json(path, &baked.report)?;
+        }
+        if let Some(path) = &command.animation {
+            write_animation(path, &baked, &console)?;
+        }
+        console.finish();
+        if !command.talk.quiet && command.json.as_ref().is_none_or(|p| p.as_os_str() != "-") {
+            print(&summary(&baked.report, &command.picture, &command.output, console.seconds()))?;
+        }
+        let stopped = interrupted() && baked.report.stopped_early;
+        Ok(if stopped { Ending::Interrupted } else { Ending::Finished })
+    })?
+}
+
+fn write_animation(path: &Path, baked: &BakedImage, console: &Console) -> Result<(), Failure> {
+    match &baked.uv_moves {
+        Some(moves) => write_file(path, &uv_animation(moves, &UvAnimationOptions::default())?)?,
+        None => console.say("no animation: texture coordinates did not move"),
+    }
+    Ok(())
+}
+
+/// Bytes of a file, or of an OBJ with what lies beside it.
+pub fn bytes(path: &Path) -> u64 {
+    std::fs::metadata(path).map_or(0, |m| m.len())
+}
+
+fn summary(report: &ImageReport, picture: &Path, output: &Path, seconds: f64) -> String {
+    let size = report.options.texture_size;
+    let mut text = format!("shown at         ordinary {size}²   {}\n", output.display());
+    for (name, (kept, written)) in
+        ["full size", "half size", "a quarter"].iter().zip(report.kept.iter().zip(&report.written))
+    {
+        text += &format!("{name:13} {kept:9.2} dB   {written:9.2} dB   {:+.2} dB\n", written - kept);
+    }
+    if report.left_as_is {
+        text += "moving texture coordinates gains nothing here: they were left as they are\n";
+    }
+    text += &match (report.uv.is_bijective(), report.uv.overlaps.pairs) {
+        (true, _) => format!("{} triangles, none flipped, none overlapping\n", report.uv.triangles),
+        (false, pairs) => format!("{} triangles, {pairs} pairs overlapping\n", report.uv.triangles),
+    };
+    text + &format!("{} bytes → {} bytes, {seconds:.1} s", bytes(picture), bytes(output))
+}

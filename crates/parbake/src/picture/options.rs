@@ -1,0 +1,55 @@
+//! What a user can ask of `parbake image`.
+
+use crate::error::BakeError;
+use crate::options::UvMode;
+use serde::{Deserialize, Serialize};
+
+/// Options of [`crate::bake_image`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ImageOptions {
+    /// Side of the square texture in texels, 16 to 4096
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 256))]
+    pub texture_size: usize,
+
+    /// Cells along a side of the plane, 4 to 400: more follow the picture better and make the
+    /// model larger; each cell costs some 45 bytes
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 100))]
+    pub grid: usize,
+
+    /// Whether texture coordinates move: keep (an ordinary, smaller texture) or optimize
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = UvMode::Optimize))]
+    pub uv: UvMode,
+
+    /// Steps that texture coordinates take on each of the grids, coarse to fine, 0 to 10000
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 40))]
+    pub steps: usize,
+
+    /// Threads to work with, 0 to 256, 0 for one a core
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 0))]
+    pub threads: usize,
+}
+
+impl Default for ImageOptions {
+    fn default() -> Self {
+        Self { texture_size: 256, grid: 100, uv: UvMode::Optimize, steps: 40, threads: 0 }
+    }
+}
+
+impl ImageOptions {
+    /// Checks every range; the error names the option and what it may be.
+    pub fn check(&self) -> Result<(), BakeError> {
+        let within = |option: &'static str, value: usize, low: usize, high: usize| {
+            if (low..=high).contains(&value) {
+                Ok(())
+            } else {
+                Err(BakeError::Option { option, value: value.to_string(), range: format!("{low} to {high}") })
+            }
+        };
+        within("texture-size", self.texture_size, 16, 4096)?;
+        within("grid", self.grid, 4, 400)?;
+        within("steps", self.steps, 0, 10_000)?;
+        within("threads", self.threads, 0, crate::threads::MOST_THREADS)
+    }
+}

@@ -1,0 +1,245 @@
+//! The default way of moving texture coordinates.
+//!
+//! 1. [`Balance::new`]: what the start's coordinates leave with their best texture, for each
+//!    size at which the surface is shown.
+//! 2. [`shape`]: the signal-specialised start (`metric.rs`): triangles grow with their
+//!    signal, along its direction. No texture is solved for.
+//! 3. [`refine`]: variable projection (`variable_projection.rs`): what the best texture
+//!    leaves is reduced itself.
+//!
+//! Contract: from a sound layout to a sound layout (`region.rs`); deterministic.
+
+use crate::best_texture::{Mapped, Solve, Texture, best_texture};
+use crate::contact::ContactOptions;
+use crate::descent::{Descent, DescentOptions, Objective, descend};
+use crate::distortion::{Distortion, total_area};
+use crate::laplacian::Laplacian;
+use crate::metric::{signal_specialised, structure_tensors};
+use crate::region::Feasible;
+use crate::residual::residual;
+use crate::runs::Runs;
+use crate::signal::Signal;
+use crate::variable_projection::VariableProjection;
+use glam::{DMat2, DVec2, Vec4};
+use parbake_atlas::Layout;
+
+/// What the optimisation works on.
+#[derive(Clone, Copy)]
+pub struct Problem<'a> {
+    /// F rest shapes: what a triangle's distortion is measured against.
+    pub rest: &'a [DMat2],
+    /// The surface's signal at full size, then minified; samples lie on the same triangles.
+    pub showings: &'a [Signal],
+    /// Texels along a side.
+    pub texture_size: usize,
+    /// How near charts may come.
+    pub contact: &'a ContactOptions,
+}
+
+/// How far to go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UvOptions {
+    /// Steps of the signal-specialised start.
+    pub shape_steps: usize,
+    /// Steps of variable projection.
+    pub refine_steps: usize,
+    /// μ: weight of the symmetric Dirichlet energy against the error.
+    pub distortion_weight: f64,
+    /// Weight of the barrier between charts.
+    pub contact_weight: f64,
+    /// A refinement ends when three steps in a row each gain less than this share.
+    pub tolerance: f64,
+}
+
+impl Default for UvOptions {
+    fn default() -> Self {
+        Self {
+            shape_steps: 40,
+            refine_steps: 40,
+            distortion_weight: 1e-4,
+            contact_weight: 1e-4,
+            tolerance: 1e-4,
+        }
+    }
+}
+
+/// How much each showing counts.
+///
+/// Minified pictures of moved texture coordinates may look worse than of those at the
+/// start; each counts just so much that it does not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Balance {
+    /// What the start left of each showing with the best texture for the first one.
+    pub baseline: Vec<f64>,
+    /// Weights relative to the baseline; that of the first stays 1.
+    pub weights: Vec<f64>,
+}
+
+/// What minified showings weigh before anything is known.
+const FIRST_WEIGHT: f64 = 0.1;
+
+impl Balance {
+    /// Baselines of a start's layout; also returns its best texture.
+    pub fn new(problem: &Problem, layout: &Layout) -> (Self, Texture) {
+        let runs = Runs::new(&layout.points, &layout.triangles, &problem.showings[0]);
+        let whole = Mapped {
+            points: &layout.points,
+            triangles: &layout.triangles,
+            showings: problem.showings,
+            runs: &runs,
+        };
+        let first = Mapped { showings: &problem.showings[..1], ..whole };
+        let start = Texture::solid(problem.texture_size, Vec4::splat(0.5));
+        let texture = best_texture(&first, start, &Solve { steps: 60, tolerance: 1e-4, ..Solve::MOVING });
+        let mut unused = vec![DVec2::ZERO; layout.points.len()];
+        let left = residual(&whole, &texture, &mut unused);
+        // A picture that fits perfectly leaves nothing to gain; 8 bits leave more than this.
+        let least: f64 = 1e-7;
+        let baseline: Vec<f64> =
+            left.iter().zip(problem.showings).map(|(r, s)| r.error.max(least * s.weight())).collect();
+        let mut weights = vec![FIRST_WEIGHT; baseline.len()];
+        weights[0] = 1.0;
+        (Self { baseline, weights }, texture)
+    }
+
+    /// Showings whose samples count as this balance says.
+    pub fn weighted(&self, showings: &[Signal]) -> Vec<Signal> {
+        let mut weighted = showings.to_vec();
+        for ((signal, weight), baseline) in weighted.iter_mut().zip(&self.weights).zip(&self.baseline) {
+            let factor = (weight / baseline) as f32;
+            signal.samples.iter_mut().for_each(|s| s.weight *= factor);
+        }
+        weighted
+    }
+
+    /// Learns from what is left now, relative to the baseline: showings near it or above
+    /// count more, those far below less.
+    pub fn update(&mut self, relative: &[f64]) {
+        for (weight, relative) in self.weights.iter_mut().zip(relative).skip(1) {
+            *weight *= match *relative {
+                r if r > 0.8 => (2.0 * r).min(20.0),
+                r if r < 0.5 => 0.5,
+                _ => 1.0,
+            };
+            *weight = weight.clamp(0.01, 50.0);
+        }
+    }
+}
+
+/// The distortion alone, with the barrier.
+struct Shaping<'a> {
+    distortion: Distortion,
+    triangles: &'a [[u32; 3]],
+    region: &'a Feasible,
+    contact_weight: f64,
+}
+
+impl Objective for Shaping<'_> {
+    fn evaluate(&mut self, points: &[DVec2], gradient: &mut [DVec2]) -> f64 {
+        // The barrier adds its gradient with weight 1.
+        gradient.fill(DVec2::ZERO);
+        let contact = self.region.contact().energy_and_gradient(points, gradient);
+        gradient.iter_mut().for_each(|g| *g *= self.contact_weight);
+        contact * self.contact_weight + self.distortion.add(points, self.triangles, 1.0, gradient)
+    }
+}
+
+/// Texels along a side of the texture that structure tensors are read from: as fine as
+/// the samples settle.
+fn tensor_texture_size(signal: &Signal, texture_size: usize) -> usize {
+    let fine = (signal.samples.len() as f64 / 2.0).sqrt() as usize;
+    fine.clamp(texture_size.min(64), 4 * texture_size).max(4)
+}
+
+/// How fast the first showing changes on each triangle of a layout.
+pub fn tensors(problem: &Problem, layout: &Layout) -> Vec<DMat2> {
+    let signal = &problem.showings[..1];
+    let size = tensor_texture_size(&signal[0], problem.texture_size);
+    let runs = Runs::new(&layout.points, &layout.triangles, &signal[0]);
+    let mapped =
+        Mapped { points: &layout.points, triangles: &layout.triangles, showings: signal, runs: &runs };
+    let start = Texture::solid(size, Vec4::splat(0.5));
+    let texture = best_texture(&mapped, start, &Solve { smoothness: 1e-3, ..Solve::MOVING });
+    structure_tensors(&mapped, &texture, problem.rest)
+}
+
+/// Moves a layout to the signal-specialised start.
+pub fn shape(
+    problem: &Problem,
+    layout: &mut Layout,
+    tensors: &[DMat2],
+    options: &UvOptions,
+    step: impl FnMut(&[DVec2], f64) -> bool,
+) -> Descent {
+    let region = Feasible::new(layout, problem.contact);
+    let preconditioner = Laplacian::new(layout.points.len(), &layout.triangles, 0.01);
+    let mut objective = Shaping {
+        distortion: signal_specialised(tensors, problem.rest),
+        triangles: &layout.triangles,
+        region: &region,
+        contact_weight: options.contact_weight,
+    };
+    let descent = DescentOptions { steps: options.shape_steps, ..DescentOptions::default() };
+    descend(&mut layout.points, &mut objective, &region, &preconditioner, &descent, step)
+}
+
+/// What a refinement found.
+#[derive(Clone, Debug)]
+pub struct Refined {
+    /// The best texture for the layout and the balance, not clamped.
+    pub texture: Texture,
+    /// What is left of each showing, relative to its baseline.
+    pub relative: Vec<f64>,
+    /// The descent.
+    pub descent: Descent,
+}
+
+/// Reduces what the best texture leaves of all showings. `texture` is where the first solve
+/// begins.
+pub fn refine(
+    problem: &Problem,
+    balance: &Balance,
+    layout: &mut Layout,
+    texture: Texture,
+    options: &UvOptions,
+    step: impl FnMut(&[DVec2], f64) -> bool,
+) -> Refined {
+    let region = Feasible::new(layout, problem.contact);
+    let preconditioner = Laplacian::new(layout.points.len(), &layout.triangles, 0.05);
+    // No distortion is a copy of the rest shapes at the layout's mean scale.
+    let scale = (total_area(problem.rest) / layout_area(layout)).sqrt();
+    let distortion = Distortion::symmetric_dirichlet(problem.rest, scale, |_| 1.0);
+    let showings = balance.weighted(problem.showings);
+    let start = layout.points.clone();
+    let runs = Runs::new(&start, &layout.triangles, &showings[0]);
+    let mapped = Mapped { points: &start, triangles: &layout.triangles, showings: &showings, runs: &runs };
+    let mut objective = VariableProjection {
+        mapped,
+        texture,
+        distortion: &distortion,
+        distortion_weight: options.distortion_weight,
+        contact: Some(region.contact()),
+        contact_weight: options.contact_weight,
+        solve: Solve::MOVING,
+        scale: 1.0 / balance.weights.iter().sum::<f64>(),
+    };
+    let descent = DescentOptions {
+        steps: options.refine_steps,
+        tolerance: options.tolerance,
+        ..DescentOptions::default()
+    };
+    let points = &mut layout.points;
+    let descent = descend(points, &mut objective, &region, &preconditioner, &descent, step);
+    // The texture of the last evaluation may belong to a step that was not taken.
+    let mapped = Mapped { points, ..mapped };
+    let texture = best_texture(&mapped, objective.texture, &Solve::MOVING);
+    let mut unused = vec![DVec2::ZERO; points.len()];
+    let left = residual(&mapped, &texture, &mut unused);
+    let relative = left.iter().zip(&balance.weights).map(|(r, weight)| r.error / weight).collect();
+    Refined { texture, relative, descent }
+}
+
+/// Sum of the triangles' areas in the texture.
+fn layout_area(layout: &Layout) -> f64 {
+    (0..layout.triangles.len()).map(|t| 0.5 * layout.doubled_area(t)).sum::<f64>().max(f64::MIN_POSITIVE)
+}

@@ -1,0 +1,104 @@
+//! What is left of a signal with a given texture, and how that changes with the texture
+//! coordinates.
+//!
+//! Forward: `R = Σ ωₛ ((1 − f) |rˡ|² + f |rˡ⁺¹|²)`, r the difference of a fetch and its target
+//! on two mip levels (`best_texture.rs`). Adjoint for a triangle's points: through the place
+//! of each sample, `2 ωₛ r · ∂T/∂uv` on either level, and through the level itself,
+//! `Σ ωₛ (|rˡ⁺¹|² − |rˡ|²) · ∂λ/∂uv`. At the best texture this is the whole derivative
+//! (variable projection).
+
+use crate::best_texture::{Mapped, Texture};
+use crate::footprint::{Footprint, OnLevel, pixel, shares};
+use crate::pyramid::{level_count, levels};
+use crate::signal::Sample;
+use glam::{DVec2, Vec2, Vec4};
+use rayon::prelude::*;
+
+/// A residual, by triangle.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Residual {
+    /// Sum over all samples.
+    pub error: f64,
+    /// The F triangles' shares of it.
+    pub by_triangle: Vec<f64>,
+}
+
+/// The residual of each showing, and the derivative of their sum, which is added to
+/// `gradient`.
+pub fn residual(mapped: &Mapped, texture: &Texture, gradient: &mut [DVec2]) -> Vec<Residual> {
+    let pyramid = levels(&texture.texels, texture.size, level_count(texture.size));
+    let parts: Vec<Vec<(usize, Vec<f64>, [DVec2; 3])>> = (0..mapped.runs.count())
+        .into_par_iter()
+        .map(|run| mapped.runs.triangles(run).map(|t| triangle(mapped, &pyramid, texture.size, t)).collect())
+        .collect();
+    let empty = Residual { error: 0.0, by_triangle: vec![0.0; mapped.triangles.len()] };
+    let mut residuals = vec![empty; mapped.showings.len()];
+    for (t, errors, slopes) in parts.into_iter().flatten() {
+        for (residual, error) in residuals.iter_mut().zip(errors) {
+            residual.error += error;
+            residual.by_triangle[t] = error;
+        }
+        for (corner, slope) in mapped.triangles[t].into_iter().zip(slopes) {
+            gradient[corner as usize] += slope;
+        }
+    }
+    residuals
+}
+
+fn triangle(mapped: &Mapped, pyramid: &[Vec<Vec4>], size: usize, t: usize) -> (usize, Vec<f64>, [DVec2; 3]) {
+    let footprint = Footprint::new(mapped.points, mapped.triangles[t]);
+    let (mut whole, mut second, mut third) = (DVec2::ZERO, DVec2::ZERO, DVec2::ZERO);
+    let mut errors = Vec::with_capacity(mapped.showings.len());
+    for signal in mapped.showings {
+        let samples = signal.of(t);
+        if samples.is_empty() {
+            errors.push(0.0);
+            continue;
+        }
+        let shown = footprint.level(pixel(signal, t), size, pyramid.len());
+        let (mut error, mut by_level) = (0.0, 0.0);
+        for (level, share) in shares(&shown) {
+            let own = size >> level;
+            let part = on_level(&footprint.on(own), samples, &pyramid[level], own);
+            error += part.error * f64::from(share);
+            by_level += if level == shown.fine { -part.error } else { part.error };
+            let scale = 2.0 * own as f64 * f64::from(share);
+            whole += part.slopes[0] * scale;
+            second += part.slopes[1] * scale;
+            third += part.slopes[2] * scale;
+        }
+        if shown.coarse_share > 0.0 {
+            second += shown.slope.x_axis * by_level;
+            third += shown.slope.y_axis * by_level;
+        }
+        errors.push(error);
+    }
+    (t, errors, [whole - second - third, second, third])
+}
+
+/// A triangle's samples on one level.
+struct Part {
+    error: f64,
+    /// Derivative of half the error for a common motion, and for the two edges.
+    slopes: [DVec2; 3],
+}
+
+fn on_level(place: &OnLevel, samples: &[Sample], texels: &[Vec4], size: usize) -> Part {
+    let (mut error, mut whole, mut second, mut third) = (0.0f64, Vec2::ZERO, Vec2::ZERO, Vec2::ZERO);
+    for sample in samples {
+        let ([x, y], [fx, fy], [dx, dy]) = place.place(sample);
+        let texel = y * size + x;
+        let (a, b) = (texels[texel], texels[texel + 1]);
+        let (c, d) = (texels[texel + size], texels[texel + size + 1]);
+        let (upper, lower) = (a + (b - a) * fx, c + (d - c) * fx);
+        let r = upper + (lower - upper) * fy - sample.target;
+        let weighted = r * sample.weight;
+        error += f64::from(weighted.dot(r));
+        let along_x = (b - a) + ((d - c) - (b - a)) * fy;
+        let slope = Vec2::new(weighted.dot(along_x) * dx, weighted.dot(lower - upper) * dy);
+        whole += slope;
+        second += slope * sample.barycentric[0];
+        third += slope * sample.barycentric[1];
+    }
+    Part { error, slopes: [whole, second, third].map(|s| s.as_dvec2()) }
+}

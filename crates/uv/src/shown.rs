@@ -1,0 +1,45 @@
+//! How a texture really looks: the squared error of the trilinear fetch that engines do,
+//! not the bound that is minimised (`best_texture.rs`).
+
+use crate::best_texture::{Mapped, Texture};
+use crate::footprint::{Footprint, pixel, shares};
+use crate::pyramid::{level_count, levels};
+use glam::Vec4;
+use rayon::prelude::*;
+
+/// The weighted squared error of each showing, summed over channels and samples.
+pub fn shown_errors(mapped: &Mapped, texture: &Texture) -> Vec<f64> {
+    let pyramid = levels(&texture.texels, texture.size, level_count(texture.size));
+    let parts: Vec<Vec<f64>> = (0..mapped.runs.count())
+        .into_par_iter()
+        .map(|run| {
+            let mut errors = vec![0.0; mapped.showings.len()];
+            for t in mapped.runs.triangles(run) {
+                let footprint = Footprint::new(mapped.points, mapped.triangles[t]);
+                for (signal, error) in mapped.showings.iter().zip(&mut errors) {
+                    let level = footprint.level(pixel(signal, t), texture.size, pyramid.len());
+                    for sample in signal.of(t) {
+                        let mut shown = Vec4::ZERO;
+                        for (l, share) in shares(&level) {
+                            let size = texture.size >> l;
+                            let ([x, y], [fx, fy], _) = footprint.on(size).place(sample);
+                            let row = |y: usize| {
+                                let (a, b) = (pyramid[l][y * size + x], pyramid[l][y * size + x + 1]);
+                                a + (b - a) * fx
+                            };
+                            shown += (row(y) * (1.0 - fy) + row(y + 1) * fy) * share;
+                        }
+                        let r = shown - sample.target;
+                        *error += f64::from(r.dot(r) * sample.weight);
+                    }
+                }
+            }
+            errors
+        })
+        .collect();
+    let mut errors = vec![0.0; mapped.showings.len()];
+    for part in parts {
+        errors.iter_mut().zip(part).for_each(|(sum, e)| *sum += e);
+    }
+    errors
+}
