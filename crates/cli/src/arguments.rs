@@ -20,6 +20,8 @@ pub struct Arguments {
 pub enum Command {
     /// Bake a detailed model's look onto a coarse one with texture coordinates
     Bake(BakeCommand),
+    /// Give a model a smaller texture that looks the same
+    Compress(CompressCommand),
     /// Make a plane that shows a picture with a smaller texture
     Image(ImageCommand),
     /// Make a detailed model and a coarse one, bake, and write a report
@@ -71,6 +73,38 @@ pub struct BakeCommand {
     pub report: Option<PathBuf>,
 
     /// How to bake
+    #[command(flatten, next_help_heading = "Baking")]
+    pub bake: BakeOptions,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = "Messages")]
+    pub talk: Talk,
+}
+
+/// Arguments of `compress`.
+#[derive(Args, Debug)]
+pub struct CompressCommand {
+    /// The model with its texture: .obj, .gltf or .glb
+    pub model: PathBuf,
+
+    /// Where the result goes: .glb, or .obj with .mtl and .png beside it
+    #[arg(short, long, value_name = "FILE", default_value = "compressed.glb")]
+    pub output: PathBuf,
+
+    /// A JSON file of options, or a JSON report whose options are taken; the command line wins
+    /// over it
+    #[arg(long, value_name = "FILE")]
+    pub options: Option<PathBuf>,
+
+    /// Write figures of the run as JSON to this file, or to standard output for "-"
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+
+    /// Write a report with pictures to this HTML file
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
+
+    /// How to do it
     #[command(flatten, next_help_heading = "Baking")]
     pub bake: BakeOptions,
 

@@ -4,6 +4,7 @@
 mod arguments;
 mod bake;
 mod check;
+mod compress;
 mod demo;
 mod evaluate;
 mod failure;
@@ -27,6 +28,7 @@ fn main() -> ExitCode {
         (Command::Bake(command), Some(given)) => bake::run(command, given),
         (Command::Demo(command), Some(given)) => demo::run(command, given),
         (Command::Eval(command), _) => evaluate::run(command),
+        (Command::Compress(command), Some(given)) => compress::run(command, given),
         (Command::Image(command), _) => image::run(command),
         (Command::Check(command), _) => check::run(command),
         (Command::Simplify(command), _) => simplify::run(command),

@@ -10,9 +10,10 @@ use crate::check::{check_mesh, warning};
 use crate::error::BakeError;
 use crate::low::LowPoly;
 use crate::message::{Message, Stage, Watcher};
-use crate::options::BakeOptions;
+use crate::options::{BakeOptions, UvMode};
 use crate::pair::{common_frame, placed};
 use crate::report::{BakeReport, StageTime};
+use crate::unfold::{Source, unfold};
 use crate::uv_animation::UvMoves;
 use parbake_fit::quantise::{color_image, normal_image};
 use parbake_fit::reference::render_references;
@@ -94,13 +95,43 @@ impl Clock {
     }
 }
 
-/// Bakes the high-poly's look onto the low-poly's own texture coordinates.
+/// Bakes the high-poly's look onto the low-poly.
 ///
 /// Runs on rayon's current thread pool. When the watcher asks to stop, the best
 /// state so far is returned; it is never worse than the projection.
 pub fn bake(
     high: &Model,
     low: &Model,
+    options: &BakeOptions,
+    watcher: &impl Watcher,
+) -> Result<Baked, BakeError> {
+    bake_pair(high, low, false, options, watcher)
+}
+
+/// Bakes a model onto itself with a smaller texture (the paper's Table 7). A normal map is
+/// written only where the model has one.
+///
+/// Contract and errors as of [`bake`].
+pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) -> Result<Baked, BakeError> {
+    let has_normals = model.materials.iter().any(|m| m.normal_texture.is_some());
+    if has_normals {
+        return bake_pair(model, model, true, options, watcher);
+    }
+    let options = BakeOptions { keep_normals: true, ..options.clone() };
+    let mut baked = bake_pair(model, model, true, &options, watcher)?;
+    for model in [&mut baked.model, &mut baked.projected] {
+        model.images.truncate(1);
+        model.materials.iter_mut().for_each(|m| m.normal_texture = None);
+        model.mesh.tangents.clear();
+    }
+    Ok(baked)
+}
+
+/// `same` says that both are one model, triangle by triangle.
+fn bake_pair(
+    high: &Model,
+    low: &Model,
+    same: bool,
     options: &BakeOptions,
     watcher: &impl Watcher,
 ) -> Result<Baked, BakeError> {
@@ -113,17 +144,26 @@ pub fn bake(
     let mut clock = Clock { since: begin, stages: Vec::new() };
     let frame = common_frame(high)?;
     let mesh = placed(high, &frame);
-    let (low_poly, (scene, surface)) = rayon::join(
-        || LowPoly::new(low, &frame, size),
-        || {
-            rayon::join(
-                || Scene::new(mesh.clone(), &high.materials, &high.images, convention.interpretation()),
-                || HighSurface::new(&mesh),
-            )
-        },
+    let (scene, surface) = rayon::join(
+        || Scene::new(mesh.clone(), &high.materials, &high.images, convention.interpretation()),
+        || HighSurface::new(&mesh),
     );
-    let LowPoly { written, placed, map, atlas, mut warnings } = low_poly?;
     drop(mesh);
+    let mut unfolded = None;
+    if options.uv != UvMode::Keep {
+        let source = Source {
+            scene: &scene,
+            surface: (!same).then_some(&surface),
+            reach: 2.0 * options.reach,
+            encode: convention.decodes_srgb(),
+        };
+        clock.lap(Stage::Prepare);
+        unfolded = Some(unfold(low, &frame, &source, &options.unfold(), watcher)?);
+        clock.lap(Stage::Unfold);
+    }
+    let low = unfolded.as_ref().map_or(low, |u| &u.model);
+    let LowPoly { written, placed, map, atlas, mut warnings } = LowPoly::new(low, &frame, size)?;
+    warnings.extend(unfolded.iter().flat_map(|u| u.report.mended.iter().map(|done| format!("{}: {done}", low.name))));
     for warning in &warnings {
         watcher.message(Message::Warning(warning.clone()));
     }
@@ -161,6 +201,7 @@ pub fn bake(
         warnings.push(warning);
     }
     let report = BakeReport {
+        unfold: unfolded.as_ref().map(|u| u.report.clone()),
         options: options.clone(),
         high_triangles: high.mesh.triangles.len(),
         low_triangles: low.mesh.triangles.len(),
@@ -187,7 +228,7 @@ pub fn bake(
         model: textured(low, &written, fitted.color, fitted.normal),
         projected,
         report,
-        uv_moves: None,
+        uv_moves: unfolded.as_ref().and_then(|u| u.moves.clone()),
     })
 }
 

@@ -9,6 +9,9 @@ pub enum BakeError {
     /// Reading or writing a file.
     #[error(transparent)]
     File(#[from] FileError),
+    /// Texture coordinates could not be made or mended.
+    #[error(transparent)]
+    Atlas(#[from] parbake_atlas::AtlasError),
     /// An option is out of range.
     #[error("--{option} {value} is out of range: it may be {range}")]
     Option {

@@ -30,9 +30,10 @@ mod pair;
 mod picture;
 mod report;
 mod threads;
+mod unfold;
 mod uv_animation;
 
-pub use bake::{Baked, bake};
+pub use bake::{Baked, bake, compress};
 pub use check::{LayoutCheck, ModelCheck, check_model};
 pub use error::BakeError;
 pub use evaluate::{EvaluateOptions, Evaluation, ViewFigures, evaluate};
@@ -49,4 +50,5 @@ pub use parbake_model::Model;
 pub use picture::{BakedImage, ImageOptions, ImageReport, bake_image};
 pub use report::{BakeReport, LossStep, StageTime};
 pub use threads::{join, with_threads};
+pub use unfold::UnfoldReport;
 pub use uv_animation::{UvAnimationOptions, UvMoves, uv_animation};

@@ -3,6 +3,7 @@
 //! quality field means "as the preset says".
 
 use crate::error::BakeError;
+use crate::unfold::UnfoldOptions;
 use parbake_fit::reference::Sampling;
 use parbake_fit::schedule::Schedule;
 use parbake_render::display::{Curve, Display};
@@ -108,6 +109,18 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Preset::Balanced))]
     pub preset: Preset,
 
+    /// What becomes of the low-poly's texture coordinates
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = UvMode::Optimize))]
+    pub uv: UvMode,
+
+    /// Least distance between charts in texels, 0 to 64 [default: 1, from 512 on a 256th of the side]
+    #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "TEXELS"))]
+    pub gutter: Option<f64>,
+
+    /// Steps in which texture coordinates are moved, 0 to 10000 [default: by preset 10, 30, 60]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
+    pub uv_steps: Option<usize>,
+
     /// How colours are understood when pictures are compared
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Convention::Gltf))]
     pub convention: Convention,
@@ -168,6 +181,9 @@ impl Default for BakeOptions {
         Self {
             texture_size: 512,
             preset: Preset::Balanced,
+            uv: UvMode::Optimize,
+            gutter: None,
+            uv_steps: None,
             convention: Convention::Gltf,
             backdrop: Backdrop::Black,
             silhouette: 0.5,
@@ -195,6 +211,26 @@ pub struct Plan {
 }
 
 impl BakeOptions {
+    /// The distance between charts in texels: as asked, or by the texture's size.
+    pub fn gutter_texels(&self) -> f64 {
+        self.gutter.unwrap_or((self.texture_size as f64 / 256.0).clamp(1.0, 8.0))
+    }
+
+    /// What to do with texture coordinates.
+    pub(crate) fn unfold(&self) -> UnfoldOptions {
+        let steps = match self.preset {
+            Preset::Fast => 10,
+            Preset::Balanced => 30,
+            Preset::Best => 60,
+        };
+        UnfoldOptions {
+            mode: self.uv,
+            texture_size: self.texture_size,
+            gutter: self.gutter_texels(),
+            steps: self.uv_steps.unwrap_or(steps),
+        }
+    }
+
     /// Checks every range; the error names the option and what it may be.
     pub fn check(&self) -> Result<(), BakeError> {
         let within = |option: &'static str, value: f64, low: f64, high: f64| {
@@ -210,6 +246,8 @@ impl BakeOptions {
         within("views", self.views.unwrap_or(1) as f64, 1.0, 4096.0)?;
         within("view-size", self.view_size.unwrap_or(32) as f64, 32.0, 2048.0)?;
         within("rounds", self.rounds.unwrap_or(0) as f64, 0.0, 100.0)?;
+        within("gutter", self.gutter.unwrap_or(0.0), 0.0, 64.0)?;
+        within("uv-steps", self.uv_steps.unwrap_or(0) as f64, 0.0, 10_000.0)?;
         within("threads", self.threads as f64, 0.0, crate::threads::MOST_THREADS as f64)?;
         within("time-budget", self.time_budget.unwrap_or(0.0), 0.0, 1e9)
     }

@@ -2,6 +2,7 @@
 
 use crate::message::Stage;
 use crate::options::BakeOptions;
+use crate::unfold::UnfoldReport;
 use parbake_atlas::UvCheck;
 use parbake_fit::schedule::{LossPoint, Move};
 use serde::{Deserialize, Serialize};
@@ -41,6 +42,8 @@ impl From<&LossPoint> for LossStep {
 /// What a bake saw.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BakeReport {
+    /// What was done with texture coordinates; none where they were kept.
+    pub unfold: Option<UnfoldReport>,
     /// What was asked.
     pub options: BakeOptions,
     /// Triangles of the high-poly.

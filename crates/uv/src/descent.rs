@@ -5,9 +5,14 @@
 //! Contract: beginning at a feasible layout, every accepted one is feasible **as numbers
 //! of a file**: candidates are rounded to `f32` first and judged then. The value never
 //! rises. Points move only along free coordinates.
+//!
+//! [`descend`] is the whole way for one objective; [`Place::step`] is one step, for
+//! objectives that change in between.
 
+pub use crate::lbfgs::Preconditioner;
+
+use crate::lbfgs::{Lbfgs, dot, mask};
 use glam::DVec2;
-use std::collections::VecDeque;
 
 /// What is minimised.
 pub trait Objective {
@@ -24,12 +29,6 @@ pub trait Region {
     fn max_step(&self, points: &[DVec2], direction: &[DVec2], limit: f64) -> f64;
     /// Whether this very layout is feasible, decided exactly.
     fn is_feasible(&self, points: &[DVec2]) -> bool;
-}
-
-/// An approximation of the inverse Hessian that is symmetric and positive definite.
-pub trait Preconditioner {
-    /// Applies it in place.
-    fn apply(&self, vector: &mut [DVec2]);
 }
 
 /// How far to go.
@@ -79,133 +78,134 @@ pub fn descend(
     options: &DescentOptions,
     mut step: impl FnMut(&[DVec2], f64) -> bool,
 ) -> Descent {
-    let free = region.free();
-    let count = points.len();
-    let mut gradient = vec![DVec2::ZERO; count];
-    let mut value = objective.evaluate(points, &mut gradient);
-    mask(&mut gradient, free);
-    let mut descent = Descent { values: vec![value], evaluations: 1 };
-    let mut memory: VecDeque<Change> = VecDeque::new();
-    let (mut candidate, mut next) = (points.clone(), gradient.clone());
+    let mut place = Place::new(std::mem::take(points), objective, region);
+    let mut memory = Lbfgs::new(options.memory);
+    let mut values = vec![place.value];
     let mut idle = 0;
     for _ in 0..options.steps {
-        let mut direction = two_loop(&memory, &gradient, preconditioner, free);
-        let mut slope = dot(&direction, &gradient);
-        if slope >= 0.0 || !slope.is_finite() {
-            memory.clear();
-            direction = two_loop(&memory, &gradient, preconditioner, free);
-            slope = dot(&direction, &gradient);
+        let before = place.value;
+        match place.step(&mut memory, objective, region, preconditioner, options.longest_move) {
+            Step::Stuck => break,
+            Step::Forgot => continue,
+            Step::Moved => values.push(place.value),
         }
-        if slope >= 0.0 || !slope.is_finite() {
+        idle = if before - place.value < options.tolerance * before.abs() { idle + 1 } else { 0 };
+        if !step(&place.points, place.value) || idle >= options.patience {
             break;
         }
+    }
+    *points = place.points;
+    Descent { values, evaluations: place.evaluations }
+}
+
+/// Where a descent is. An objective that changes between steps is evaluated anew by
+/// [`Place::refresh`]; what L-BFGS remembers may stay.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// The layout.
+    pub points: Vec<DVec2>,
+    /// The objective there.
+    pub value: f64,
+    /// Its derivative for free coordinates, 0 for the others.
+    pub gradient: Vec<DVec2>,
+    /// Evaluations of the objective so far.
+    pub evaluations: usize,
+    /// Room for the next layout and its gradient.
+    candidate: Vec<DVec2>,
+    next: Vec<DVec2>,
+}
+
+/// What a step came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// The value fell.
+    Moved,
+    /// It did not, and the memory was cleared, since old curvature may mislead: the next
+    /// step will try the preconditioned gradient alone.
+    Forgot,
+    /// That did not help either.
+    Stuck,
+}
+
+impl Place {
+    /// Evaluates the objective at these points.
+    pub fn new(points: Vec<DVec2>, objective: &mut impl Objective, region: &impl Region) -> Self {
+        let zero = vec![DVec2::ZERO; points.len()];
+        let candidate = points.clone();
+        let mut place =
+            Self { points, value: 0.0, gradient: zero.clone(), evaluations: 0, candidate, next: zero };
+        place.refresh(objective, region);
+        place
+    }
+
+    /// Evaluates an objective that has changed.
+    pub fn refresh(&mut self, objective: &mut impl Objective, region: &impl Region) {
+        self.value = objective.evaluate(&self.points, &mut self.gradient);
+        self.evaluations += 1;
+        mask(&mut self.gradient, region.free());
+    }
+
+    /// One step of L-BFGS with its line search; no point moves farther than `longest_move`.
+    pub fn step(
+        &mut self,
+        memory: &mut Lbfgs,
+        objective: &mut impl Objective,
+        region: &impl Region,
+        preconditioner: &impl Preconditioner,
+        longest_move: f64,
+    ) -> Step {
+        let free = region.free();
+        let mut direction = memory.direction(&self.gradient, preconditioner, free);
+        let mut slope = dot(&direction, &self.gradient);
+        if slope >= 0.0 || !slope.is_finite() {
+            memory.clear();
+            direction = memory.direction(&self.gradient, preconditioner, free);
+            slope = dot(&direction, &self.gradient);
+        }
+        if slope >= 0.0 || !slope.is_finite() {
+            return Step::Stuck;
+        }
+        let Some(found) = self.search(&direction, slope, objective, region, longest_move) else {
+            if memory.is_empty() {
+                return Step::Stuck;
+            }
+            memory.clear();
+            return Step::Forgot;
+        };
+        mask(&mut self.next, free);
+        memory.remember(&self.points, &self.candidate, &self.gradient, &self.next);
+        std::mem::swap(&mut self.points, &mut self.candidate);
+        std::mem::swap(&mut self.gradient, &mut self.next);
+        self.value = found;
+        Step::Moved
+    }
+
+    /// The line search: leaves what it accepts in `candidate` and `next`, and gives its value.
+    fn search(
+        &mut self,
+        direction: &[DVec2],
+        slope: f64,
+        objective: &mut impl Objective,
+        region: &impl Region,
+        longest_move: f64,
+    ) -> Option<f64> {
         let longest = direction.iter().map(|d| d.length()).fold(0.0, f64::max);
-        let wanted = (options.longest_move / longest).min(1.0);
-        let limit = region.max_step(points, &direction, wanted / FEASIBLE_SHARE);
+        let wanted = (longest_move / longest).min(1.0);
+        let limit = region.max_step(&self.points, direction, wanted / FEASIBLE_SHARE);
         let mut length = wanted.min(FEASIBLE_SHARE * limit);
-        let mut accepted = None;
         for _ in 0..HALVINGS {
-            for ((c, p), d) in candidate.iter_mut().zip(points.iter()).zip(&direction) {
+            for ((c, p), d) in self.candidate.iter_mut().zip(&self.points).zip(direction) {
                 *c = (*p + *d * length).as_vec2().as_dvec2();
             }
-            if region.is_feasible(&candidate) {
-                let found = objective.evaluate(&candidate, &mut next);
-                descent.evaluations += 1;
-                if found <= value + SUFFICIENT * length * slope {
-                    accepted = Some(found);
-                    break;
+            if region.is_feasible(&self.candidate) {
+                let found = objective.evaluate(&self.candidate, &mut self.next);
+                self.evaluations += 1;
+                if found <= self.value + SUFFICIENT * length * slope {
+                    return Some(found);
                 }
             }
             length *= 0.5;
         }
-        let Some(found) = accepted else {
-            // Old curvature may mislead; try once from the preconditioned gradient alone.
-            if memory.is_empty() {
-                break;
-            }
-            memory.clear();
-            continue;
-        };
-        mask(&mut next, free);
-        memory.extend(Change::between(points, &candidate, &gradient, &next));
-        if memory.len() > options.memory {
-            memory.pop_front();
-        }
-        std::mem::swap(points, &mut candidate);
-        std::mem::swap(&mut gradient, &mut next);
-        idle = if value - found < options.tolerance * value.abs() { idle + 1 } else { 0 };
-        value = found;
-        descent.values.push(value);
-        if !step(points, value) || idle >= options.patience {
-            break;
-        }
+        None
     }
-    descent
-}
-
-/// A step and what it did to the gradient.
-struct Change {
-    points: Vec<DVec2>,
-    gradient: Vec<DVec2>,
-    /// 1 / (sᵀ y).
-    scale: f64,
-}
-
-impl Change {
-    /// None where the curvature along the step is not positive.
-    fn between(from: &[DVec2], to: &[DVec2], old: &[DVec2], new: &[DVec2]) -> Option<Self> {
-        let points: Vec<DVec2> = to.iter().zip(from).map(|(a, b)| *a - *b).collect();
-        let gradient: Vec<DVec2> = new.iter().zip(old).map(|(a, b)| *a - *b).collect();
-        let curvature = dot(&points, &gradient);
-        let noise = 1e-10 * (dot(&points, &points) * dot(&gradient, &gradient)).sqrt();
-        (curvature > noise).then(|| Self { points, gradient, scale: 1.0 / curvature })
-    }
-}
-
-/// Minus the gradient times the approximate inverse Hessian.
-fn two_loop(
-    memory: &VecDeque<Change>,
-    gradient: &[DVec2],
-    preconditioner: &impl Preconditioner,
-    free: &[DVec2],
-) -> Vec<DVec2> {
-    let mut q: Vec<DVec2> = gradient.iter().map(|g| -*g).collect();
-    let mut factors = vec![0.0; memory.len()];
-    for (change, factor) in memory.iter().zip(&mut factors).rev() {
-        *factor = change.scale * dot(&change.points, &q);
-        add(&mut q, &change.gradient, -*factor);
-    }
-    preconditioner.apply(&mut q);
-    mask(&mut q, free);
-    if let Some(last) = memory.back() {
-        // The preconditioner's own scale, from the last step.
-        let mut y = last.gradient.clone();
-        preconditioner.apply(&mut y);
-        mask(&mut y, free);
-        let gamma = 1.0 / (last.scale * dot(&last.gradient, &y)).max(f64::MIN_POSITIVE);
-        for q in &mut q {
-            *q *= gamma;
-        }
-    }
-    for (change, factor) in memory.iter().zip(&factors) {
-        let back = change.scale * dot(&change.gradient, &q);
-        add(&mut q, &change.points, factor - back);
-    }
-    q
-}
-
-fn mask(vector: &mut [DVec2], free: &[DVec2]) {
-    for (v, f) in vector.iter_mut().zip(free) {
-        *v *= *f;
-    }
-}
-
-fn add(to: &mut [DVec2], what: &[DVec2], scale: f64) {
-    for (a, b) in to.iter_mut().zip(what) {
-        *a += *b * scale;
-    }
-}
-
-fn dot(a: &[DVec2], b: &[DVec2]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
 }

@@ -112,15 +112,12 @@ impl Balance {
         weighted
     }
 
-    /// Learns from what is left now, relative to the baseline: showings near it or above
-    /// count more, those far below less.
+    /// Learns from what is left now, relative to the baseline: showings that are about to
+    /// become worse than it count more, those far below less.
     pub fn update(&mut self, relative: &[f64]) {
+        const AIM: f64 = 0.85;
         for (weight, relative) in self.weights.iter_mut().zip(relative).skip(1) {
-            *weight *= match *relative {
-                r if r > 0.8 => (2.0 * r).min(20.0),
-                r if r < 0.5 => 0.5,
-                _ => 1.0,
-            };
+            *weight *= (relative / AIM).powf(1.5).clamp(0.3, 6.0);
             *weight = weight.clamp(0.01, 50.0);
         }
     }

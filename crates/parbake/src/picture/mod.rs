@@ -221,27 +221,24 @@ fn balanced_texture(
     mut balance: Balance,
     kept: &[f64],
 ) -> Option<Texture> {
-    const ATTEMPTS: usize = 3;
+    const ATTEMPTS: usize = 4;
     balance.baseline = kept.iter().map(|e| e.max(1e-9)).collect();
+    let mut best: Option<(f64, Texture)> = None;
     let mut texture = start;
     for _ in 0..ATTEMPTS {
         texture = written_texture(layout, &balance.weighted(all), texture);
         let found = errors(layout, all, &texture);
-        if found[0] > kept[0] {
-            return None;
+        let relative: Vec<f64> = found.iter().zip(&balance.baseline).map(|(e, kept)| e / kept).collect();
+        let fine = relative[0] < 1.0 && relative[1..].iter().all(|r| *r <= TOLERATED);
+        let better = best.as_ref().is_none_or(|(error, _)| relative[0] < 0.99 * error);
+        if fine && better {
+            best = Some((relative[0], texture.clone()));
+        } else if best.is_some() {
+            break;
         }
-        let mut fine = true;
-        for k in 1..found.len() {
-            if found[k] > TOLERATED * kept[k] {
-                balance.weights[k] *= 4.0;
-                fine = false;
-            }
-        }
-        if fine {
-            return Some(texture);
-        }
+        balance.update(&relative);
     }
-    None
+    best.map(|(_, texture)| texture)
 }
 
 /// The best texture of 8-bit texels, as numbers from 0 to 1.

@@ -1,0 +1,112 @@
+//! What a surface's texture shall show, before any texture or view exists: points all over
+//! the surface, each with the colour and the normal that the high-poly has there.
+//!
+//! Points are spread evenly, as cameras all around see the surface on average: a triangle
+//! has as many as its area asks for, laid out by the R2 sequence (Roberts 2018).
+
+use parbake_mesh::HighSurface;
+use parbake_model::Mesh;
+use parbake_model::glam::{DMat2, Vec3, Vec4};
+use parbake_render::display::encode_srgb;
+use parbake_render::interpolate::interpolate;
+use parbake_render::scene::Scene;
+use parbake_uv::distortion::{has_area, total_area};
+use parbake_uv::signal::{Sample, Signal};
+use rayon::prelude::*;
+
+/// Where the signal comes from.
+pub struct Source<'a> {
+    /// The high-poly.
+    pub scene: &'a Scene,
+    /// Its surface to project on; None where the low-poly is the high-poly itself, with the
+    /// same triangles.
+    pub surface: Option<&'a HighSurface>,
+    /// How far projection looks to either side, in the common frame.
+    pub reach: f32,
+    /// Whether colours are linear and are compared as sRGB.
+    pub encode: bool,
+}
+
+/// How much a normal's change counts against a colour's: light from the camera turns a
+/// change of the angle into about this share of the colour, over the visible half-sphere.
+const NORMAL_WEIGHT: f32 = 0.5;
+
+/// The surface at two sizes: with pixels of width `pixel`, in the common frame, and twice
+/// that. At most about `most` samples are taken at the first one.
+pub fn showings(mesh: &Mesh, rest: &[DMat2], source: &Source, pixel: f64, most: usize) -> Vec<Signal> {
+    let area = total_area(rest);
+    [1.0, 2.0]
+        .into_iter()
+        .map(|size| {
+            let own = pixel * size;
+            let spacing = own.max((area / (most as f64 / (size * size))).sqrt());
+            showing(mesh, rest, source, own, spacing)
+        })
+        .collect()
+}
+
+fn showing(mesh: &Mesh, rest: &[DMat2], source: &Source, pixel: f64, spacing: f64) -> Signal {
+    let total = total_area(rest);
+    // What one triangle is too small for goes to the next: the sum is right.
+    let mut carried = 0.0;
+    let counts: Vec<usize> = rest
+        .iter()
+        .map(|r| {
+            carried += 0.5 * r.determinant() / (spacing * spacing);
+            let count = carried.floor();
+            carried -= count;
+            if has_area(r, total) { count as usize } else { 0 }
+        })
+        .collect();
+    let all: usize = counts.iter().sum();
+    let weight = 1.0 / all.max(1) as f32;
+    let samples: Vec<(u32, Sample)> = (counts.par_iter().enumerate())
+        .flat_map_iter(|(t, &count)| {
+            (0..count).filter_map(move |i| {
+                let barycentric = spread(t, i);
+                let target = look(mesh, t, barycentric, source, pixel as f32)?;
+                Some((t as u32, Sample { target, barycentric, weight }))
+            })
+        })
+        .collect();
+    let mut signal = Signal::new(rest.len(), &samples);
+    signal.pixels = rest
+        .iter()
+        .map(|r| if has_area(r, total) { r.inverse() * pixel } else { DMat2::ZERO })
+        .collect();
+    signal
+}
+
+/// The i-th point of a triangle.
+fn spread(triangle: usize, i: usize) -> [f32; 2] {
+    let at = |step: f64| ((i as f64 + 1.0) * step + triangle as f64 * 0.618_033_988_749).fract() as f32;
+    let (b, c) = (at(0.754_877_666_246_7), at(0.569_840_290_998_1));
+    if b + c <= 1.0 { [b, c] } else { [1.0 - b, 1.0 - c] }
+}
+
+/// Colour in three channels; in the fourth how the normal shades it, which stands for the
+/// normal map.
+fn look(mesh: &Mesh, t: usize, [b, c]: [f32; 2], source: &Source, width: f32) -> Option<Vec4> {
+    // A layout's second and third corner are the mesh's third and second.
+    let weights = [1.0 - b - c, c, b];
+    let (color, normal) = match source.surface {
+        None => source.scene.look(t, weights, width),
+        Some(surface) => {
+            let corners = mesh.triangles[t].map(|i| i as usize);
+            let point = interpolate(corners.map(|i| mesh.positions[i]), weights);
+            let normal = interpolate(corners.map(|i| mesh.normals[i]), weights).normalize_or_zero();
+            let hit = surface.project(point, normal, source.reach)?;
+            let [b1, b2] = hit.barycentric;
+            let (color, found) = source.scene.look(hit.triangle as usize, [1.0 - b1 - b2, b1, b2], width);
+            (color, if found.dot(normal) < 0.0 { -found } else { found })
+        }
+    };
+    let stored = |x: f32| if source.encode { encode_srgb(x.clamp(0.0, 1.0)) } else { x.clamp(0.0, 1.0) };
+    let color = Vec3::from(color.to_array().map(stored));
+    let shade = if source.surface.is_some() {
+        0.5 + NORMAL_WEIGHT * color.element_sum() / 3.0 * normal.dot(Vec3::ONE) / 3f32.sqrt()
+    } else {
+        0.5
+    };
+    Some(color.extend(shade))
+}
