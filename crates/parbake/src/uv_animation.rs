@@ -124,7 +124,7 @@ fn encoded(drawing: &Drawing, moves: &UvMoves, shown: &[usize]) -> Result<Vec<u8
     for frame in &frames {
         encoder.write_lzw_pre_encoded_frame(frame).map_err(failed)?;
     }
-    encoder.into_inner().map_err(|error| failed(error.into()))
+    encoder.into_inner().map_err(failed)
 }
 
 /// The smallest rectangle that holds all changes; inside it, what did not change is
