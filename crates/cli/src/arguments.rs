@@ -20,7 +20,8 @@ pub struct Arguments {
 pub enum Command {
     /// Bake a detailed model's look onto a coarse one with texture coordinates
     Bake(BakeCommand),
-    /// Give a model a smaller texture that looks the same
+    /// Give a model a smaller texture that looks the same; compares textures as stored
+    /// (--convention paper) unless told otherwise
     Compress(CompressCommand),
     /// Make a plane that shows a picture with a smaller texture
     Image(ImageCommand),
@@ -104,7 +105,8 @@ pub struct CompressCommand {
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
 
-    /// How to do it
+    /// How to do it; here --convention is paper by default: what is compared is the texture as
+    /// it is stored
     #[command(flatten, next_help_heading = "Baking")]
     pub bake: BakeOptions,
 

@@ -7,12 +7,17 @@ use crate::image::bytes;
 use crate::options_file::merged;
 use crate::progress::Console;
 use clap::ArgMatches;
-use parbake::{Model, Stage, StageTime, compress, with_threads};
+use clap::parser::ValueSource;
+use parbake::{Convention, Model, Stage, StageTime, compress, with_threads};
 use std::path::Path;
 
 /// Runs the command.
 pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Failure> {
-    let options = merged(&command.bake, given, command.options.as_deref())?;
+    let mut options = merged(&command.bake, given, command.options.as_deref())?;
+    if given.value_source("convention") == Some(ValueSource::DefaultValue) && command.options.is_none() {
+        // A smaller texture shall hold the same stored values, as when a picture is scaled.
+        options.convention = Convention::Paper;
+    }
     options.check()?;
     check_output(&command.output)?;
     check_not_input(&command.output, &[&command.model])?;

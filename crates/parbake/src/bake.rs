@@ -136,7 +136,11 @@ fn bake_pair(
     watcher: &impl Watcher,
 ) -> Result<Baked, BakeError> {
     options.check()?;
-    let plan = options.plan();
+    let mut plan = options.plan();
+    if same {
+        // Nothing is moved by parallax, so sharper samples only bring out more.
+        plan.reference.filter = (0.5 * plan.reference.filter).max(1.0 / 16.0);
+    }
     let (convention, size) = (options.convention, options.texture_size);
     let begin = Instant::now();
     let until = options.time_budget.map(|seconds| begin + Duration::from_secs_f64(seconds.min(1e9)));

@@ -41,7 +41,7 @@ pub use html::html_report;
 pub use memory::peak_memory;
 pub use message::{Message, Stage, Watcher};
 pub use models::{demo_pair, simplified, subdivided};
-pub use options::{Backdrop, BakeOptions, Convention, Plan, Preset, UvMode};
+pub use options::{Backdrop, BakeOptions, Convention, Method, Plan, Preset, UvMode};
 pub use parbake_atlas::UvCheck;
 pub use parbake_files::{
     FileError, Limits, Loaded, read_image, read_model, write_atomically as write_file, write_glb, write_obj,

@@ -8,6 +8,7 @@ use parbake_fit::reference::Sampling;
 use parbake_fit::schedule::Schedule;
 use parbake_render::display::{Curve, Display};
 use parbake_render::scene::Interpretation;
+use parbake_uv::paper::{Guide, PaperOptions};
 use serde::{Deserialize, Serialize};
 
 /// How much time a bake may take for how much quality.
@@ -70,6 +71,37 @@ pub enum UvMode {
     Optimize,
 }
 
+/// How texture coordinates are moved where they are optimised.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum Method {
+    /// A start specialised to the signal, then variable projection: what the best texture
+    /// leaves is reduced itself.
+    #[default]
+    Fit,
+    /// The paper's alternation: steps of Adam on the texture, one step of L-BFGS on the
+    /// coordinates.
+    Paper,
+}
+
+impl Method {
+    /// What moves coordinates in the paper's method, with and without its content-aware term
+    /// (Table 3).
+    pub(crate) fn guide(no_content_aware: bool) -> Guide {
+        if no_content_aware { Guide::ImageLoss } else { Guide::ContentAware }
+    }
+
+    /// Checks that the paper's switch is only used with the paper's method.
+    pub(crate) fn check(self, no_content_aware: bool) -> Result<(), BakeError> {
+        if no_content_aware && self != Method::Paper {
+            let range = "false, unless --method is paper".into();
+            return Err(BakeError::Option { option: "no-content-aware", value: "true".into(), range });
+        }
+        Ok(())
+    }
+}
+
 /// What lies behind the models while fitting: the low-poly is asked to look like this
 /// where its silhouette goes beyond the high-poly's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -113,11 +145,20 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = UvMode::Optimize))]
     pub uv: UvMode,
 
+    /// How texture coordinates are moved; textures are fitted the same way after either
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Method::Fit))]
+    pub method: Method,
+
+    /// Leave out the paper's content-aware term; only with --method paper
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub no_content_aware: bool,
+
     /// Least distance between charts in texels, 0 to 64 [default: 1, from 512 on a 256th of the side]
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "TEXELS"))]
     pub gutter: Option<f64>,
 
-    /// Steps in which texture coordinates are moved, 0 to 10000 [default: by preset 10, 30, 60]
+    /// Steps in which texture coordinates are moved, 0 to 10000 [default: by preset 10, 30, 60;
+    /// with --method paper 800]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
     pub uv_steps: Option<usize>,
 
@@ -182,6 +223,8 @@ impl Default for BakeOptions {
             texture_size: 512,
             preset: Preset::Balanced,
             uv: UvMode::Optimize,
+            method: Method::Fit,
+            no_content_aware: false,
             gutter: None,
             uv_steps: None,
             convention: Convention::Gltf,
@@ -210,6 +253,9 @@ pub struct Plan {
     pub schedule: Schedule,
 }
 
+/// Seconds below which a time budget is better spent on textures alone.
+const LEAST_BUDGET: f64 = 3.0;
+
 impl BakeOptions {
     /// The distance between charts in texels: as asked, or by the texture's size.
     pub fn gutter_texels(&self) -> f64 {
@@ -218,15 +264,20 @@ impl BakeOptions {
 
     /// What to do with texture coordinates.
     pub(crate) fn unfold(&self) -> UnfoldOptions {
-        let steps = match self.preset {
-            Preset::Fast => 10,
-            Preset::Balanced => 30,
-            Preset::Best => 60,
+        let steps = match (self.method, self.preset) {
+            (Method::Paper, _) => PaperOptions::default().rounds,
+            (Method::Fit, Preset::Fast) => 10,
+            (Method::Fit, Preset::Balanced) => 30,
+            (Method::Fit, Preset::Best) => 60,
         };
+        let hurried = self.time_budget.is_some_and(|seconds| seconds < LEAST_BUDGET);
         UnfoldOptions {
-            mode: self.uv,
+            mode: if hurried && self.uv == UvMode::Optimize { UvMode::Repair } else { self.uv },
+            method: self.method,
+            guide: Method::guide(self.no_content_aware),
             texture_size: self.texture_size,
             gutter: self.gutter_texels(),
+            gutter_asked: self.gutter.is_some(),
             steps: self.uv_steps.unwrap_or(steps),
         }
     }
@@ -249,7 +300,8 @@ impl BakeOptions {
         within("gutter", self.gutter.unwrap_or(0.0), 0.0, 64.0)?;
         within("uv-steps", self.uv_steps.unwrap_or(0) as f64, 0.0, 10_000.0)?;
         within("threads", self.threads as f64, 0.0, crate::threads::MOST_THREADS as f64)?;
-        within("time-budget", self.time_budget.unwrap_or(0.0), 0.0, 1e9)
+        within("time-budget", self.time_budget.unwrap_or(0.0), 0.0, 1e9)?;
+        self.method.check(self.no_content_aware)
     }
 
     /// Settles what the preset leaves open.
@@ -284,5 +336,34 @@ impl BakeOptions {
                 ..Schedule::default()
             },
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects files that were written before there was a choice of methods.
+    #[test]
+    fn older_options_still_parse() {
+        let options: BakeOptions = serde_json::from_str(r#"{"texture_size": 64, "uv_steps": 3}"#).unwrap();
+        assert_eq!((options.method, options.no_content_aware), (Method::Fit, false));
+        let options: crate::ImageOptions = serde_json::from_str(r#"{"grid": 20, "steps": 40}"#).unwrap();
+        assert_eq!((options.method, options.steps), (Method::Fit, Some(40)));
+    }
+
+    /// Protects from a switch that does nothing: it belongs to the paper's method.
+    #[test]
+    fn the_papers_switch_needs_its_method() {
+        let mut options = BakeOptions { no_content_aware: true, ..BakeOptions::default() };
+        assert!(options.check().is_err());
+        options.method = Method::Paper;
+        assert!(options.check().is_ok());
+        assert_eq!(options.unfold().guide, Guide::ImageLoss);
+        assert_eq!(options.unfold().steps, 800);
+        options.uv_steps = Some(7);
+        assert_eq!(options.unfold().steps, 7);
+        let picture = crate::ImageOptions { no_content_aware: true, ..crate::ImageOptions::default() };
+        assert!(picture.check().is_err());
     }
 }

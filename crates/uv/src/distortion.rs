@@ -41,7 +41,8 @@ impl Element {
     pub fn evaluate(&self, edges: DMat2) -> (f64, DMat2) {
         let j = edges * self.rest_inverse;
         let determinant = j.determinant();
-        let adjugate = DMat2::from_cols(DVec2::new(j.y_axis.y, -j.x_axis.y), DVec2::new(-j.y_axis.x, j.x_axis.x));
+        let adjugate =
+            DMat2::from_cols(DVec2::new(j.y_axis.y, -j.x_axis.y), DVec2::new(-j.y_axis.x, j.x_axis.x));
         let product = self.shrinking * adjugate;
         let stretch = dot(product, adjugate);
         let squared = 1.0 / (determinant * determinant);
@@ -53,7 +54,8 @@ impl Element {
         ) * 2.0;
         let cofactor =
             DMat2::from_cols(DVec2::new(j.y_axis.y, -j.y_axis.x), DVec2::new(-j.x_axis.y, j.x_axis.x));
-        let by_j = j * (2.0 * self.growth) + slope * squared - cofactor * (2.0 * stretch * squared / determinant);
+        let by_j =
+            j * (2.0 * self.growth) + slope * squared - cofactor * (2.0 * stretch * squared / determinant);
         (value, by_j * self.rest_inverse.transpose() * self.area)
     }
 }
@@ -166,9 +168,16 @@ mod tests {
         let rest = [DMat2::IDENTITY];
         let distortion = Distortion::symmetric_dirichlet(&rest, 1.0, |_| 1.0);
         let at = |s: f64| {
-            distortion.add(&[DVec2::ZERO, dvec2(s, 0.0), dvec2(0.0, s)], &[[0, 1, 2]], 1.0, &mut [DVec2::ZERO; 3])
+            distortion.add(
+                &[DVec2::ZERO, dvec2(s, 0.0), dvec2(0.0, s)],
+                &[[0, 1, 2]],
+                1.0,
+                &mut [DVec2::ZERO; 3],
+            )
         };
         assert!((at(1.0) - 4.0).abs() < 1e-12);
-        assert!(at(0.9) > 4.0 && at(1.1) > 4.0 && at(-1.0).is_infinite());
+        assert!(at(0.9) > 4.0 && at(1.1) > 4.0);
+        let mirrored = [DVec2::ZERO, dvec2(-1.0, 0.0), dvec2(0.0, 1.0)];
+        assert!(distortion.add(&mirrored, &[[0, 1, 2]], 1.0, &mut [DVec2::ZERO; 3]).is_infinite());
     }
 }

@@ -19,5 +19,4 @@ pub mod residual;
 pub mod runs;
 pub mod shown;
 pub mod signal;
-pub mod texture;
 pub mod variable_projection;

@@ -98,4 +98,3 @@ pub fn chart_scales(tensors: &[DMat2], rest: &[DMat2], charts: &[u32], most: f64
         })
         .collect()
 }
-

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// least 4, for engines agree no further.
 pub fn level_count(size: usize) -> usize {
     let mut count = 1;
-    while size >> (count - 1) >= 4 && (size >> (count - 1)) % 2 == 0 {
+    while size >> (count - 1) >= 4 && (size >> (count - 1)).is_multiple_of(2) {
         count += 1;
     }
     count

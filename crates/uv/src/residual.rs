@@ -27,13 +27,13 @@ pub struct Residual {
 /// `gradient`.
 pub fn residual(mapped: &Mapped, texture: &Texture, gradient: &mut [DVec2]) -> Vec<Residual> {
     let pyramid = levels(&texture.texels, texture.size, level_count(texture.size));
-    let parts: Vec<Vec<(usize, Vec<f64>, [DVec2; 3])>> = (0..mapped.runs.count())
+    let parts: Vec<Vec<Share>> = (0..mapped.runs.count())
         .into_par_iter()
         .map(|run| mapped.runs.triangles(run).map(|t| triangle(mapped, &pyramid, texture.size, t)).collect())
         .collect();
     let empty = Residual { error: 0.0, by_triangle: vec![0.0; mapped.triangles.len()] };
     let mut residuals = vec![empty; mapped.showings.len()];
-    for (t, errors, slopes) in parts.into_iter().flatten() {
+    for Share { triangle: t, errors, slopes } in parts.into_iter().flatten() {
         for (residual, error) in residuals.iter_mut().zip(errors) {
             residual.error += error;
             residual.by_triangle[t] = error;
@@ -45,7 +45,16 @@ pub fn residual(mapped: &Mapped, texture: &Texture, gradient: &mut [DVec2]) -> V
     residuals
 }
 
-fn triangle(mapped: &Mapped, pyramid: &[Vec<Vec4>], size: usize, t: usize) -> (usize, Vec<f64>, [DVec2; 3]) {
+/// What one triangle has of the residuals and of their derivative.
+struct Share {
+    triangle: usize,
+    /// One for each showing.
+    errors: Vec<f64>,
+    /// Derivatives for the three corners.
+    slopes: [DVec2; 3],
+}
+
+fn triangle(mapped: &Mapped, pyramid: &[Vec<Vec4>], size: usize, t: usize) -> Share {
     let footprint = Footprint::new(mapped.points, mapped.triangles[t]);
     let (mut whole, mut second, mut third) = (DVec2::ZERO, DVec2::ZERO, DVec2::ZERO);
     let mut errors = Vec::with_capacity(mapped.showings.len());
@@ -73,7 +82,7 @@ fn triangle(mapped: &Mapped, pyramid: &[Vec<Vec4>], size: usize, t: usize) -> (u
         }
         errors.push(error);
     }
-    (t, errors, [whole - second - third, second, third])
+    Share { triangle: t, errors, slopes: [whole - second - third, second, third] }
 }
 
 /// A triangle's samples on one level.

@@ -9,10 +9,10 @@
 //! The texture is kept between evaluations as the next solve's start: the only state,
 //! and it decides how long a solve takes, not what it finds.
 
+use crate::best_texture::{Mapped, Solve, Texture, best_texture};
 use crate::contact::Contact;
 use crate::descent::Objective;
 use crate::distortion::Distortion;
-use crate::best_texture::{Mapped, Solve, Texture, best_texture};
 use crate::residual::residual;
 use glam::DVec2;
 

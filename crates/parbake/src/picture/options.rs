@@ -1,7 +1,8 @@
 //! What a user can ask of `parbake image`.
 
 use crate::error::BakeError;
-use crate::options::UvMode;
+use crate::options::{Method, UvMode};
+use parbake_uv::paper::PaperOptions;
 use serde::{Deserialize, Serialize};
 
 /// Options of [`crate::bake_image`].
@@ -14,7 +15,7 @@ pub struct ImageOptions {
     pub texture_size: usize,
 
     /// Cells along a side of the plane, 4 to 400: more follow the picture better and make the
-    /// model larger; each cell costs some 45 bytes
+    /// model larger; each cell costs some 45 bytes; the paper has 50
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 100))]
     pub grid: usize,
 
@@ -22,9 +23,18 @@ pub struct ImageOptions {
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = UvMode::Optimize))]
     pub uv: UvMode,
 
-    /// Steps that texture coordinates take on each of the grids, coarse to fine, 0 to 10000
-    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 40))]
-    pub steps: usize,
+    /// How they are moved; the texture itself is the least-squares one with either
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Method::Fit))]
+    pub method: Method,
+
+    /// Leave out the paper's content-aware term; only with --method paper
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub no_content_aware: bool,
+
+    /// Steps that texture coordinates take on each of the grids, coarse to fine, or with
+    /// --method paper on the one it has, 0 to 10000 [default: 40, with --method paper 800]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
+    pub steps: Option<usize>,
 
     /// Threads to work with, 0 to 256, 0 for one a core
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 0))]
@@ -33,11 +43,27 @@ pub struct ImageOptions {
 
 impl Default for ImageOptions {
     fn default() -> Self {
-        Self { texture_size: 256, grid: 100, uv: UvMode::Optimize, steps: 40, threads: 0 }
+        Self {
+            texture_size: 256,
+            grid: 100,
+            uv: UvMode::Optimize,
+            method: Method::Fit,
+            no_content_aware: false,
+            steps: None,
+            threads: 0,
+        }
     }
 }
 
 impl ImageOptions {
+    /// Steps as asked, or those of the method.
+    pub fn settled_steps(&self) -> usize {
+        self.steps.unwrap_or(match self.method {
+            Method::Fit => 40,
+            Method::Paper => PaperOptions::default().rounds,
+        })
+    }
+
     /// Checks every range; the error names the option and what it may be.
     pub fn check(&self) -> Result<(), BakeError> {
         let within = |option: &'static str, value: usize, low: usize, high: usize| {
@@ -49,7 +75,8 @@ impl ImageOptions {
         };
         within("texture-size", self.texture_size, 16, 4096)?;
         within("grid", self.grid, 4, 400)?;
-        within("steps", self.steps, 0, 10_000)?;
-        within("threads", self.threads, 0, crate::threads::MOST_THREADS)
+        within("steps", self.steps.unwrap_or(0), 0, 10_000)?;
+        within("threads", self.threads, 0, crate::threads::MOST_THREADS)?;
+        self.method.check(self.no_content_aware)
     }
 }

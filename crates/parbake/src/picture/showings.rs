@@ -28,7 +28,8 @@ impl Picture {
     /// Half as wide and high, each pixel the mean of four; sides of one pixel stay.
     pub fn halved(&self) -> Self {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
-        let at = |x: usize, y: usize| self.pixels[y.min(self.height - 1) * self.width + x.min(self.width - 1)];
+        let at =
+            |x: usize, y: usize| self.pixels[y.min(self.height - 1) * self.width + x.min(self.width - 1)];
         let pixels = (0..width * height).into_par_iter().map(|i| {
             let (x, y) = (2 * (i % width), 2 * (i / width));
             0.25 * (at(x, y) + at(x + 1, y) + at(x, y + 1) + at(x + 1, y + 1))

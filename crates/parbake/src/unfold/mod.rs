@@ -2,35 +2,37 @@
 //! where they show most ([`UvMode`]).
 //!
 //! ```text
-//! as delivered ─ repair ─┬ as it is ───────────────┬ the better one ─ shape ─ refine ─ Mesh
-//!        signal ─────────┴ packed, charts scaled ──┘
+//! as delivered ─ repair ─┬ the default method (moved.rs) ─┬ Mesh
+//!        signal ─────────┴ the paper's (paper.rs) ────────┘
 //! ```
 //!
 //! Contract: whatever comes out of `repair`, `unwrap` or `optimize` is bijective, with the
-//! gutter asked for between charts. Moved coordinates are only taken if they show the
-//! surface better than the ones they began with.
+//! gutter asked for between charts. Coordinates that the default method moved are only taken
+//! if they show the surface better than the ones they began with; those of the paper's method
+//! are taken as they come, for what it does is what one wants to see.
 
+mod moved;
+mod paper;
 mod surface_signal;
 
 pub use surface_signal::Source;
 
 use crate::error::BakeError;
 use crate::low::texture_coordinates;
-use crate::message::{Message, Stage, Watcher};
-use crate::options::UvMode;
+use crate::message::Watcher;
+use crate::options::{Method, UvMode};
 use crate::uv_animation::UvMoves;
-use parbake_atlas::{
-    ChartScale, Layout, PackOptions, RepairOptions, UnwrapOptions, check, pack, repair, unwrap,
-};
+use parbake_atlas::{Layout, PackOptions, RepairOptions, UnwrapOptions, check, repair, unwrap};
 use parbake_mesh::ensure_normals;
-use parbake_model::glam::{DMat2, DVec2, Vec2, Vec4};
+use parbake_model::glam::{DVec2, Vec2, Vec4};
 use parbake_model::{Material, Mesh, Model, Placement};
 use parbake_uv::best_texture::{Mapped, Solve, Texture, best_texture_in_box};
 use parbake_uv::contact::{Border, ContactOptions};
-use parbake_uv::metric::chart_scales;
-use parbake_uv::optimise::{Balance, Problem, UvOptions, refine, shape, tensors};
+use parbake_uv::optimise::Problem;
+use parbake_uv::paper::Guide;
 use parbake_uv::runs::Runs;
 use parbake_uv::shown::shown_errors;
+use parbake_uv::signal::Signal;
 use serde::{Deserialize, Serialize};
 use surface_signal::showings;
 
@@ -39,11 +41,18 @@ use surface_signal::showings;
 pub struct UnfoldOptions {
     /// What becomes of the coordinates.
     pub mode: UvMode,
+    /// How they are moved.
+    pub method: Method,
+    /// What moves them in the paper's method.
+    pub guide: Guide,
     /// Texels along a side.
     pub texture_size: usize,
     /// Least distance between charts in texels.
     pub gutter: f64,
-    /// Steps of the refinement.
+    /// Whether the user asked for that gutter: otherwise a sound layout with a smaller one
+    /// is not packed again for it.
+    pub gutter_asked: bool,
+    /// Steps of the refinement, or rounds of the paper's method at most.
     pub steps: usize,
 }
 
@@ -78,13 +87,6 @@ const MOST_SAMPLES: usize = 400_000;
 /// Width of a pixel in the common frame, in which a model is 2 long: a model that fills
 /// some 700 pixels.
 const PIXEL: f64 = 2.8 / 1024.0;
-/// Charts are drawn at most so many times larger or smaller than their area says.
-const MOST_SCALE: f64 = 3.0;
-/// Packing leaves so many texels more than the gutter: charts that touch cannot turn.
-const ROOM: f64 = 0.25;
-/// A moved layout must be better than the one before by this much.
-const WORTH_IT: f64 = 0.98;
-
 /// Prepares the texture coordinates of a low-poly that `frame` places.
 ///
 /// # Errors
@@ -105,14 +107,19 @@ pub fn unfold(
     if options.mode == UvMode::Optimize && options.steps > 0 {
         let mut placed = mesh.clone();
         frame.apply(&mut placed);
-        if let Some(Moved { layout, frames }) = moved(&placed, source, options, &mut report, watcher) {
+        let found = match options.method {
+            Method::Fit => moved::moved(&placed, source, options, &mut report, watcher),
+            Method::Paper => paper::moved(&placed, source, options, &mut report, watcher),
+        };
+        if let Some(Moved { layout, frames }) = found {
             report.utilisation[1] = check(&layout, options.texture_size).utilisation;
             mesh.uvs = layout.uvs();
             moves = Some(UvMoves { frames, triangles: layout.triangles, charts: layout.charts });
         }
     }
     mesh.triangle_materials.fill(0);
-    let model = Model { name: low.name.clone(), mesh, materials: vec![Material::default()], images: Vec::new() };
+    let model =
+        Model { name: low.name.clone(), mesh, materials: vec![Material::default()], images: Vec::new() };
     Ok(Unfolded { model, moves, report })
 }
 
@@ -123,8 +130,12 @@ fn mended(low: &Model, options: &UnfoldOptions) -> Result<(Mesh, Vec<String>), B
     mesh.tangents.clear();
     ensure_normals(&mut mesh);
     let pack = packing(options);
+    let sound = || check(&Layout::new(&mesh), options.texture_size).is_bijective();
     Ok(match options.mode {
         UvMode::Keep => (mesh, Vec::new()),
+        UvMode::Repair | UvMode::Optimize if !options.gutter_asked && !mesh.uvs.is_empty() && sound() => {
+            (mesh, Vec::new())
+        }
         UvMode::Unwrap => (unwrap(&mesh, &UnwrapOptions { pack, ..Default::default() })?.mesh, Vec::new()),
         UvMode::Repair | UvMode::Optimize => repair(&mesh, &RepairOptions { pack, ..Default::default() })?,
     })
@@ -138,90 +149,28 @@ fn packing(options: &UnfoldOptions) -> PackOptions {
     }
 }
 
-/// A layout that shows the surface better, and its way there.
+/// A layout whose points moved, and its way there.
 struct Moved {
     layout: Layout,
     frames: Vec<Vec<Vec2>>,
 }
 
-/// None where no better one was found.
-fn moved(
-    mesh: &Mesh,
-    source: &Source,
-    asked: &UnfoldOptions,
-    report: &mut UnfoldReport,
-    watcher: &impl Watcher,
-) -> Option<Moved> {
-    let size = asked.texture_size;
-    let start = &Layout::new(mesh);
+/// What the surface shows at its sizes; None where nothing of it is seen.
+fn signal(mesh: &Mesh, start: &Layout, source: &Source, size: usize) -> Option<Vec<Signal>> {
     let most = MOST_SAMPLES.min((8 * size * size).max(1 << 16));
     let showings = showings(mesh, &start.rest, source, PIXEL, most);
-    if showings[0].samples.is_empty() {
-        return None;
-    }
-    let contact = ContactOptions {
-        texture_size: size as u32,
+    (!showings[0].samples.is_empty()).then_some(showings)
+}
+
+/// How near charts may come, with a barrier of this width in texels.
+fn contact(asked: &UnfoldOptions, activation_texels: f64) -> ContactOptions {
+    ContactOptions {
+        texture_size: asked.texture_size as u32,
         gutter_texels: asked.gutter,
+        activation_texels,
         border: Border::Margin { margin_texels: (0.5 * asked.gutter).max(0.5) },
         ..ContactOptions::default()
-    };
-    let problem = &Problem { rest: &start.rest, showings: &showings, texture_size: size, contact: &contact };
-    let options =
-        &UvOptions { refine_steps: asked.steps, shape_steps: 2 * asked.steps, ..UvOptions::default() };
-    let kept = errors(problem, start);
-    let (mut balance, texture) = Balance::new(problem, start);
-    let tensors = tensors(problem, start);
-    let mut layout = start.clone();
-    if let Some(packed) = packed(problem, start, &packing(asked), &tensors)
-        && errors(problem, &packed)[0] < kept[0]
-    {
-        layout = packed;
-        report.packed = true;
     }
-    let mut frames = vec![as_f32(&start.points), as_f32(&layout.points)];
-    let mut step = |points: &[DVec2]| {
-        frames.push(as_f32(points));
-        let total = options.refine_steps + options.shape_steps;
-        watcher.message(Message::Progress { stage: Stage::Unfold, done: frames.len().min(total), total });
-        !watcher.stopped()
-    };
-    let before = layout.clone();
-    shape(problem, &mut layout, &tensors, options, |points, _| step(points));
-    // The signal-specialised start is a guess; where it is a bad one, none is better.
-    if errors(problem, &layout)[0] > errors(problem, &before)[0] {
-        layout = before;
-    }
-    let refined = refine(problem, &balance, &mut layout, texture, options, |points, _| step(points));
-    balance.update(&refined.relative);
-    report.steps = frames.len() - 2;
-    let found = errors(problem, &layout);
-    report.relative_error = found.iter().zip(&kept).map(|(a, b)| a / b.max(1e-12)).collect();
-    (report.relative_error[0] < WORTH_IT).then_some(Moved { layout, frames })
-}
-
-/// Charts packed anew, each as large as its signal asks for.
-fn packed(problem: &Problem, start: &Layout, packing: &PackOptions, tensors: &[DMat2]) -> Option<Layout> {
-    let scales = chart_scales(tensors, problem.rest, &start.charts, MOST_SCALE);
-    let even = even_scales(start);
-    let given = scales.iter().zip(even).map(|(a, b)| a * b).collect();
-    let packing = PackOptions {
-        gutter_texels: packing.gutter_texels + ROOM,
-        chart_scale: ChartScale::Given(given),
-        ..packing.clone()
-    };
-    // Without room for that, the layout as it is does.
-    pack(start, &packing).ok()
-}
-
-/// Factors that give all charts the same texels per unit of surface.
-fn even_scales(layout: &Layout) -> Vec<f64> {
-    let count = layout.charts.iter().max().map_or(0, |c| *c as usize + 1);
-    let (mut drawn, mut area) = (vec![0.0; count], vec![0.0; count]);
-    for (t, chart) in layout.charts.iter().enumerate() {
-        drawn[*chart as usize] += 0.5 * layout.doubled_area(t);
-        area[*chart as usize] += layout.rest_area(t);
-    }
-    drawn.iter().zip(&area).map(|(d, a)| if *d > 0.0 && *a > 0.0 { (a / d).sqrt() } else { 1.0 }).collect()
 }
 
 /// What 8-bit texels leave of each showing.

@@ -70,10 +70,8 @@ fn showing(mesh: &Mesh, rest: &[DMat2], source: &Source, pixel: f64, spacing: f6
         })
         .collect();
     let mut signal = Signal::new(rest.len(), &samples);
-    signal.pixels = rest
-        .iter()
-        .map(|r| if has_area(r, total) { r.inverse() * pixel } else { DMat2::ZERO })
-        .collect();
+    signal.pixels =
+        rest.iter().map(|r| if has_area(r, total) { r.inverse() * pixel } else { DMat2::ZERO }).collect();
     signal
 }
 

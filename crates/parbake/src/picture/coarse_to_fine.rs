@@ -1,0 +1,89 @@
+//! The default method on a picture: a coarse grid takes its shape from the signal, then each
+//! grid is refined by variable projection (`parbake_uv::optimise`), with more samples on the
+//! last one.
+//!
+//! Contract: the result's layout is one of the finest grid, and sound.
+
+use super::plane::Plane;
+use super::showings::{Picture, showings};
+use super::{Moves, as_f64};
+use crate::message::{Message, Stage, Watcher};
+use crate::picture::ImageOptions;
+use parbake_atlas::Layout;
+use parbake_model::glam::{DVec2, Vec2};
+use parbake_uv::best_texture::Texture;
+use parbake_uv::contact::ContactOptions;
+use parbake_uv::optimise::{Balance, Problem, UvOptions, refine, shape, tensors};
+
+/// Samples of a showing that texture coordinates are moved for, relative to the texels:
+/// more settle details that the texture cannot hold anyway.
+const SAMPLES_PER_TEXEL: usize = 16;
+/// At least so many, for small textures.
+const LEAST_SAMPLES: usize = 1 << 18;
+/// Coarsest grid that is worth a descent of its own.
+const COARSEST: usize = 20;
+
+/// Coarse to fine; None where the watcher stopped it before anything was found.
+pub fn optimised(
+    picture: &Picture,
+    options: &ImageOptions,
+    contact: &ContactOptions,
+    moves: &mut Moves,
+    watcher: &impl Watcher,
+) -> Option<(Layout, Texture, Balance)> {
+    let size = options.texture_size;
+    let steps = options.settled_steps();
+    let mut grids = vec![options.grid];
+    while grids[0] % 2 == 0 && grids[0] / 2 >= COARSEST {
+        grids.insert(0, grids[0] / 2);
+    }
+    let total = grids.len() * steps;
+    let own = UvOptions { refine_steps: steps, ..UvOptions::default() };
+    let mut state: Option<(Layout, Texture, Balance)> = None;
+    for (turn, &cells) in grids.iter().enumerate() {
+        let plane = Plane { cells };
+        // The coarse grids place regions, which half the samples show as well.
+        let most =
+            (SAMPLES_PER_TEXEL * size * size).max(LEAST_SAMPLES) >> (2 * usize::from(turn + 1 < grids.len()));
+        let showings = showings(picture, plane, most.max(LEAST_SAMPLES));
+        let rest = plane.rest();
+        let problem = Problem { rest: &rest, showings: &showings, texture_size: size, contact };
+        let mut frames = Vec::new();
+        let mut step = |points: &[DVec2], _| {
+            frames.push(points.iter().map(|p| p.as_vec2()).collect::<Vec<Vec2>>());
+            let done = turn * steps + frames.len();
+            watcher.message(Message::Progress { stage: Stage::Unfold, done: done.min(total), total });
+            !watcher.stopped()
+        };
+        let (mut layout, texture, mut balance) = match state.take() {
+            None => {
+                let mut layout = plane.layout(as_f64(&plane.points()));
+                let (balance, texture) = Balance::new(&problem, &layout);
+                let tensors = tensors(&problem, &layout);
+                shape(&problem, &mut layout, &tensors, &own, |_, _| !watcher.stopped());
+                (layout, texture, balance)
+            }
+            Some((coarse, texture, balance)) => {
+                let (_, points) = Plane { cells: cells / 2 }.refined(&coarse.points);
+                (plane.layout(points), texture, balance)
+            }
+        };
+        let refined = refine(&problem, &balance, &mut layout, texture, &own, &mut step);
+        balance.update(&refined.relative);
+        moves.steps += refined.descent.values.len() - 1;
+        // Grids of other turns have other triangles: only the last one's moves are drawn.
+        moves.frames = frames;
+        state = Some((layout, refined.texture, balance));
+        if watcher.stopped() {
+            // The layout must be one of the finest grid.
+            let mut at = cells;
+            while let Some((layout, texture, balance)) = state.take_if(|_| at < options.grid) {
+                let (plane, points) = Plane { cells: at }.refined(&layout.points);
+                at = plane.cells;
+                state = Some((plane.layout(points), texture, balance));
+            }
+            break;
+        }
+    }
+    state
+}

@@ -1,0 +1,30 @@
+//! The texture that is written, the least-squares one in 8 bits, and what it leaves of the
+//! picture at its sizes.
+
+use parbake_atlas::Layout;
+use parbake_uv::best_texture::{Mapped, Solve, Texture, best_texture_in_box};
+use parbake_uv::runs::Runs;
+use parbake_uv::shown::shown_errors;
+use parbake_uv::signal::Signal;
+
+/// The best texture of 8-bit texels, as numbers from 0 to 1.
+pub fn written_texture(layout: &Layout, showings: &[Signal], start: Texture) -> Texture {
+    let runs = Runs::new(&layout.points, &layout.triangles, &showings[0]);
+    let mapped = Mapped { points: &layout.points, triangles: &layout.triangles, showings, runs: &runs };
+    let mut texture = best_texture_in_box(&mapped, start, &Solve::FINAL);
+    texture.texels.iter_mut().for_each(|t| *t = (*t * 255.0).round() / 255.0);
+    texture
+}
+
+/// Mean squared errors of the sizes at which the picture is shown, by channel.
+pub fn errors(layout: &Layout, all: &[Signal], texture: &Texture) -> Vec<f64> {
+    let runs = Runs::new(&layout.points, &layout.triangles, &all[0]);
+    let mapped = Mapped { points: &layout.points, triangles: &layout.triangles, showings: all, runs: &runs };
+    // Three channels carry the picture; opacity differs rarely.
+    shown_errors(&mapped, texture).into_iter().map(|e| e / 3.0).collect()
+}
+
+/// PSNR in dB, 100 at most.
+pub fn decibels(mean_square: &f64) -> f64 {
+    -10.0 * mean_square.max(1e-10).log10()
+}

@@ -1,0 +1,118 @@
+//! The default method on a low-poly's texture coordinates (`parbake_uv::optimise`).
+//!
+//! ```text
+//! as it is ───────────────┬ the better one ─ shape ─ refine
+//! packed, charts scaled ──┘
+//! ```
+//!
+//! Contract: a moved layout is as sound as the one before, and shows the surface better.
+
+use super::surface_signal::Source;
+use super::{Moved, UnfoldOptions, UnfoldReport, as_f32, contact, errors, packing, signal};
+use crate::message::{Message, Stage, Watcher};
+use parbake_atlas::{ChartScale, Layout, PackOptions, pack};
+use parbake_model::Mesh;
+use parbake_model::glam::{DMat2, DVec2};
+use parbake_uv::metric::chart_scales;
+use parbake_uv::optimise::{Balance, Problem, UvOptions, refine, shape, tensors};
+
+/// Charts are drawn at most so many times larger or smaller than their area says.
+const MOST_SCALE: f64 = 3.0;
+/// Packing leaves so many texels more than the gutter: charts that touch cannot turn.
+const ROOM: f64 = 0.25;
+/// Turns of the refinement; in between showings are weighted anew.
+const TURNS: usize = 3;
+/// A moved layout must be better than the one before by this much.
+const WORTH_IT: f64 = 0.98;
+/// Width of the barrier between charts: the paper's 5 texels would keep packed charts from
+/// moving at all, and half a texel is enough to not run into them.
+const ACTIVATION_TEXELS: f64 = 0.5;
+
+/// None where no better one was found.
+pub fn moved(
+    mesh: &Mesh,
+    source: &Source,
+    asked: &UnfoldOptions,
+    report: &mut UnfoldReport,
+    watcher: &impl Watcher,
+) -> Option<Moved> {
+    let start = &Layout::new(mesh);
+    let showings = signal(mesh, start, source, asked.texture_size)?;
+    let contact = contact(asked, ACTIVATION_TEXELS);
+    let problem = &Problem {
+        rest: &start.rest,
+        showings: &showings,
+        texture_size: asked.texture_size,
+        contact: &contact,
+    };
+    let options =
+        &UvOptions { refine_steps: asked.steps, shape_steps: 2 * asked.steps, ..UvOptions::default() };
+    let kept = errors(problem, start);
+    let (mut balance, texture) = Balance::new(problem, start);
+    let tensors = tensors(problem, start);
+    let mut layout = start.clone();
+    if let Some(packed) = packed(problem, start, &packing(asked), &tensors)
+        && errors(problem, &packed)[0] < kept[0]
+    {
+        layout = packed;
+        report.packed = true;
+    }
+    let mut frames = vec![as_f32(&start.points), as_f32(&layout.points)];
+    let mut step = |points: &[DVec2]| {
+        frames.push(as_f32(points));
+        let total = options.refine_steps + options.shape_steps;
+        watcher.message(Message::Progress { stage: Stage::Unfold, done: frames.len().min(total), total });
+        !watcher.stopped()
+    };
+    let before = layout.clone();
+    shape(problem, &mut layout, &tensors, options, |points, _| step(points));
+    // The signal-specialised start is a guess; where it is a bad one, none is better.
+    if errors(problem, &layout)[0] > errors(problem, &before)[0] {
+        layout = before;
+    }
+    let turn = UvOptions { refine_steps: options.refine_steps.div_ceil(TURNS), ..*options };
+    let mut texture = texture;
+    let mut best: Option<(f64, Layout, Vec<f64>)> = None;
+    for _ in 0..TURNS {
+        let refined = refine(problem, &balance, &mut layout, texture, &turn, |points, _| step(points));
+        balance.update(&refined.relative);
+        texture = refined.texture;
+        let relative: Vec<f64> =
+            errors(problem, &layout).iter().zip(&kept).map(|(a, b)| a / b.max(1e-12)).collect();
+        let sound = relative[0] < WORTH_IT && relative[1..].iter().all(|r| *r < 1.0);
+        // The error that counts is that of both sizes.
+        let sum: f64 = relative.iter().sum();
+        if sound && best.as_ref().is_none_or(|(least, ..)| sum < *least) {
+            best = Some((sum, layout.clone(), relative));
+        }
+    }
+    report.steps = frames.len() - 2;
+    let (_, layout, relative) = best?;
+    report.relative_error = relative;
+    Some(Moved { layout, frames })
+}
+
+/// Charts packed anew, each as large as its signal asks for.
+fn packed(problem: &Problem, start: &Layout, packing: &PackOptions, tensors: &[DMat2]) -> Option<Layout> {
+    let scales = chart_scales(tensors, problem.rest, &start.charts, MOST_SCALE);
+    let even = even_scales(start);
+    let given = scales.iter().zip(even).map(|(a, b)| a * b).collect();
+    let packing = PackOptions {
+        gutter_texels: packing.gutter_texels + ROOM,
+        chart_scale: ChartScale::Given(given),
+        ..packing.clone()
+    };
+    // Without room for that, the layout as it is does.
+    pack(start, &packing).ok()
+}
+
+/// Factors that give all charts the same texels per unit of surface.
+fn even_scales(layout: &Layout) -> Vec<f64> {
+    let count = layout.charts.iter().max().map_or(0, |c| *c as usize + 1);
+    let (mut drawn, mut area) = (vec![0.0; count], vec![0.0; count]);
+    for (t, chart) in layout.charts.iter().enumerate() {
+        drawn[*chart as usize] += 0.5 * layout.doubled_area(t);
+        area[*chart as usize] += layout.rest_area(t);
+    }
+    drawn.iter().zip(&area).map(|(d, a)| if *d > 0.0 && *a > 0.0 { (a / d).sqrt() } else { 1.0 }).collect()
+}

@@ -1,0 +1,109 @@
+//! The paper's method on a low-poly's texture coordinates (`parbake_uv::paper`): from the
+//! mended layout as it is, with the paper's weights for models. Only the coordinates are
+//! taken from it; textures are then fitted to views as after the default method.
+//!
+//! The energy's scale is s = pixel · texture size, a pixel being as wide as in a picture that
+//! the model fills: a triangle is at rest where it has as many texels as pixels, so triangles
+//! with errors grow until then. A layout with more texels than that would shrink; there s is
+//! such that the layout as a whole is at rest.
+//!
+//! Contract: the best round's layout, as sound as the one before; it is returned even where
+//! it shows the surface worse.
+
+use super::surface_signal::Source;
+use super::{Moved, PIXEL, UnfoldOptions, UnfoldReport, as_f32, contact, errors, signal};
+use crate::message::{Message, Stage, Watcher};
+use parbake_atlas::Layout;
+use parbake_model::Mesh;
+use parbake_uv::best_texture::Mapped;
+use parbake_uv::distortion::total_area;
+use parbake_uv::optimise::Problem;
+use parbake_uv::paper::{PaperOptions, paper_method};
+use parbake_uv::region::Feasible;
+use parbake_uv::runs::Runs;
+
+/// Rounds between two frames of an animation.
+const FRAME_ROUNDS: usize = 10;
+
+/// None where nothing of the surface is seen.
+pub fn moved(
+    mesh: &Mesh,
+    source: &Source,
+    asked: &UnfoldOptions,
+    report: &mut UnfoldReport,
+    watcher: &impl Watcher,
+) -> Option<Moved> {
+    let start = Layout::new(mesh);
+    let showings = signal(mesh, &start, source, asked.texture_size)?;
+    let own = PaperOptions {
+        rounds: asked.steps,
+        guide: asked.guide,
+        scale: scale(&start, asked.texture_size),
+        ..PaperOptions::default()
+    };
+    let contact = contact(asked, own.contact_texels);
+    let problem = Problem {
+        rest: &start.rest,
+        showings: &showings,
+        texture_size: asked.texture_size,
+        contact: &contact,
+    };
+    let region = Feasible::new(&start, &contact);
+    let runs = Runs::new(&start.points, &start.triangles, &showings[0]);
+    let mapped =
+        Mapped { points: &start.points, triangles: &start.triangles, showings: &showings[..1], runs: &runs };
+    let mut frames = vec![as_f32(&start.points)];
+    let (barrier, total) = (Some(region.contact()), own.rounds);
+    let found = paper_method(&mapped, &start.rest, asked.texture_size, &region, barrier, &own, |progress| {
+        if progress.round.is_multiple_of(FRAME_ROUNDS) {
+            frames.push(as_f32(progress.points));
+        }
+        watcher.message(Message::Progress { stage: Stage::Unfold, done: progress.round, total });
+        !watcher.stopped()
+    });
+    frames.push(as_f32(&found.points));
+    let layout = Layout { points: found.points, ..start.clone() };
+    report.steps = found.rounds;
+    report.relative_error = errors(&problem, &layout)
+        .iter()
+        .zip(errors(&problem, &start))
+        .map(|(a, b)| a / b.max(1e-12))
+        .collect();
+    Some(Moved { layout, frames })
+}
+
+/// s for rest shapes in units of the common frame, as said above.
+fn scale(start: &Layout, texture_size: usize) -> f64 {
+    let drawn: f64 = (0..start.triangles.len()).map(|t| 0.5 * start.doubled_area(t).max(0.0)).sum();
+    let at_rest = (total_area(&start.rest) / drawn.max(f64::MIN_POSITIVE)).sqrt();
+    (PIXEL * texture_size as f64).min(at_rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::options::{BakeOptions, Method};
+    use crate::{bake, demo_pair};
+
+    /// Protects the paper's method on models: coordinates move, by as many rounds as asked,
+    /// and what comes out is bijective.
+    #[test]
+    fn coordinates_move_and_stay_sound() {
+        let (high, low) = demo_pair();
+        let options = BakeOptions {
+            texture_size: 32,
+            method: Method::Paper,
+            uv_steps: Some(4),
+            views: Some(4),
+            view_size: Some(32),
+            rounds: Some(0),
+            ..BakeOptions::default()
+        };
+        let baked = bake(&high, &low, &options, &()).unwrap();
+        let report = baked.report.unfold.unwrap();
+        assert_eq!(report.steps, 4);
+        assert!(report.relative_error.iter().all(|e| e.is_finite()));
+        assert!(baked.report.uv.is_bijective());
+        let frames = baked.uv_moves.unwrap().frames;
+        assert_ne!(frames.first(), frames.last());
+    }
+}

@@ -1,0 +1,138 @@
+//! Analytic derivatives against central differences, on the public objectives.
+//!
+//! Samples and texels are `f32`, and a bilinear fetch has kinks between texels. Steps of
+//! 10⁻⁴ of the square keep rounding small; the few samples that cross a kink on such a step
+//! are within the tolerance, which is relative to the longest derivative.
+
+mod common;
+
+use common::{Random, quarters, signal};
+use glam::{DMat2, DVec2, Vec4, dvec2, vec4};
+use parbake_atlas::Layout;
+use parbake_uv::best_texture::{Mapped, Solve, Texture, best_texture};
+use parbake_uv::contact::{Contact, ContactOptions};
+use parbake_uv::descent::Objective;
+use parbake_uv::metric::{signal_specialised, structure_tensors};
+use parbake_uv::residual::residual;
+use parbake_uv::runs::Runs;
+use parbake_uv::signal::Signal;
+use parbake_uv::variable_projection::VariableProjection;
+
+const SIZE: usize = 16;
+
+/// As exact as `f32` allows.
+const EXACT: Solve = Solve { tolerance: 1e-7, steps: 600, smoothness: 1e-7 };
+
+/// A smooth picture that does not fit into the texture.
+fn waves(place: DVec2) -> Vec4 {
+    let p = (place * 23.0).as_vec2();
+    vec4(p.x.sin(), p.y.cos(), (p.x + p.y).sin(), (0.7 * p.x - p.y).cos()) * 0.3 + 0.5
+}
+
+/// Two charts, shown at full size and smaller: levels between 0 and 2, all with a slope.
+fn scene() -> (Layout, Vec<Signal>) {
+    let layout = quarters(2, 2, 0.08, 5);
+    let full = signal(&layout, 14, waves);
+    let mut small = signal(&layout, 9, waves);
+    small.pixels = (0..layout.triangles.len())
+        .map(|t| {
+            let texels = 1.3 + 0.2 * t as f64 % 1.9;
+            let step = DMat2::from_diagonal(dvec2(texels, 0.6 * texels)) * (1.0 / SIZE as f64);
+            layout.rest[t].inverse() * step
+        })
+        .collect();
+    (layout, vec![full, small])
+}
+
+/// Compares derivatives of all points' coordinates with central differences of `value`.
+fn compare(points: &[DVec2], gradient: &[DVec2], tolerance: f64, mut value: impl FnMut(&[DVec2]) -> f64) {
+    let longest = gradient.iter().map(|g| g.length()).fold(0.0, f64::max);
+    assert!(longest > 0.0);
+    let h = 1e-4;
+    for i in 0..points.len() {
+        for axis in 0..2 {
+            let mut at = |by: f64| {
+                let mut moved = points.to_vec();
+                moved[i][axis] += by;
+                value(&moved)
+            };
+            let slope = (at(h) - at(-h)) / (2.0 * h);
+            let miss = (slope - gradient[i][axis]).abs() / longest;
+            assert!(miss < tolerance, "point {i}, axis {axis}: {slope} against {}", gradient[i][axis]);
+        }
+    }
+}
+
+fn sum(mapped: &Mapped, texture: &Texture) -> f64 {
+    let mut unused = vec![DVec2::ZERO; mapped.points.len()];
+    residual(mapped, texture, &mut unused).iter().map(|r| r.error).sum()
+}
+
+/// Protects the explicit derivative for a given texture, by place and by mip level.
+#[test]
+fn residual_for_a_fixed_texture() {
+    let (layout, showings) = scene();
+    let runs = Runs::new(&layout.points, &layout.triangles, &showings[0]);
+    let mapped =
+        Mapped { points: &layout.points, triangles: &layout.triangles, showings: &showings, runs: &runs };
+    let mut random = Random(3);
+    let mut texture = Texture::solid(SIZE, Vec4::ZERO);
+    texture.texels.fill_with(|| (Vec4::splat(random.next() as f32) + random.next() as f32) * 0.5);
+    for only in [&showings[..1], &showings[1..], &showings[..]] {
+        let mapped = Mapped { showings: only, ..mapped };
+        let mut gradient = vec![DVec2::ZERO; layout.points.len()];
+        residual(&mapped, &texture, &mut gradient);
+        compare(&layout.points, &gradient, 0.02, |points| sum(&Mapped { points, ..mapped }, &texture));
+    }
+}
+
+/// Protects variable projection: at the best texture the explicit derivative is the whole
+/// one, mip levels included.
+#[test]
+fn residual_of_the_best_texture() {
+    let (layout, showings) = scene();
+    let runs = Runs::new(&layout.points, &layout.triangles, &showings[0]);
+    let mapped =
+        Mapped { points: &layout.points, triangles: &layout.triangles, showings: &showings, runs: &runs };
+    let texture = best_texture(&mapped, Texture::solid(SIZE, Vec4::splat(0.5)), &EXACT);
+    let mut gradient = vec![DVec2::ZERO; layout.points.len()];
+    residual(&mapped, &texture, &mut gradient);
+    compare(&layout.points, &gradient, 0.03, |points| {
+        let mapped = Mapped { points, ..mapped };
+        sum(&mapped, &best_texture(&mapped, texture.clone(), &EXACT))
+    });
+}
+
+/// Protects the sum of all terms: error, signal-specialised distortion, and charts that are
+/// near enough to repel each other. Each of the latter two is also looked at alone.
+#[test]
+fn the_whole_objective() {
+    let (layout, showings) = scene();
+    let runs = Runs::new(&layout.points, &layout.triangles, &showings[0]);
+    let mapped =
+        Mapped { points: &layout.points, triangles: &layout.triangles, showings: &showings, runs: &runs };
+    let start = best_texture(&mapped, Texture::solid(SIZE, Vec4::splat(0.5)), &EXACT);
+    let distortion = signal_specialised(&structure_tensors(&mapped, &start, &layout.rest), &layout.rest);
+    let options =
+        ContactOptions { texture_size: SIZE as u32, gutter_texels: 0.5, ..ContactOptions::default() };
+    let contact = Contact::new(&layout, &options);
+    let scale = 1.0 / sum(&mapped, &start);
+    for (scale, distortion_weight, contact_weight) in [(0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (scale, 1e-2, 1e-2)]
+    {
+        let mut objective = VariableProjection {
+            mapped,
+            texture: start.clone(),
+            distortion: &distortion,
+            distortion_weight,
+            contact: Some(&contact),
+            contact_weight,
+            solve: EXACT,
+            scale,
+        };
+        let mut gradient = vec![DVec2::ZERO; layout.points.len()];
+        objective.evaluate(&layout.points, &mut gradient);
+        let tolerance = if scale == 0.0 { 1e-3 } else { 0.03 };
+        let mut unused = gradient.clone();
+        compare(&layout.points, &gradient, tolerance, |points| objective.evaluate(points, &mut unused));
+    }
+}
