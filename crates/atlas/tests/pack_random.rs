@@ -84,7 +84,7 @@ fn assert_packed(packed: &Layout, options: &PackOptions) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(ProptestConfig::with_cases(16))]
 
     /// Protects the gutter, the border and every triangle's orientation for charts of any
     /// shape, size, number and place, lying on each other or not.

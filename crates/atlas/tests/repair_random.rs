@@ -77,7 +77,7 @@ fn soup() -> impl Strategy<Value = Mesh> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(12))]
 
     /// Protects the promise that unwrapping is sound for any input.
     #[test]

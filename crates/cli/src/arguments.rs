@@ -20,8 +20,7 @@ pub struct Arguments {
 pub enum Command {
     /// Bake a detailed model's look onto a coarse one with texture coordinates
     Bake(BakeCommand),
-    /// Give a model a smaller texture that looks the same; compares textures as stored
-    /// (--convention paper) unless told otherwise
+    /// Give a model a smaller texture that looks the same
     Compress(CompressCommand),
     /// Make a plane that shows a picture with a smaller texture
     Image(ImageCommand),
@@ -105,8 +104,7 @@ pub struct CompressCommand {
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
 
-    /// How to do it; here --convention is paper by default: what is compared is the texture as
-    /// it is stored
+    /// How to do it; what concerns views has no effect on models without a normal map
     #[command(flatten, next_help_heading = "Baking")]
     pub bake: BakeOptions,
 

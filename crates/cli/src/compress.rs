@@ -1,23 +1,18 @@
 //! `parbake compress`.
 
 use crate::arguments::CompressCommand;
-use crate::bake::{check_not_input, check_output, ending, print, read, tell, write_json, write_model, write_report};
+use crate::bake::{check_not_input, check_output, ending, print, read, write_json, write_model, write_report};
 use crate::failure::{Ending, Failure};
 use crate::image::bytes;
 use crate::options_file::merged;
 use crate::progress::Console;
 use clap::ArgMatches;
-use clap::parser::ValueSource;
-use parbake::{Convention, Model, Stage, StageTime, compress, with_threads};
+use parbake::{BakeReport, LossStep, Model, Stage, StageTime, compress, with_threads};
 use std::path::Path;
 
 /// Runs the command.
 pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Failure> {
-    let mut options = merged(&command.bake, given, command.options.as_deref())?;
-    if given.value_source("convention") == Some(ValueSource::DefaultValue) && command.options.is_none() {
-        // A smaller texture shall hold the same stored values, as when a picture is scaled.
-        options.convention = Convention::Paper;
-    }
+    let options = merged(&command.bake, given, command.options.as_deref())?;
     options.check()?;
     check_output(&command.output)?;
     check_not_input(&command.output, &[&command.model])?;
@@ -36,10 +31,9 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
             write_report(path, &loaded.model, &baked, &console)?;
         }
         console.finish();
-        tell(&console, command.talk, &baked.report, &command.output);
         if !command.talk.quiet && command.json.as_ref().is_none_or(|p| p.as_os_str() != "-") {
             let before = delivered_bytes(&command.model, &loaded.model);
-            print(&format!("{before} bytes → {} bytes", bytes(&command.output)))?;
+            print(&summary(&baked.report, before, &command.output, console.seconds()))?;
         }
         Ok(ending(&baked.report))
     })?
@@ -50,4 +44,17 @@ fn delivered_bytes(path: &Path, model: &Model) -> u64 {
     let folder = path.parent().unwrap_or(Path::new(""));
     let pictures: u64 = model.images.iter().map(|image| bytes(&folder.join(&image.name))).sum();
     bytes(path) + pictures
+}
+
+fn summary(report: &BakeReport, before: u64, output: &Path, seconds: f64) -> String {
+    let decibels = |step: &LossStep| -10.0 * step.mean_square.max(1e-10).log10();
+    let mut text = String::new();
+    if let (Some(first), Some(last)) = (report.losses.first(), report.losses.last()) {
+        let (ordinary, written) = (decibels(first), decibels(last));
+        text += &format!(
+            "{}: {ordinary:.2} dB with coordinates as they are, {written:.2} dB written, over the surface\n",
+            output.display()
+        );
+    }
+    text + &format!("{before} bytes → {} bytes, {seconds:.1} s", bytes(output))
 }

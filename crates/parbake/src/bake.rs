@@ -108,27 +108,8 @@ pub fn bake(
     bake_pair(high, low, false, options, watcher)
 }
 
-/// Bakes a model onto itself with a smaller texture (the paper's Table 7). A normal map is
-/// written only where the model has one.
-///
-/// Contract and errors as of [`bake`].
-pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) -> Result<Baked, BakeError> {
-    let has_normals = model.materials.iter().any(|m| m.normal_texture.is_some());
-    if has_normals {
-        return bake_pair(model, model, true, options, watcher);
-    }
-    let options = BakeOptions { keep_normals: true, ..options.clone() };
-    let mut baked = bake_pair(model, model, true, &options, watcher)?;
-    for model in [&mut baked.model, &mut baked.projected] {
-        model.images.truncate(1);
-        model.materials.iter_mut().for_each(|m| m.normal_texture = None);
-        model.mesh.tangents.clear();
-    }
-    Ok(baked)
-}
-
 /// `same` says that both are one model, triangle by triangle.
-fn bake_pair(
+pub(crate) fn bake_pair(
     high: &Model,
     low: &Model,
     same: bool,

@@ -18,6 +18,7 @@
 
 mod bake;
 mod check;
+mod compress;
 mod error;
 mod evaluate;
 mod html;
@@ -33,8 +34,9 @@ mod threads;
 mod unfold;
 mod uv_animation;
 
-pub use bake::{Baked, bake, compress};
+pub use bake::{Baked, bake};
 pub use check::{LayoutCheck, ModelCheck, check_model};
+pub use compress::compress;
 pub use error::BakeError;
 pub use evaluate::{EvaluateOptions, Evaluation, ViewFigures, evaluate};
 pub use html::html_report;

@@ -262,6 +262,11 @@ impl BakeOptions {
         self.gutter.unwrap_or((self.texture_size as f64 / 256.0).clamp(1.0, 8.0))
     }
 
+    /// What to do with texture coordinates in another mode.
+    pub(crate) fn unfold_as(&self, mode: UvMode) -> UnfoldOptions {
+        UnfoldOptions { mode, ..self.unfold() }
+    }
+
     /// What to do with texture coordinates.
     pub(crate) fn unfold(&self) -> UnfoldOptions {
         let steps = match (self.method, self.preset) {

@@ -29,14 +29,15 @@ fn waves(place: DVec2) -> Vec4 {
     vec4(p.x.sin(), p.y.cos(), (p.x + p.y).sin(), (0.7 * p.x - p.y).cos()) * 0.3 + 0.5
 }
 
-/// Two charts, shown at full size and smaller: levels between 0 and 2, all with a slope.
+/// Two charts, shown at full size and smaller: mip levels between 0.4 and 1.7.
 fn scene() -> (Layout, Vec<Signal>) {
     let layout = quarters(2, 2, 0.08, 5);
     let full = signal(&layout, 14, waves);
     let mut small = signal(&layout, 9, waves);
     small.pixels = (0..layout.triangles.len())
         .map(|t| {
-            let texels = 1.3 + 0.2 * t as f64 % 1.9;
+            // Never a power of two: the slope has a kink where a level begins.
+            let texels = 1.33 + (0.2 * t as f64) % 1.9;
             let step = DMat2::from_diagonal(dvec2(texels, 0.6 * texels)) * (1.0 / SIZE as f64);
             layout.rest[t].inverse() * step
         })

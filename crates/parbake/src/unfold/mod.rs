@@ -33,6 +33,7 @@ use parbake_uv::paper::Guide;
 use parbake_uv::runs::Runs;
 use parbake_uv::shown::shown_errors;
 use parbake_uv::signal::Signal;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use surface_signal::showings;
 
@@ -82,11 +83,14 @@ pub struct Unfolded {
     pub report: UnfoldReport,
 }
 
-/// Samples of the surface at most.
+/// Samples for each texel of a texture that is solved for on the surface.
+const SAMPLES_PER_TEXEL: usize = 8;
+/// Samples of the surface at most while coordinates move.
 const MOST_SAMPLES: usize = 400_000;
 /// Width of a pixel in the common frame, in which a model is 2 long: a model that fills
 /// some 700 pixels.
 const PIXEL: f64 = 2.8 / 1024.0;
+
 /// Prepares the texture coordinates of a low-poly that `frame` places.
 ///
 /// # Errors
@@ -173,20 +177,54 @@ fn contact(asked: &UnfoldOptions, activation_texels: f64) -> ContactOptions {
     }
 }
 
-/// What 8-bit texels leave of each showing.
-fn errors(problem: &Problem, layout: &Layout) -> Vec<f64> {
-    let runs = Runs::new(&layout.points, &layout.triangles, &problem.showings[0]);
-    let whole = Mapped {
-        points: &layout.points,
-        triangles: &layout.triangles,
-        showings: problem.showings,
-        runs: &runs,
-    };
-    let first = Mapped { showings: &problem.showings[..1], ..whole };
-    let start = Texture::solid(problem.texture_size, Vec4::splat(0.5));
-    let mut texture = best_texture_in_box(&first, start, &Solve { steps: 40, ..Solve::MOVING });
-    texture.texels.iter_mut().for_each(|t| *t = (*t * 255.0).round() / 255.0);
-    shown_errors(&whole, &texture)
+/// What 8-bit texels leave of each showing, with the texture that will be solved for: for all
+/// sizes at once where `all_sizes` says so, else for the full one.
+fn errors(problem: &Problem, layout: &Layout, all_sizes: bool) -> Vec<f64> {
+    let solved = if all_sizes { problem.showings } else { &problem.showings[..1] };
+    let texture = surface_texture(layout, solved, problem.texture_size, &Solve { steps: 40, ..Solve::MOVING });
+    shown_errors(&mapped(layout, problem.showings, &runs(layout, problem.showings)), &texture)
+}
+
+fn runs(layout: &Layout, showings: &[Signal]) -> Runs {
+    Runs::new(&layout.points, &layout.triangles, &showings[0])
+}
+
+fn mapped<'a>(layout: &'a Layout, showings: &'a [Signal], runs: &'a Runs) -> Mapped<'a> {
+    Mapped { points: &layout.points, triangles: &layout.triangles, showings, runs }
+}
+
+/// The best texture of 8-bit texels for a surface's signal.
+fn surface_texture(layout: &Layout, showings: &[Signal], size: usize, solve: &Solve) -> Texture {
+    let runs = runs(layout, showings);
+    let start = Texture::solid(size, Vec4::splat(0.5));
+    let mut texture = best_texture_in_box(&mapped(layout, showings, &runs), start, solve);
+    texture.texels.par_iter_mut().for_each(|t| *t = (*t * 255.0).round() / 255.0);
+    texture
+}
+
+/// A texture solved for on the surface alone.
+pub struct SurfaceTexture {
+    /// Its stored values.
+    pub texture: Texture,
+    /// Mean squared errors of the three colour channels at full size and half.
+    pub errors: Vec<f64>,
+    /// Samples it was solved for.
+    pub samples: usize,
+}
+
+/// Solves for a mesh's texture without any view: for the surface at full size and half,
+/// mip levels included. The mesh lies in the common frame. None where it has no area.
+pub fn solve_on_surface(mesh: &Mesh, source: &Source, size: usize) -> Option<SurfaceTexture> {
+    let layout = Layout::new(mesh);
+    let most = (SAMPLES_PER_TEXEL * size * size).clamp(1 << 18, 1 << 22);
+    let showings = showings(mesh, &layout.rest, source, PIXEL, most);
+    if showings[0].samples.is_empty() {
+        return None;
+    }
+    let texture = surface_texture(&layout, &showings, size, &Solve::FINAL);
+    let errors = shown_errors(&mapped(&layout, &showings, &runs(&layout, &showings)), &texture);
+    let samples = showings.iter().map(|s| s.samples.len()).sum();
+    Some(SurfaceTexture { texture, errors: errors.into_iter().map(|e| e / 3.0).collect(), samples })
 }
 
 fn as_f32(points: &[DVec2]) -> Vec<Vec2> {

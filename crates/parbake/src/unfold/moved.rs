@@ -47,12 +47,17 @@ pub fn moved(
     };
     let options =
         &UvOptions { refine_steps: asked.steps, shape_steps: 2 * asked.steps, ..UvOptions::default() };
-    let kept = errors(problem, start);
+    // A low-poly's texture is fitted to views, which reads its first level alone.
+    let all_sizes = source.surface.is_none();
+    let errors = |layout: &Layout| errors(problem, layout, all_sizes);
+    let kept = errors(start);
     let (mut balance, texture) = Balance::new(problem, start);
+    // Views see a surface under all angles: half of it is minified.
+    balance.weights.fill(1.0);
     let tensors = tensors(problem, start);
     let mut layout = start.clone();
     if let Some(packed) = packed(problem, start, &packing(asked), &tensors)
-        && errors(problem, &packed)[0] < kept[0]
+        && errors(&packed)[0] < kept[0]
     {
         layout = packed;
         report.packed = true;
@@ -67,7 +72,7 @@ pub fn moved(
     let before = layout.clone();
     shape(problem, &mut layout, &tensors, options, |points, _| step(points));
     // The signal-specialised start is a guess; where it is a bad one, none is better.
-    if errors(problem, &layout)[0] > errors(problem, &before)[0] {
+    if errors(&layout)[0] > errors(&before)[0] {
         layout = before;
     }
     let turn = UvOptions { refine_steps: options.refine_steps.div_ceil(TURNS), ..*options };
@@ -75,10 +80,11 @@ pub fn moved(
     let mut best: Option<(f64, Layout, Vec<f64>)> = None;
     for _ in 0..TURNS {
         let refined = refine(problem, &balance, &mut layout, texture, &turn, |points, _| step(points));
-        balance.update(&refined.relative);
         texture = refined.texture;
         let relative: Vec<f64> =
-            errors(problem, &layout).iter().zip(&kept).map(|(a, b)| a / b.max(1e-12)).collect();
+            errors(&layout).iter().zip(&kept).map(|(a, b)| a / b.max(1e-12)).collect();
+        // By what the texture that will be solved for leaves.
+        balance.update(&relative);
         let sound = relative[0] < WORTH_IT && relative[1..].iter().all(|r| *r < 1.0);
         // The error that counts is that of both sizes.
         let sum: f64 = relative.iter().sum();

@@ -64,9 +64,9 @@ pub fn moved(
     frames.push(as_f32(&found.points));
     let layout = Layout { points: found.points, ..start.clone() };
     report.steps = found.rounds;
-    report.relative_error = errors(&problem, &layout)
+    report.relative_error = errors(&problem, &layout, false)
         .iter()
-        .zip(errors(&problem, &start))
+        .zip(errors(&problem, &start, false))
         .map(|(a, b)| a / b.max(1e-12))
         .collect();
     Some(Moved { layout, frames })

@@ -1,0 +1,114 @@
+//! A model with a smaller texture that looks the same (the paper's same-model mode, Table 7).
+//!
+//! The surface stays, so nothing has to be seen from anywhere: what the texture shall show is
+//! read off the model's own texture all over its surface, texture coordinates are moved for
+//! it, and the texture is one least-squares problem, mip levels included. Colours are
+//! compared as they are stored, as when a picture is scaled.
+
+use crate::bake::{Baked, bake_pair};
+use crate::error::BakeError;
+use crate::message::{Message, Stage, Watcher};
+use crate::options::{BakeOptions, Convention, UvMode};
+use crate::pair::{common_frame, placed};
+use crate::report::{BakeReport, LossStep, StageTime};
+use crate::unfold::{Source, SurfaceTexture, solve_on_surface, unfold};
+use parbake_model::{Image, Material, Model, TextureSlot, Wrap};
+use parbake_render::scene::Scene;
+use std::time::Instant;
+
+/// Bakes a model onto itself with a smaller texture.
+///
+/// A model with a normal map is baked as a pair is, since its normal map must follow the
+/// coordinates; `options.convention` is not looked at otherwise.
+///
+/// # Errors
+/// As of [`crate::bake`].
+pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) -> Result<Baked, BakeError> {
+    if model.materials.iter().any(|m| m.normal_texture.is_some()) {
+        return bake_pair(model, model, true, options, watcher);
+    }
+    options.check()?;
+    let options = &BakeOptions { convention: Convention::Paper, ..options.clone() };
+    let begin = Instant::now();
+    let frame = common_frame(model)?;
+    let interpretation = options.convention.interpretation();
+    let scene = Scene::new(placed(model, &frame), &model.materials, &model.images, interpretation);
+    let source = Source { scene: &scene, surface: None, reach: 0.0, encode: false };
+    let mut stages = Vec::new();
+    let mut lap = |stage, since: &mut Instant| {
+        stages.push(StageTime { stage, seconds: since.elapsed().as_secs_f64() });
+        *since = Instant::now();
+    };
+    let mut since = begin;
+    lap(Stage::Prepare, &mut since);
+    let solved = |low: &Model| {
+        let mut mesh = low.mesh.clone();
+        frame.apply(&mut mesh);
+        solve_on_surface(&mesh, &source, options.texture_size)
+            .ok_or_else(|| BakeError::FlatTextureCoordinates { model: model.name.clone() })
+    };
+    let kept = unfold(model, &frame, &source, &options.unfold_as(UvMode::Keep), watcher)?;
+    if kept.model.mesh.uvs.is_empty() {
+        return Err(BakeError::NoTextureCoordinates { model: model.name.clone() });
+    }
+    let ordinary = solved(&kept.model)?;
+    lap(Stage::Solve, &mut since);
+    let mut unfolded = unfold(model, &frame, &source, &options.unfold(), watcher)?;
+    lap(Stage::Unfold, &mut since);
+    let written = solved(&unfolded.model)?;
+    lap(Stage::Solve, &mut since);
+    let mut warnings = Vec::new();
+    for done in &unfolded.report.mended {
+        let warning = format!("{}: {done}", model.name);
+        watcher.message(Message::Warning(warning.clone()));
+        warnings.push(warning);
+    }
+    unfolded.report.relative_error =
+        written.errors.iter().zip(&ordinary.errors).map(|(a, b)| a / b.max(1e-12)).collect();
+    let loss = |moved: &str, solved: &SurfaceTexture| LossStep {
+        moved: moved.into(),
+        seconds: 0.0,
+        mean_square: solved.errors[0],
+    };
+    let report = BakeReport {
+        unfold: Some(unfolded.report.clone()),
+        options: options.clone(),
+        high_triangles: model.mesh.triangles.len(),
+        low_triangles: model.mesh.triangles.len(),
+        views: 0,
+        samples: written.samples,
+        covered_texels: 0,
+        unseen_texels: 0,
+        overlapping_texels: 0,
+        missed_texels: 0,
+        uv: crate::check::check_mesh(&unfolded.model.mesh, options.texture_size),
+        losses: vec![loss("start", &ordinary), loss("color", &written)],
+        stages,
+        stopped_early: watcher.stopped(),
+        warnings,
+        peak_memory: crate::memory::peak_memory(),
+    };
+    Ok(Baked {
+        model: textured(unfolded.model, &written),
+        projected: textured(kept.model, &ordinary),
+        report,
+        uv_moves: unfolded.moves,
+    })
+}
+
+/// The model with its one texture.
+fn textured(mut model: Model, solved: &SurfaceTexture) -> Model {
+    let size = solved.texture.size;
+    let texel = |t: &parbake_model::glam::Vec4| {
+        let [r, g, b, _] = t.to_array().map(|x| (x * 255.0).round() as u8);
+        [r, g, b, 255]
+    };
+    let pixels = solved.texture.texels.iter().map(texel).collect();
+    model.mesh.colors.clear();
+    model.mesh.uvs1.clear();
+    let slot = TextureSlot { image: 0, wrap: [Wrap::Clamp; 2], ..TextureSlot::default() };
+    model.materials =
+        vec![Material { name: model.name.clone(), base_color_texture: Some(slot), ..Material::default() }];
+    model.images = vec![Image { name: "base color".into(), width: size, height: size, pixels }];
+    model
+}
