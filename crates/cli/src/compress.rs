@@ -1,7 +1,9 @@
 //! `parbake compress`.
 
 use crate::arguments::CompressCommand;
-use crate::bake::{check_not_input, check_output, ending, print, read, write_json, write_model, write_report};
+use crate::bake::{
+    check_not_input, check_output, ending, print, read, write_json, write_model, write_report,
+};
 use crate::failure::{Ending, Failure};
 use crate::image::bytes;
 use crate::options_file::merged;

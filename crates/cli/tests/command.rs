@@ -59,7 +59,7 @@ fn mistakes_are_named() {
     let cases = [
         (pair("nothing.obj", "demo_low.glb"), 1, "nothing.obj"),
         (pair("bad.obj", "demo_low.glb"), 1, "bad.obj, line 3"),
-        (pair("demo_high.glb", "bare.obj"), 1, "no texture coordinates"),
+        ([&pair("demo_high.glb", "bare.obj")[..], &["--uv", "keep"]].concat(), 1, "no texture coordinates"),
         (with(&["--texture-size", "3"]), 2, "16 to 8192"),
         (with(&["--options", "typo.json"]), 2, "texture_sise"),
         (with(&["--no-such-option"]), 2, "--no-such-option"),

@@ -148,7 +148,9 @@ pub(crate) fn bake_pair(
     }
     let low = unfolded.as_ref().map_or(low, |u| &u.model);
     let LowPoly { written, placed, map, atlas, mut warnings } = LowPoly::new(low, &frame, size)?;
-    warnings.extend(unfolded.iter().flat_map(|u| u.report.mended.iter().map(|done| format!("{}: {done}", low.name))));
+    warnings.extend(
+        unfolded.iter().flat_map(|u| u.report.mended.iter().map(|done| format!("{}: {done}", low.name))),
+    );
     for warning in &warnings {
         watcher.message(Message::Warning(warning.clone()));
     }

@@ -11,10 +11,13 @@ use crate::message::{Message, Stage, Watcher};
 use crate::options::{BakeOptions, Convention, UvMode};
 use crate::pair::{common_frame, placed};
 use crate::report::{BakeReport, LossStep, StageTime};
-use crate::unfold::{Source, SurfaceTexture, solve_on_surface, unfold};
+use crate::unfold::{Source, SurfaceTexture, UnfoldOptions, solve_on_surface, unfold};
 use parbake_model::{Image, Material, Model, TextureSlot, Wrap};
 use parbake_render::scene::Scene;
 use std::time::Instant;
+
+/// Here texture coordinates are all that takes time, and may take more steps than in a bake.
+const STEPS_FACTOR: usize = 3;
 
 /// Bakes a model onto itself with a smaller texture.
 ///
@@ -53,7 +56,9 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     }
     let ordinary = solved(&kept.model)?;
     lap(Stage::Solve, &mut since);
-    let mut unfolded = unfold(model, &frame, &source, &options.unfold(), watcher)?;
+    let asked = options.unfold();
+    let steps = options.uv_steps.unwrap_or(STEPS_FACTOR * asked.steps);
+    let mut unfolded = unfold(model, &frame, &source, &UnfoldOptions { steps, ..asked }, watcher)?;
     lap(Stage::Unfold, &mut since);
     let written = solved(&unfolded.model)?;
     lap(Stage::Solve, &mut since);

@@ -24,14 +24,14 @@ pub enum BakeError {
     },
     /// A texture cannot be baked without texture coordinates.
     #[error(
-        "{model}: the low-poly has no texture coordinates, so there is no place for a texture; unwrap it first"
+        "{model}: the low-poly has no texture coordinates, so there is no place for a texture; let --uv unwrap make some"
     )]
     NoTextureCoordinates {
         /// The low-poly's name.
         model: String,
     },
     /// All texture coordinates fall together.
-    #[error("{model}: the low-poly's texture coordinates cover no area; unwrap it first")]
+    #[error("{model}: the low-poly's texture coordinates cover no area; let --uv unwrap make new ones")]
     FlatTextureCoordinates {
         /// The low-poly's name.
         model: String,

@@ -20,6 +20,8 @@ use parbake_uv::optimise::{Balance, Problem, UvOptions, refine, shape, tensors};
 const MOST_SCALE: f64 = 3.0;
 /// Packing leaves so many texels more than the gutter: charts that touch cannot turn.
 const ROOM: f64 = 0.25;
+/// Minified, it must be at least as good, with a margin for what views see besides.
+const MINIFIED: f64 = 0.975;
 /// Turns of the refinement; in between showings are weighted anew.
 const TURNS: usize = 3;
 /// A moved layout must be better than the one before by this much.
@@ -75,17 +77,18 @@ pub fn moved(
     if errors(&layout)[0] > errors(&before)[0] {
         layout = before;
     }
-    let turn = UvOptions { refine_steps: options.refine_steps.div_ceil(TURNS), ..*options };
+    // A bake's last thousandths lie in parallax and outlines, not in coordinates.
+    let tolerance = if all_sizes { options.tolerance } else { 1e-3 };
+    let turn = UvOptions { refine_steps: options.refine_steps.div_ceil(TURNS), tolerance, ..*options };
     let mut texture = texture;
     let mut best: Option<(f64, Layout, Vec<f64>)> = None;
     for _ in 0..TURNS {
         let refined = refine(problem, &balance, &mut layout, texture, &turn, |points, _| step(points));
         texture = refined.texture;
-        let relative: Vec<f64> =
-            errors(&layout).iter().zip(&kept).map(|(a, b)| a / b.max(1e-12)).collect();
+        let relative: Vec<f64> = errors(&layout).iter().zip(&kept).map(|(a, b)| a / b.max(1e-12)).collect();
         // By what the texture that will be solved for leaves.
         balance.update(&relative);
-        let sound = relative[0] < WORTH_IT && relative[1..].iter().all(|r| *r < 1.0);
+        let sound = relative[0] < WORTH_IT && relative[1..].iter().all(|r| *r < MINIFIED);
         // The error that counts is that of both sizes.
         let sum: f64 = relative.iter().sum();
         if sound && best.as_ref().is_none_or(|(least, ..)| sum < *least) {

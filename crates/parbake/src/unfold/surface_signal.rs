@@ -95,6 +95,9 @@ fn look(mesh: &Mesh, t: usize, [b, c]: [f32; 2], source: &Source, width: f32) ->
             let normal = interpolate(corners.map(|i| mesh.normals[i]), weights).normalize_or_zero();
             let hit = surface.project(point, normal, source.reach)?;
             let [b1, b2] = hit.barycentric;
+            // Where the surfaces are apart, views see the detail in different places by about
+            // that distance, and no texture can show more than their mean.
+            let width = width.max(hit.distance.abs());
             let (color, found) = source.scene.look(hit.triangle as usize, [1.0 - b1 - b2, b1, b2], width);
             (color, if found.dot(normal) < 0.0 { -found } else { found })
         }
