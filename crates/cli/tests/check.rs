@@ -105,7 +105,8 @@ fn a_bake_proves_its_layout() {
     two_squares(folder, "over.obj", 0.125);
     let bake = |high: &str, low: &str, name: &str| {
         let json = format!("{name}.json");
-        let arguments = ["bake", high, low, "-o", &format!("{name}.glb"), "--json", &json];
+        let output = format!("{name}.glb");
+        let arguments = ["bake", high, low, "-o", &output, "--json", &json, "--uv", "keep"];
         text(&run(folder, &[&arguments[..], &SMALL].concat()).stderr)
     };
     let said = bake("demo_high.glb", "demo_low.glb", "good");

@@ -1,4 +1,16 @@
-//! Texture coordinates that move.
+//! Texture coordinates that move to where they show most, and stay sound on the way.
+//!
+//! ```text
+//! signal, runs                        what the surface shall show
+//! footprint, pyramid                  where that falls, on which mip level
+//! normal_matrix, best_texture         the best texture for given coordinates
+//! residual, shown                     what it leaves: as minimised, and as seen
+//! distortion, metric                  energies of triangles; the signal's structure tensors
+//! contact, inversion, region          what keeps a layout bijective
+//! laplacian, lbfgs, descent           feasible descent
+//! variable_projection, optimise       the default method
+//! adam, paper                         the paper's method
+//! ```
 
 pub mod adam;
 pub mod best_texture;
