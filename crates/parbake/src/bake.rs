@@ -63,6 +63,16 @@ impl<W: Watcher> Bridge<'_, W> {
     }
 }
 
+impl<W: Watcher> Watcher for Bridge<'_, W> {
+    fn message(&self, message: Message) {
+        self.watcher.message(message);
+    }
+
+    fn stopped(&self) -> bool {
+        watch::Watch::should_stop(self)
+    }
+}
+
 impl<W: Watcher> watch::Watch for Bridge<'_, W> {
     fn progress(&self, stage: watch::Stage, done: usize, total: usize) {
         let stage = match stage {
@@ -78,6 +88,9 @@ impl<W: Watcher> watch::Watch for Bridge<'_, W> {
         self.watcher.stopped() || self.until.is_some_and(|until| Instant::now() >= until)
     }
 }
+
+/// The share of texture coordinates in a time budget: textures are worth more.
+const UNFOLD_SHARE: f64 = 0.3;
 
 /// The reference pictures' share of a time budget: what they show must be solved for.
 const REFERENCE_SHARE: f64 = 0.3;
@@ -143,7 +156,7 @@ pub(crate) fn bake_pair(
             encode: convention.decodes_srgb(),
         };
         clock.lap(Stage::Prepare);
-        unfolded = Some(unfold(low, &frame, &source, &options.unfold(), watcher)?);
+        unfolded = Some(unfold(low, &frame, &source, &options.unfold(), &bridge.share(UNFOLD_SHARE))?);
         clock.lap(Stage::Unfold);
     }
     let low = unfolded.as_ref().map_or(low, |u| &u.model);

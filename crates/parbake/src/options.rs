@@ -254,7 +254,7 @@ pub struct Plan {
 }
 
 /// Seconds below which a time budget is better spent on textures alone.
-const LEAST_BUDGET: f64 = 3.0;
+const LEAST_BUDGET: f64 = 8.0;
 
 impl BakeOptions {
     /// The distance between charts in texels: as asked, or by the texture's size.

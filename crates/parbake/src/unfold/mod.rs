@@ -132,17 +132,21 @@ fn mended(low: &Model, options: &UnfoldOptions) -> Result<(Mesh, Vec<String>), B
     let mut mesh = low.mesh.clone();
     mesh.uvs = texture_coordinates(&low.mesh, &low.materials);
     mesh.tangents.clear();
-    ensure_normals(&mut mesh);
+    let repaired = ensure_normals(&mut mesh);
     let pack = packing(options);
     let sound = || check(&Layout::new(&mesh), options.texture_size).is_bijective();
-    Ok(match options.mode {
+    let (mesh, mut mended) = match options.mode {
         UvMode::Keep => (mesh, Vec::new()),
         UvMode::Repair | UvMode::Optimize if !options.gutter_asked && !mesh.uvs.is_empty() && sound() => {
             (mesh, Vec::new())
         }
         UvMode::Unwrap => (unwrap(&mesh, &UnwrapOptions { pack, ..Default::default() })?.mesh, Vec::new()),
         UvMode::Repair | UvMode::Optimize => repair(&mesh, &RepairOptions { pack, ..Default::default() })?,
-    })
+    };
+    if repaired > 0 && !low.mesh.normals.is_empty() {
+        mended.push(format!("{repaired} unusable normals were replaced."));
+    }
+    Ok((mesh, mended))
 }
 
 fn packing(options: &UnfoldOptions) -> PackOptions {

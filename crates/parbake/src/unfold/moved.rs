@@ -94,6 +94,9 @@ pub fn moved(
         if sound && best.as_ref().is_none_or(|(least, ..)| sum < *least) {
             best = Some((sum, layout.clone(), relative));
         }
+        if watcher.stopped() {
+            break;
+        }
     }
     report.steps = frames.len() - 2;
     let (_, layout, relative) = best?;
