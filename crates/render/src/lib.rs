@@ -5,7 +5,7 @@
 //! ```text
 //! camera → raster → interpolate → frame ─┐
 //!                        └→ uv → texture ┴→ shade → antialias → background → display → loss
-//!                                  ↑ mip                ↑ edges
+//!                          parallax ↑ mip              ↑ edges
 //! ```
 //!
 //! `pipeline.rs` goes the whole way and back; `patch.rs` is its inner loop, from a
@@ -27,6 +27,7 @@ pub mod frame;
 pub mod interpolate;
 pub mod loss;
 pub mod mip;
+pub mod parallax;
 pub mod patch;
 pub mod pipeline;
 pub mod raster;
@@ -34,5 +35,6 @@ pub mod scatter;
 pub mod scene;
 pub mod shade;
 pub mod slopes;
+pub mod spherical_harmonics;
 pub mod surface;
 pub mod texture;

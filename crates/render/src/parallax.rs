@@ -1,0 +1,246 @@
+//! SH parallax: texture coordinates that shift with the direction they are seen from.
+//!
+//! Forward (Knodt et al. 2023, eqs. 4 and 5), for a point with coordinate t, seen along d:
+//!
+//! `t' = t + D(t) / max(|n·d|, limit) · Σ_k T_k(t) Y_k(d)`
+//!
+//! with T the coefficients (a pair of numbers for each function, in texture widths), D the
+//! depth (1 where there is no map), Y the functions of `spherical_harmonics.rs`, n the
+//! interpolated vertex normal and d the direction to the viewer, both of unit length and
+//! in the mesh's own axes. All maps are fetched at t, bilinearly, without mip levels;
+//! colours and normals are then fetched at t' with the footprint that they would have at t.
+//! Adjoint: by the product rule; what T and D are fetched with goes to their texels.
+//!
+//! Contract: n·d is in [−1, 1]; where it is below the limit it has no gradient.
+
+use crate::spherical_harmonics::{MOST_FUNCTIONS, adjoint as sh_adjoint, evaluate, functions};
+use crate::texture::{Level, Taps, taps};
+use parbake_model::Wrap;
+use parbake_model::glam::{Vec2, Vec3};
+
+/// The coefficient maps of a surface.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ShParallax {
+    /// Highest order of the functions, 0 to 7.
+    pub order: usize,
+    /// Texels along u.
+    pub width: usize,
+    /// Texels along v.
+    pub height: usize,
+    /// width × height texels, row 0 on top, each of (order + 1)² pairs.
+    pub coefficients: Vec<Vec2>,
+    /// Multiplies the shift; 1 everywhere where there is none.
+    pub depth: Option<Level<1>>,
+    /// The least |n·d| that the shift is divided by, > 0.
+    pub limit: f32,
+    /// Wrap modes of all maps along u and v.
+    pub wrap: [Wrap; 2],
+}
+
+/// From where a point is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// Unit vector to the viewer.
+    pub direction: Vec3,
+    /// Cosine between that and the vertex normal, −1 … 1.
+    pub cosine: f32,
+}
+
+/// Gradients of what a shift was made from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ShiftGradient {
+    /// Of the coordinate at which the maps were fetched (t' = t + shift adds its own).
+    pub uv: Vec2,
+    /// Of the direction to the viewer.
+    pub direction: Vec3,
+    /// Of the cosine.
+    pub cosine: f32,
+}
+
+/// What a shift is multiplied with on its way from the functions.
+#[derive(Clone, Copy)]
+struct Factors {
+    /// 1 / max(|n·d|, limit).
+    steepness: f32,
+    depth: f32,
+}
+
+impl ShParallax {
+    /// A map that shifts nothing.
+    pub fn zeros(order: usize, size: usize) -> Self {
+        Self {
+            order,
+            width: size,
+            height: size,
+            coefficients: vec![Vec2::ZERO; size * size * functions(order)],
+            depth: None,
+            limit: 0.25,
+            wrap: [Wrap::Clamp; 2],
+        }
+    }
+
+    /// Where the coefficients of this coordinate lie.
+    #[inline]
+    pub fn taps(&self, uv: Vec2) -> Taps {
+        taps(uv, self.width, self.height, self.wrap)
+    }
+
+    /// The first coefficient of a texel.
+    #[inline]
+    fn texel(&self, index: u32) -> &[Vec2] {
+        let count = functions(self.order);
+        let start = index as usize * count;
+        &self.coefficients[start..start + count]
+    }
+
+    /// `Σ_k T_k Y_k` of one texel.
+    #[inline]
+    fn at_texel(&self, index: u32, values: &[f32; MOST_FUNCTIONS]) -> Vec2 {
+        self.texel(index).iter().zip(values).fold(Vec2::ZERO, |sum, (c, y)| sum + *c * *y)
+    }
+
+    #[inline]
+    fn factors(&self, uv: Vec2, sight: &Sight) -> Factors {
+        let steepness = 1.0 / sight.cosine.abs().max(self.limit);
+        let depth = self.depth.as_ref().map_or(1.0, |map| {
+            map.fetch(&taps(uv, map.width, map.height, self.wrap))[0]
+        });
+        Factors { steepness, depth }
+    }
+
+    /// How far the coordinate moves, in texture widths.
+    #[inline]
+    pub fn shift(&self, uv: Vec2, sight: &Sight) -> Vec2 {
+        let mut values = [0.0; MOST_FUNCTIONS];
+        evaluate(self.order, sight.direction, &mut values);
+        let at = self.taps(uv);
+        let sum = (at.index.into_iter().zip(at.weights()))
+            .fold(Vec2::ZERO, |sum, (index, weight)| sum + self.at_texel(index, &values) * weight);
+        let Factors { steepness, depth } = self.factors(uv, sight);
+        sum * (steepness * depth)
+    }
+
+    /// Adjoint of [`ShParallax::shift`]: adds to the maps' gradients (`into` has this map's
+    /// shape) and returns those of the rest.
+    pub fn adjoint(&self, uv: Vec2, sight: &Sight, to_shift: Vec2, into: &mut Self) -> ShiftGradient {
+        let mut values = [0.0; MOST_FUNCTIONS];
+        evaluate(self.order, sight.direction, &mut values);
+        let count = functions(self.order);
+        let at = self.taps(uv);
+        let weights = at.weights();
+        let sums = at.index.map(|index| self.at_texel(index, &values));
+        let sum: Vec2 = sums.iter().zip(weights).map(|(s, w)| *s * w).sum();
+        let Factors { steepness, depth } = self.factors(uv, sight);
+        let to_sum = to_shift * (steepness * depth);
+
+        let mut to_values = [0.0; MOST_FUNCTIONS];
+        for (index, weight) in at.index.into_iter().zip(weights) {
+            let start = index as usize * count;
+            for k in 0..count {
+                to_values[k] += weight * self.coefficients[start + k].dot(to_sum);
+                into.coefficients[start + k] += to_sum * (weight * values[k]);
+            }
+        }
+        let [a, b, c, d] = sums.map(|s| s.dot(to_sum));
+        let mut to_uv = Vec2::new(
+            ((b - a) * (1.0 - at.fy) + (d - c) * at.fy) * self.width as f32,
+            ((c - a) * (1.0 - at.fx) + (d - b) * at.fx) * self.height as f32,
+        );
+        let along = sum.dot(to_shift);
+        if let (Some(map), Some(into)) = (&self.depth, &mut into.depth) {
+            let at = taps(uv, map.width, map.height, self.wrap);
+            let gradient = [along * steepness];
+            into.scatter(&at, &gradient);
+            to_uv += map.uv_adjoint(&at, &gradient);
+        }
+        let steep = sight.cosine.abs() < self.limit;
+        let to_cosine = -along * depth * steepness * steepness * sight.cosine.signum();
+        ShiftGradient {
+            uv: to_uv,
+            direction: sh_adjoint(self.order, sight.direction, &to_values),
+            cosine: if steep { 0.0 } else { to_cosine },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn noise(i: usize) -> f32 {
+        ((i * 37 + 11) % 101) as f32 / 50.0 - 1.0
+    }
+
+    fn map(with_depth: bool) -> ShParallax {
+        let mut map = ShParallax { width: 5, height: 4, ..ShParallax::zeros(3, 0) };
+        map.coefficients = (0..5 * 4 * 16).map(|i| Vec2::new(noise(i), noise(3 * i + 1))).collect();
+        map.depth = with_depth.then(|| Level {
+            width: 3,
+            height: 6,
+            texels: (0..18).map(|i| [noise(5 * i + 2)]).collect(),
+        });
+        map
+    }
+
+    /// Protects all gradients of eq. 4: coefficients, depth, coordinate, direction, cosine.
+    #[test]
+    fn adjoint_matches_central_differences() {
+        let to_shift = Vec2::new(0.7, -1.3);
+        for with_depth in [false, true] {
+            let map = map(with_depth);
+            let value = |map: &ShParallax, uv, sight: &Sight| map.shift(uv, sight).dot(to_shift);
+            for i in 0..40 {
+                let uv = Vec2::new(0.5 + 0.4 * noise(7 * i), 0.5 + 0.4 * noise(11 * i + 5));
+                let direction = Vec3::new(noise(i), noise(2 * i + 3), 1.5 * noise(i + 8)).normalize();
+                let sight = Sight { direction, cosine: noise(13 * i + 1) };
+                let mut into = map.clone();
+                into.coefficients.fill(Vec2::ZERO);
+                into.depth.iter_mut().for_each(|d| d.texels.fill([0.0]));
+                let got = map.adjoint(uv, &sight, to_shift, &mut into);
+                let h = 1e-3;
+                let close = |have: f32, want: f32| {
+                    assert!((have - want).abs() < 2e-2 * want.abs().max(1.0), "{i}: {have} {want}");
+                };
+                for k in (0..map.coefficients.len()).step_by(3) {
+                    let mut moved = map.clone();
+                    moved.coefficients[k].y += 1.0;
+                    close(into.coefficients[k].y, value(&moved, uv, &sight) - value(&map, uv, &sight));
+                }
+                for k in 0..map.depth.as_ref().map_or(0, |d| d.texels.len()) {
+                    let mut moved = map.clone();
+                    moved.depth.iter_mut().for_each(|d| d.texels[k][0] += 1.0);
+                    let have = into.depth.as_ref().map_or(0.0, |d| d.texels[k][0]);
+                    close(have, value(&moved, uv, &sight) - value(&map, uv, &sight));
+                }
+                let along = |f: &dyn Fn(f32) -> f32| (f(h) - f(-h)) / (2.0 * h);
+                let kinked = |uv: Vec2, n: usize, axis: usize| {
+                    ((uv[axis] - h) * n as f32 - 0.5).floor() != ((uv[axis] + h) * n as f32 - 0.5).floor()
+                };
+                if !(kinked(uv, 5, 0) || kinked(uv, 3, 0)) {
+                    close(got.uv.x, along(&|h| value(&map, uv + Vec2::X * h, &sight)));
+                }
+                if !(kinked(uv, 4, 1) || kinked(uv, 6, 1)) {
+                    close(got.uv.y, along(&|h| value(&map, uv + Vec2::Y * h, &sight)));
+                }
+                if (sight.cosine.abs() - map.limit).abs() > h {
+                    let at = |h: f32| Sight { cosine: sight.cosine + h, ..sight };
+                    close(got.cosine, along(&|h| value(&map, uv, &at(h))));
+                }
+                let across = direction.any_orthonormal_vector();
+                let at = |h: f32| Sight { direction: (direction + across * h).normalize(), ..sight };
+                close(got.direction.dot(across), along(&|h| value(&map, uv, &at(h))));
+            }
+        }
+    }
+
+    /// Protects from blow-ups: at grazing angles the division stops at the limit.
+    #[test]
+    fn grazing_views_are_limited() {
+        let mut map = ShParallax::zeros(0, 1);
+        map.coefficients[0] = Vec2::new(1.0, 0.0);
+        let shift = |cosine| map.shift(Vec2::splat(0.5), &Sight { direction: Vec3::Z, cosine }).x;
+        assert_eq!(shift(0.0), shift(0.25));
+        assert!((shift(0.25) / shift(1.0) - 4.0).abs() < 1e-5);
+        assert_eq!(shift(-0.5), shift(0.5));
+    }
+}
