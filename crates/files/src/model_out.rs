@@ -35,11 +35,10 @@ pub(crate) fn check(path: &Path, model: &Model) -> Result<(), FileError> {
     if mesh.triangle_materials.iter().any(|&m| m as usize >= model.materials.len()) {
         return refuse("a triangle names a material that is not there".into());
     }
-    let slots = |m: &Material| [m.base_color_texture, m.normal_texture];
-    if model.materials.iter().flat_map(slots).flatten().any(|s| s.image >= model.images.len()) {
+    if model.materials.iter().flat_map(Material::texture_slots).any(|s| s.image >= model.images.len()) {
         return refuse("a material names an image that is not there".into());
     }
-    let used = model.materials.iter().flat_map(slots).flatten();
+    let used = model.materials.iter().flat_map(Material::texture_slots);
     let transforms = used.clone().map(|s| s.transform);
     if transforms
         .into_iter()
@@ -50,6 +49,10 @@ pub(crate) fn check(path: &Path, model: &Model) -> Result<(), FileError> {
     if let Some(image) = used.map(|s| &model.images[s.image]).find(|i| !is_whole(i)) {
         let (w, h, n) = (image.width, image.height, image.pixels.len());
         return refuse(format!("image {:?} should have {w} × {h} texels, but has {n}", image.name));
+    }
+    let maps = model.materials.iter().filter_map(|m| m.parallax.as_ref());
+    if let Some(fault) = maps.filter_map(|map| map.check(&model.images).err()).next() {
+        return refuse(format!("a parallax map is broken: {fault}"));
     }
     let finite = mesh.positions.iter().all(|p| p.is_finite())
         && mesh.uvs.iter().chain(&mesh.uvs1).all(|uv| uv.is_finite())
@@ -68,7 +71,7 @@ fn is_whole(image: &Image) -> bool {
 mod tests {
     use super::*;
     use parbake_model::glam::Vec3;
-    use parbake_model::{Mesh, TextureSlot, UvTransform};
+    use parbake_model::{Mesh, ShParallaxMap, TextureSlot, UvTransform};
 
     fn turned(rotation: f32) -> Option<TextureSlot> {
         let transform = UvTransform { rotation, ..UvTransform::default() };
@@ -87,7 +90,7 @@ mod tests {
         let materials = vec![Material { base_color_texture: turned(1.0), ..Material::default() }];
         let images = vec![Image::solid("a", 2, 2, [1; 4])];
         let good = Model { mesh, materials, images, ..Model::default() };
-        let breakages: [fn(&mut Model); 10] = [
+        let breakages: [fn(&mut Model); 11] = [
             |m| m.mesh.triangles[0][1] = 3,
             |m| m.mesh.triangle_materials[0] = 1,
             |m| m.mesh.triangle_materials.clear(),
@@ -98,6 +101,7 @@ mod tests {
             |m| m.images[0].width = 3,
             |m| m.images[0].pixels.clear(),
             |m| m.materials[0].base_color_texture = turned(f32::NAN),
+            |m| m.materials[0].parallax = Some(ShParallaxMap::default()),
         ];
         let path = Path::new("out.glb");
         assert!(check(path, &good).is_ok());

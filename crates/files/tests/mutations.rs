@@ -14,7 +14,7 @@ use parbake_files::{
     read_obj_bytes,
 };
 use parbake_model::glam::{Vec2, Vec3, Vec4};
-use parbake_model::{Image, Material, Mesh, Model, TextureSlot};
+use parbake_model::{Image, Material, Mesh, Model, ShParallaxMap, TextureSlot};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -147,6 +147,8 @@ const GLTF: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0
     {"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0}}}}],
     "meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2,"COLOR_0":3},"indices":4,"material":0,"mode":5},
     {"attributes":{"POSITION":0}}]}],"materials":[{"name":"m","alphaMode":"MASK","normalTexture":{"index":0,"scale":0.5},
+    "extensions":{"PARBAKE_materials_parallax_sh":{"order":0,"limit":0.5,"coefficientTextures":[{"index":0}],"scale":[1,0.5],
+    "offset":[0,0.1],"depthTexture":{"index":0},"depthScale":2,"depthOffset":-1,"normalTexture":{"index":0,"texCoord":1}}},
     "pbrMetallicRoughness":{"baseColorFactor":[1,1,0.5,1],"baseColorTexture":{"index":0,"texCoord":0,
     "extensions":{"KHR_texture_transform":{"offset":[0,1],"scale":[2,2],"rotation":0.5}}}}}],
     "textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071,"wrapT":33648}],
@@ -171,7 +173,10 @@ fn glb() -> Vec<u8> {
         triangle_materials: vec![0],
     };
     let base_color_texture = Some(TextureSlot::default());
-    let materials = vec![Material { base_color_texture, ..Material::default() }];
+    let map = ShParallaxMap { images: vec![0], ..ShParallaxMap::default() };
+    let parallax =
+        Some(ShParallaxMap { scale: vec![0.5; 2], offset: vec![-0.1; 2], base_color_texture, ..map });
+    let materials = vec![Material { base_color_texture, parallax, ..Material::default() }];
     glb_bytes(&Model { name: "m".into(), mesh, materials, images: vec![picture()] }).expect("a whole model")
 }
 

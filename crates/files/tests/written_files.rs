@@ -6,7 +6,9 @@
 
 use parbake_files::{Limits, read_model, write_glb, write_obj};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
-use parbake_model::{AlphaMode, Image, Material, Mesh, Model, TextureSlot, UvTransform, Wrap};
+use parbake_model::{
+    AlphaMode, DepthMap, Image, Material, Mesh, Model, ShParallaxMap, TextureSlot, UvTransform, Wrap,
+};
 use std::path::{Path, PathBuf};
 
 /// A grid of `side`² vertices with every attribute and two textures.
@@ -52,6 +54,16 @@ fn rich(side: u32) -> Model {
     plain.alpha_mode = AlphaMode::Blend;
     plain.base_color_texture =
         Some(TextureSlot { image: 0, uv_set: 1, wrap: [Wrap::Mirror, Wrap::Repeat], transform });
+    base.parallax = Some(ShParallaxMap {
+        order: 2,
+        images: (2..8).collect(),
+        scale: (0..18).map(|i| 0.01 * i as f32).collect(),
+        offset: vec![-0.05; 18],
+        depth: Some(DepthMap { image: 8, scale: 2.0, offset: 0.5 }),
+        base_color_texture: plain.base_color_texture,
+        ..ShParallaxMap::default()
+    });
+    model.images.extend((2..9).map(|i| Image::solid(&format!("parallax {i}"), 8, 8, [i, 2 * i, 3 * i, 255])));
     model
 }
 

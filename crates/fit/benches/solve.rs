@@ -14,7 +14,8 @@ use parbake_fit::conjugate_gradient::{Effort, solve};
 use parbake_fit::membrane::Membrane;
 use parbake_fit::normal::normal_step;
 use parbake_fit::reference::{Reference, Sampling, render_references};
-use parbake_fit::samples::{Beyond, SampleSet, collect_samples};
+use parbake_fit::samples::{SampleSet, collect_samples};
+use parbake_fit::view_walk::{Beyond, Walker};
 use parbake_fit::stencil::{Block, Diagonal, Row, Stencil, Symmetric, add_diagonal, add_symmetric};
 use parbake_fit::views::{Rig, view_pool};
 use parbake_mesh::demo::{demo_low, demo_model};
@@ -76,7 +77,7 @@ static BENCH: LazyLock<Bench> = LazyLock::new(|| {
 
 fn collect(low: &Mesh, references: &[Reference]) -> SampleSet {
     let beyond = Beyond::Background([0.0; 3], 0.5);
-    collect_samples(low, references, VIEW_SIZE, TEXTURE_SIZE, &DISPLAY, beyond, &())
+    collect_samples(&Walker::new(low, VIEW_SIZE, &DISPLAY, beyond), references, TEXTURE_SIZE, None, &())
 }
 
 impl Bench {

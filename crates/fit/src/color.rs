@@ -59,7 +59,7 @@ const DARK: f32 = 0.01;
 
 /// Compares what linear `light` shows with what was wanted.
 #[inline]
-fn respond(display: &DisplayTable, light: Vec4, target: Vec4) -> Response {
+pub(crate) fn respond(display: &DisplayTable, light: Vec4, target: Vec4) -> Response {
     let mut out = Response::default();
     for lane in 0..3 {
         let (mut shown, slope) = display.encode_with_derivative(light[lane].max(DARK));

@@ -1,9 +1,9 @@
 //! Where each pixel of the training views falls on the low-poly's texture, how the
 //! light meets it there, and what the high-poly shows in its place.
 //!
-//! Forward: `raster → interpolate → frame` of the low-poly, once a pixel; what is
-//! left for the solvers is a bilinear fetch and the shading. Samples are binned by
-//! texture tile (a stable counting sort a view, then views in order within a
+//! Forward: a walk over the views' pixels (`view_walk.rs`), then the shift of the
+//! coordinate where there is a parallax map; what is left for the solvers is a bilinear
+//! fetch and the shading. Samples are binned by texture tile (a stable counting sort a view, then views in order within a
 //! tile), so that bands of the texture can be summed by many threads without
 //! atomics and always in the same order, and each band's texels stay in cache.
 //!
@@ -13,25 +13,12 @@
 use crate::canvas::{BAND, bands};
 use crate::reference::Reference;
 use crate::watch::{Stage, Watch};
-use parbake_model::Mesh;
+use crate::view_walk::Walker;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
-use parbake_render::display::Display;
-use parbake_render::frame::{TangentLight, tangent_light};
-use parbake_render::interpolate::{barycentrics, interpolate};
-use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
+use parbake_render::frame::TangentLight;
+use parbake_render::parallax::ShParallax;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// What a pixel of the low-poly shall look like where the high-poly leaves the
-/// pixel, or part of it, empty.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Beyond {
-    /// Nothing is asked of such pixels.
-    Ignore,
-    /// The high-poly before a background of this linear light, counting this much
-    /// (0 … 1) against a pixel that the high-poly fills.
-    Background([f32; 3], f32),
-}
 
 /// One pixel of a training view, as the texture sees it: 36 bytes, since a fit reads
 /// millions of them in every step.
@@ -69,8 +56,7 @@ impl Sample {
     /// How the light meets the surface.
     #[inline]
     pub fn light(&self) -> TangentLight {
-        let [x, y, z, tt, bb, nn, tb, tn, bn] = self.light.map(|v| f32::from(v) * (1.0 / 32767.0));
-        TangentLight { light: Vec3::new(x, y, z), gram: [tt, bb, nn, tb, tn, bn] }
+        unpacked(self.light)
     }
 
     /// Wanted display value.
@@ -123,24 +109,21 @@ struct Sorted {
     begin: Vec<u32>,
 }
 
-/// Collects the samples of all references on a texture of `texture_size`².
+/// Collects the samples of all references on a texture of `texture_size`², their
+/// coordinates shifted by the parallax map.
 pub fn collect_samples(
-    low: &Mesh,
+    walker: &Walker,
     references: &[Reference],
-    reference_size: usize,
     texture_size: usize,
-    display: &Display,
-    beyond: Beyond,
+    parallax: Option<&ShParallax>,
     watch: &impl Watch,
 ) -> SampleSet {
     let layout = Layout { size: texture_size, tiles_across: texture_size.div_ceil(TILE) };
-    let face_normals: Vec<Vec3> = (0..low.triangles.len()).map(|t| low.area_normal(t)).collect();
     let done = AtomicUsize::new(0);
     let views: Vec<Sorted> = references
         .par_iter()
         .map(|reference| {
-            let samples =
-                view_samples(low, &face_normals, reference, reference_size, texture_size, display, beyond);
+            let samples = view_samples(walker, reference, texture_size, parallax);
             watch.progress(Stage::Sampling, done.fetch_add(1, Ordering::Relaxed) + 1, references.len());
             sort(samples, &layout)
         })
@@ -183,55 +166,35 @@ fn sort(samples: Vec<Sample>, layout: &Layout) -> Sorted {
 }
 
 fn view_samples(
-    low: &Mesh,
-    face_normals: &[Vec3],
+    walker: &Walker,
     reference: &Reference,
-    size: usize,
     texture_size: usize,
-    display: &Display,
-    beyond: Beyond,
+    parallax: Option<&ShParallax>,
 ) -> Vec<Sample> {
-    let camera = &reference.view.camera;
-    let jitter = reference.view.jitter;
-    let screen = ScreenTriangles::new(&low.positions, &low.triangles, camera, size);
-    let mut seen = Visibility::default();
-    rasterise(&screen, size, (jitter[0], jitter[1]), &mut seen);
-    let mut out = Vec::with_capacity(size * size / 3);
-    for (index, &triangle) in seen.triangle.iter().enumerate() {
-        if triangle == NOTHING {
-            continue;
-        }
-        let pixel = reference.pixels[index].map(f32::from);
-        let Some((target, weight)) = target(pixel, display, beyond) else {
-            continue;
-        };
-        let at = (
-            (index % size) as f64 + 0.5 + f64::from(jitter[0]),
-            (index / size) as f64 + 0.5 + f64::from(jitter[1]),
-        );
-        let b = barycentrics(&screen.triangles[triangle as usize], at.0, at.1).weights;
-        let corners = low.triangles[triangle as usize].map(|i| i as usize);
-        let uv: Vec2 = interpolate(corners.map(|i| low.uvs[i]), b);
-        let point = interpolate(corners.map(|i| low.positions[i]), b);
-        let normal = interpolate(corners.map(|i| low.normals[i]), b);
-        let tangent = interpolate(corners.map(|i| low.tangents[i].truncate()), b);
-        let to_light = camera.view_direction(point);
-        let facing = if to_light.dot(face_normals[triangle as usize]) < 0.0 { -1.0 } else { 1.0 };
+    let mut out = Vec::with_capacity(reference.pixels.len() / 3);
+    walker.walk(reference, |seen| {
+        let uv = seen.uv + parallax.map_or(Vec2::ZERO, |map| map.shift(seen.uv, &seen.sight));
         let (texel, fraction) = place(uv, texture_size);
-        let handedness = low.tangents[corners[0]].w;
         out.push(Sample {
             texel,
             fraction,
-            light: packed(&tangent_light(normal, tangent, handedness, to_light, facing)),
-            target,
-            weight,
+            light: packed(&seen.light),
+            target: seen.target,
+            weight: seen.weight,
         });
-    }
+    });
     out
 }
 
+/// Inverse of [`packed`].
+#[inline]
+pub(crate) fn unpacked(light: [i16; 9]) -> TangentLight {
+    let [x, y, z, tt, bb, nn, tb, tn, bn] = light.map(|v| f32::from(v) * (1.0 / 32767.0));
+    TangentLight { light: Vec3::new(x, y, z), gram: [tt, bb, nn, tb, tn, bn] }
+}
+
 /// See [`Sample::light`].
-fn packed(light: &TangentLight) -> [i16; 9] {
+pub(crate) fn packed(light: &TangentLight) -> [i16; 9] {
     let [x, y, z] = light.light.to_array();
     let [tt, bb, nn, tb, tn, bn] = light.gram;
     [x, y, z, tt, bb, nn, tb, tn, bn].map(|v| (v.clamp(-1.0, 1.0) * 32767.0).round_ties_even() as i16)
@@ -248,27 +211,6 @@ fn place(uv: Vec2, size: usize) -> (u32, [u16; 2]) {
     (y * size as u32 + x, [fx, fy])
 }
 
-/// Less than this share of a pixel beyond the silhouette is rounding.
-const UNCOVERED: f32 = 1e-3;
-
-/// What the display shall show and how much that counts; `None` when nothing is
-/// asked of this pixel.
-fn target(pixel: [f32; 4], display: &Display, beyond: Beyond) -> Option<([u16; 3], u16)> {
-    let [r, g, b, coverage] = pixel;
-    let rest = 1.0 - coverage;
-    let (light, weight) = match beyond {
-        _ if rest < UNCOVERED => ([r, g, b], 1.0),
-        Beyond::Ignore => return None,
-        Beyond::Background(behind, weight) => {
-            // The background is light that has passed the gain already.
-            let behind = behind.map(|x| x * rest / display.gain);
-            ([r + behind[0], g + behind[1], b + behind[2]], weight)
-        }
-    };
-    let shown = light.map(|x| (display.encode(x.max(0.0)).min(1.0) * 65535.0 + 0.5) as u16);
-    Some((shown, (weight.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -279,15 +221,5 @@ mod tests {
         assert_eq!(place(Vec2::new(0.0, 0.0), 4), (15, [32768, 32768]));
         assert_eq!(place(Vec2::new(0.375, 0.125), 4), (1, [0, 0]));
         assert_eq!(place(Vec2::new(-0.875, 1.125), 4), (0, [0, 0]));
-    }
-
-    /// Protects the two ways of treating what lies beyond the silhouette.
-    #[test]
-    fn a_half_covered_pixel_is_ignored_or_blended() {
-        let display = Display { gain: 1.0, curve: parbake_render::display::Curve::Linear };
-        let pixel = [0.25, 0.25, 0.25, 0.5];
-        assert_eq!(target(pixel, &display, Beyond::Ignore), None);
-        let white = target(pixel, &display, Beyond::Background([1.0; 3], 0.5));
-        assert_eq!(white, Some(([49151; 3], 32768)));
     }
 }

@@ -4,12 +4,18 @@
 /// What is being worked on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Stage {
+    /// Moving vertices.
+    Shape,
     /// Rendering the high-poly for the fit.
     Reference,
     /// Projecting the high-poly's surface onto the texture.
     Start,
     /// Finding where each pixel falls on the texture.
     Sampling,
+    /// Fitting the cutout.
+    Cutout,
+    /// Fitting the parallax map.
+    Parallax,
     /// Solving for the textures.
     Solve,
 }

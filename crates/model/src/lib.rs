@@ -11,18 +11,21 @@
 mod image;
 mod material;
 mod mesh;
+mod parallax;
 mod placement;
 
 pub use glam;
 pub use image::Image;
 pub use material::{AlphaMode, Material, TextureSlot, UvTransform, Wrap};
 pub use mesh::Mesh;
+pub use parallax::{DepthMap, ParallaxFault, ShParallaxMap};
 pub use placement::{Bounds, Placement};
 
 /// A textured model: one mesh, and what its triangles' materials name.
 ///
 /// Contract: every `Mesh::triangle_materials` entry indexes `materials`, and
-/// every [`TextureSlot::image`] indexes `images`. There is at least one material.
+/// every [`TextureSlot::image`] indexes `images`; every [`ShParallaxMap`] passes its
+/// check. There is at least one material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {
     /// A name to show to people, usually the file's.

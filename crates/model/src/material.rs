@@ -1,6 +1,7 @@
-//! Materials, as far as Parbake renders them: base colour and tangent-space
-//! normals (glTF 2.0, section 3.9; the OBJ reader maps MTL onto the same).
+//! Materials, as far as Parbake renders them: base colour, tangent-space normals
+//! (glTF 2.0, section 3.9; the OBJ reader maps MTL onto the same) and parallax maps.
 
+use crate::ShParallaxMap;
 use glam::Vec2;
 
 /// What happens to texture coordinates outside `[0, 1)`.
@@ -82,6 +83,23 @@ pub struct Material {
     pub normal_scale: f32,
     /// How alpha is to be understood.
     pub alpha_mode: AlphaMode,
+    /// Shifts of the texture coordinates with the direction of view.
+    pub parallax: Option<ShParallaxMap>,
+}
+
+impl Material {
+    /// All textures of the look: base colour and normals, and those that a parallax map has
+    /// instead of them. The map's own images are not among these.
+    pub fn texture_slots(&self) -> impl Iterator<Item = TextureSlot> + Clone {
+        let own = self.parallax.as_ref().map_or([None; 2], |p| [p.base_color_texture, p.normal_texture]);
+        [self.base_color_texture, self.normal_texture].into_iter().chain(own).flatten()
+    }
+
+    /// Whether shading needs tangents.
+    pub fn has_normal_map(&self) -> bool {
+        let own = self.parallax.as_ref().is_some_and(|p| p.normal_texture.is_some());
+        self.normal_texture.is_some() || own
+    }
 }
 
 impl Default for Material {
@@ -93,6 +111,7 @@ impl Default for Material {
             normal_texture: None,
             normal_scale: 1.0,
             alpha_mode: AlphaMode::Opaque,
+            parallax: None,
         }
     }
 }

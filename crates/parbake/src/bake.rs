@@ -12,19 +12,23 @@ use crate::low::LowPoly;
 use crate::message::{Message, Stage, Watcher};
 use crate::options::{BakeOptions, UvMode};
 use crate::pair::{common_frame, placed};
+use crate::parallax::parallax;
 use crate::report::{BakeReport, StageTime};
-use crate::unfold::{Source, unfold};
+use crate::shape::{Target, shape};
+use crate::unfold::{Source, mend, unfold};
 use crate::uv_animation::UvMoves;
 use parbake_fit::quantise::{color_image, normal_image};
 use parbake_fit::reference::render_references;
-use parbake_fit::samples::{Beyond, collect_samples};
+use parbake_fit::samples::collect_samples;
 use parbake_fit::schedule::fit_textures;
 use parbake_fit::start::project;
+use parbake_fit::view_walk::{Beyond, Walker};
 use parbake_fit::views::{Rig, view_pool};
 use parbake_fit::watch;
 use parbake_mesh::HighSurface;
 use parbake_model::{Image, Material, Mesh, Model, TextureSlot, Wrap};
 use parbake_render::camera::Projection;
+use parbake_render::parallax::ShParallax;
 use parbake_render::scene::Scene;
 use parbake_render::shade::Lambert;
 use std::time::{Duration, Instant};
@@ -76,9 +80,12 @@ impl<W: Watcher> Watcher for Bridge<'_, W> {
 impl<W: Watcher> watch::Watch for Bridge<'_, W> {
     fn progress(&self, stage: watch::Stage, done: usize, total: usize) {
         let stage = match stage {
+            watch::Stage::Shape => Stage::Shape,
             watch::Stage::Reference => Stage::Reference,
             watch::Stage::Start => Stage::Start,
             watch::Stage::Sampling => Stage::Sampling,
+            watch::Stage::Cutout => Stage::Cutout,
+            watch::Stage::Parallax => Stage::Parallax,
             watch::Stage::Solve => Stage::Solve,
         };
         self.watcher.message(Message::Progress { stage, done, total });
@@ -88,6 +95,12 @@ impl<W: Watcher> watch::Watch for Bridge<'_, W> {
         self.watcher.stopped() || self.until.is_some_and(|until| Instant::now() >= until)
     }
 }
+
+/// The share of vertices in a time budget.
+const SHAPE_SHARE: f64 = 0.3;
+
+/// The share of the parallax map in a time budget.
+const PARALLAX_SHARE: f64 = 0.5;
 
 /// The share of texture coordinates in a time budget: textures are worth more.
 const UNFOLD_SHARE: f64 = 0.3;
@@ -147,16 +160,26 @@ pub(crate) fn bake_pair(
         || HighSurface::new(&mesh),
     );
     drop(mesh);
-    let mut unfolded = None;
-    if options.uv != UvMode::Keep {
+    let (display, reach) = (convention.display(), 2.0 * options.reach);
+    let (mut shaped, mut unfolded) = (None, None);
+    let shape_plan = options.shape_plan().filter(|_| !same);
+    let unfold_options = options.unfold();
+    if options.uv != UvMode::Keep || shape_plan.is_some() {
+        let mut low = mend(low, &unfold_options)?;
+        clock.lap(Stage::Prepare);
+        if let Some(plan) = &shape_plan {
+            let target = Target { scene: &scene, surface: &surface, reach, display, rig: RIG };
+            let share = bridge.share(SHAPE_SHARE);
+            shaped = Some(shape(&mut low, &frame, &target, plan, options.seed, &share)?);
+            clock.lap(Stage::Shape);
+        }
         let source = Source {
             scene: &scene,
             surface: (!same).then_some(&surface),
-            reach: 2.0 * options.reach,
+            reach,
             encode: convention.decodes_srgb(),
         };
-        clock.lap(Stage::Prepare);
-        unfolded = Some(unfold(low, &frame, &source, &options.unfold(), &bridge.share(UNFOLD_SHARE))?);
+        unfolded = Some(unfold(low, &frame, &source, &unfold_options, &bridge.share(UNFOLD_SHARE)));
         clock.lap(Stage::Unfold);
     }
     let low = unfolded.as_ref().map_or(low, |u| &u.model);
@@ -169,8 +192,7 @@ pub(crate) fn bake_pair(
     }
     clock.lap(Stage::Prepare);
 
-    let start = project(&placed, &map, &atlas, &scene, &surface, 2.0 * options.reach);
-    drop(surface);
+    let start = project(&placed, &map, &atlas, &scene, &surface, reach);
     clock.lap(Stage::Start);
 
     let pool = view_pool(plan.views, &RIG, options.seed);
@@ -182,8 +204,39 @@ pub(crate) fn bake_pair(
         0.0 => Beyond::Ignore,
         weight => Beyond::Background(options.backdrop.light(), weight),
     };
-    let display = convention.display();
-    let samples = collect_samples(&placed, &references, plan.reference.size, size, &display, beyond, &bridge);
+    let walker = Walker::new(&placed, plan.reference.size, &display, beyond);
+    let env = |name: &str, default: f32| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
+    let _ = std::fs::remove_file("/tmp/cutout.bin");
+    let cut = (env("C_STEPS", 0.0) > 0.0).then(|| {
+        let o = parbake_fit::cutout::CutoutOptions {
+            order: env("C_ORDER", 2.0) as usize,
+            size: env("C_SIZE", 64.0) as usize,
+            steps: env("C_STEPS", 200.0) as usize,
+            rate: env("C_RATE", 0.1),
+            ..Default::default()
+        };
+        let t = Instant::now();
+        let ex = parbake_fit::cutout::examples(&walker, &references, o.size);
+        let t1 = t.elapsed();
+        let (map, wrong) = parbake_fit::cutout::fit_cutout(&ex, &o, &bridge);
+        eprintln!("cutout {:?} {t1:?} {:?} of {}", wrong, t.elapsed(), ex.iter().map(Vec::len).sum::<usize>());
+        let mut b: Vec<u8> = vec![o.order as u8, o.size as u8];
+        for c in &map.coefficients { b.extend(c.to_le_bytes()); }
+        std::fs::write("/tmp/cutout.bin", b).unwrap();
+        map
+    });
+    let walker = walker.with_cutout(cut.as_ref());
+    let srgb = convention.decodes_srgb();
+    let mut shifts = None;
+    if let Some(plan) = options.parallax_plan() {
+        let target = Target { scene: &scene, surface: &surface, reach, display, rig: RIG };
+        let share = bridge.share(PARALLAX_SHARE);
+        shifts = Some(parallax(low, &frame, &target, &references, &walker, srgb, &plan, &share)?);
+        clock.lap(Stage::Parallax);
+    }
+    drop(surface);
+    let shift_map = shifts.as_ref().map(|(map, _)| map);
+    let samples = collect_samples(&walker, &references, size, shift_map, &bridge);
     let views = references.len();
     drop(references);
     if samples.is_empty() {
@@ -191,7 +244,6 @@ pub(crate) fn bake_pair(
     }
     clock.lap(Stage::Sampling);
 
-    let srgb = convention.decodes_srgb();
     let fitted = fit_textures(&samples, &atlas, &start, display, srgb, &plan.schedule, &bridge);
     clock.lap(Stage::Solve);
 
@@ -201,7 +253,9 @@ pub(crate) fn bake_pair(
         warnings.push(warning);
     }
     let report = BakeReport {
-        unfold: unfolded.as_ref().map(|u| u.report.clone()),
+        shape: shaped,
+        parallax: shifts.as_ref().map(|(_, report)| report.clone()),
+        unfold: unfolded.as_ref().filter(|_| options.uv != UvMode::Keep).map(|u| u.report.clone()),
         options: options.clone(),
         high_triangles: high.mesh.triangles.len(),
         low_triangles: low.mesh.triangles.len(),
@@ -223,27 +277,31 @@ pub(crate) fn bake_pair(
         &written,
         color_image("base color", &start.color, srgb),
         normal_image("normal", &start.normal),
+        None,
     );
     Ok(Baked {
-        model: textured(low, &written, fitted.color, fitted.normal),
+        model: textured(low, &written, fitted.color, fitted.normal, shift_map),
         projected,
         report,
         uv_moves: unfolded.as_ref().and_then(|u| u.moves.clone()),
     })
 }
 
-/// The low-poly with one material of these two textures.
-fn textured(low: &Model, mesh: &Mesh, color: Image, normal: Image) -> Model {
+/// The low-poly with one material of these two textures and this parallax map.
+fn textured(low: &Model, mesh: &Mesh, color: Image, normal: Image, shifts: Option<&ShParallax>) -> Model {
     let mut mesh = mesh.clone();
     mesh.colors.clear();
     mesh.uvs1.clear();
     mesh.triangle_materials.fill(0);
     let slot = |image| TextureSlot { image, wrap: [Wrap::Repeat; 2], ..TextureSlot::default() };
+    let mut images = vec![color, normal];
+    let parallax = shifts.map(|map| map.pack(&mut images));
     let material = Material {
+        parallax,
         name: low.name.clone(),
         base_color_texture: Some(slot(0)),
         normal_texture: Some(slot(1)),
         ..Material::default()
     };
-    Model { name: low.name.clone(), mesh, materials: vec![material], images: vec![color, normal] }
+    Model { name: low.name.clone(), mesh, materials: vec![material], images }
 }

@@ -11,7 +11,7 @@ use crate::message::{Message, Stage, Watcher};
 use crate::options::{BakeOptions, Convention, UvMode};
 use crate::pair::{common_frame, placed};
 use crate::report::{BakeReport, LossStep, StageTime};
-use crate::unfold::{Source, SurfaceTexture, UnfoldOptions, solve_on_surface, unfold};
+use crate::unfold::{Source, SurfaceTexture, UnfoldOptions, mend, solve_on_surface, unfold};
 use parbake_model::{Image, Material, Model, TextureSlot, Wrap};
 use parbake_render::scene::Scene;
 use std::time::Instant;
@@ -50,7 +50,8 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         solve_on_surface(&mesh, &source, options.texture_size)
             .ok_or_else(|| BakeError::FlatTextureCoordinates { model: model.name.clone() })
     };
-    let kept = unfold(model, &frame, &source, &options.unfold_as(UvMode::Keep), watcher)?;
+    let as_it_is = options.unfold_as(UvMode::Keep);
+    let kept = unfold(mend(model, &as_it_is)?, &frame, &source, &as_it_is, watcher);
     if kept.model.mesh.uvs.is_empty() {
         return Err(BakeError::NoTextureCoordinates { model: model.name.clone() });
     }
@@ -58,7 +59,8 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     lap(Stage::Solve, &mut since);
     let asked = options.unfold();
     let steps = options.uv_steps.unwrap_or(STEPS_FACTOR * asked.steps);
-    let mut unfolded = unfold(model, &frame, &source, &UnfoldOptions { steps, ..asked }, watcher)?;
+    let asked = UnfoldOptions { steps, ..asked };
+    let mut unfolded = unfold(mend(model, &asked)?, &frame, &source, &asked, watcher);
     lap(Stage::Unfold, &mut since);
     let written = solved(&unfolded.model)?;
     lap(Stage::Solve, &mut since);
@@ -76,6 +78,8 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         mean_square: solved.errors[0],
     };
     let report = BakeReport {
+        shape: None,
+        parallax: None,
         unfold: Some(unfolded.report.clone()),
         options: options.clone(),
         high_triangles: model.mesh.triangles.len(),

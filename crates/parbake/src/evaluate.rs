@@ -57,6 +57,10 @@ pub struct EvaluateOptions {
     #[cfg_attr(feature = "clap", arg(long))]
     pub no_mips: bool,
 
+    /// Ignore parallax maps, as viewers without the extension do
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub no_parallax: bool,
+
     /// Background: black, white, grey, or three numbers from 0 to 1 as R,G,B, of linear light
     #[cfg_attr(feature = "clap", arg(long, default_value = "black"))]
     pub background: String,
@@ -78,6 +82,7 @@ impl Default for EvaluateOptions {
             gain: 1.59,
             decode_srgb: false,
             no_mips: false,
+            no_parallax: false,
             background: "black".into(),
             no_flip: false,
         }
@@ -132,7 +137,11 @@ impl EvaluateOptions {
 
     /// How textures are read.
     pub fn interpretation(&self) -> Interpretation {
-        Interpretation { decode_srgb: self.decode_srgb, trilinear: !self.no_mips }
+        Interpretation {
+            decode_srgb: self.decode_srgb,
+            trilinear: !self.no_mips,
+            parallax: !self.no_parallax,
+        }
     }
 }
 

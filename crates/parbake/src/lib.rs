@@ -28,9 +28,11 @@ mod message;
 mod models;
 mod options;
 mod pair;
+mod parallax;
 mod picture;
 mod report;
 mod threads;
+mod shape;
 mod unfold;
 mod uv_animation;
 
@@ -43,14 +45,16 @@ pub use html::html_report;
 pub use memory::peak_memory;
 pub use message::{Message, Stage, Watcher};
 pub use models::{demo_pair, simplified, subdivided};
-pub use options::{Backdrop, BakeOptions, Convention, Method, Plan, Preset, UvMode};
+pub use options::{Backdrop, BakeOptions, Convention, Method, Parallax, Plan, Preset, ShapeMode, UvMode};
 pub use parbake_atlas::UvCheck;
 pub use parbake_files::{
     FileError, Limits, Loaded, read_image, read_model, write_atomically as write_file, write_glb, write_obj,
 };
+pub use parallax::ParallaxReport;
 pub use parbake_model::Model;
 pub use picture::{BakedImage, ImageOptions, ImageReport, bake_image};
 pub use report::{BakeReport, LossStep, StageTime};
+pub use shape::ShapeReport;
 pub use threads::{join, with_threads};
 pub use unfold::UnfoldReport;
 pub use uv_animation::{UvAnimationOptions, UvMoves, uv_animation};

@@ -10,6 +10,8 @@ pub enum Stage {
     Read,
     /// Normals, tangents, charts, the search structure of the high-poly.
     Prepare,
+    /// Moving vertices.
+    Shape,
     /// Mending, unwrapping and moving texture coordinates.
     Unfold,
     /// Rendering the high-poly from the training views.
@@ -18,6 +20,10 @@ pub enum Stage {
     Start,
     /// Finding where each pixel falls on the texture.
     Sampling,
+    /// Fitting the cutout.
+    Cutout,
+    /// Fitting the parallax map.
+    Parallax,
     /// Solving for the textures.
     Solve,
     /// Comparing pictures.
@@ -32,10 +38,13 @@ impl Stage {
         match self {
             Stage::Read => "reading files",
             Stage::Prepare => "preparing",
+            Stage::Shape => "moving vertices",
             Stage::Unfold => "moving texture coordinates",
             Stage::Reference => "rendering the high-poly",
             Stage::Start => "projecting",
             Stage::Sampling => "finding samples",
+            Stage::Cutout => "cutting silhouettes",
+            Stage::Parallax => "fitting parallax",
             Stage::Solve => "solving for textures",
             Stage::Evaluate => "comparing pictures",
             Stage::Write => "writing files",

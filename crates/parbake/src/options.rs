@@ -3,11 +3,15 @@
 //! quality field means "as the preset says".
 
 use crate::error::BakeError;
+use crate::parallax::ParallaxPlan;
+use crate::shape::ShapePlan;
 use crate::unfold::UnfoldOptions;
+use parbake_fit::parallax::ParallaxOptions;
 use parbake_fit::reference::Sampling;
 use parbake_fit::schedule::Schedule;
 use parbake_render::display::{Curve, Display};
 use parbake_render::scene::Interpretation;
+use parbake_shape::{Motion, ShapeOptions};
 use parbake_uv::paper::{Guide, PaperOptions};
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +49,7 @@ impl Convention {
 
     /// How textures are read.
     pub fn interpretation(self) -> Interpretation {
-        Interpretation { decode_srgb: self.decodes_srgb(), trilinear: true }
+        Interpretation { decode_srgb: self.decodes_srgb(), trilinear: true, parallax: true }
     }
 
     /// Light strength and display curve.
@@ -69,6 +73,32 @@ pub enum UvMode {
     /// They are mended and then moved to where they show most.
     #[default]
     Optimize,
+}
+
+/// What becomes of vertices.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum ShapeMode {
+    /// They stay as they are.
+    Keep,
+    /// They move along their normals, as in the paper.
+    Normal,
+    /// They move where the pictures want them.
+    #[default]
+    Free,
+}
+
+/// How depth is shown without triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum Parallax {
+    /// Not at all: the file is plain glTF.
+    #[default]
+    None,
+    /// By a map of spherical harmonics in a material extension (docs/parallax_format.md).
+    Sh,
 }
 
 /// How texture coordinates are moved where they are optimised.
@@ -144,6 +174,22 @@ pub struct BakeOptions {
     /// What becomes of the low-poly's texture coordinates
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = UvMode::Optimize))]
     pub uv: UvMode,
+
+    /// What becomes of the low-poly's vertices
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = ShapeMode::Free))]
+    pub shape: ShapeMode,
+
+    /// How depth is shown without triangles; viewers need to know the extension
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Parallax::None))]
+    pub parallax: Parallax,
+
+    /// Highest order of the parallax map's spherical harmonics, 0 to 7
+    #[cfg_attr(feature = "clap", arg(long, value_name = "ORDER", default_value_t = 2))]
+    pub parallax_order: usize,
+
+    /// Side of the parallax map in texels, 4 to 1024
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 64))]
+    pub parallax_size: usize,
 
     /// How texture coordinates are moved; textures are fitted the same way after either
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Method::Fit))]
@@ -223,6 +269,10 @@ impl Default for BakeOptions {
             texture_size: 512,
             preset: Preset::Balanced,
             uv: UvMode::Optimize,
+            shape: ShapeMode::Free,
+            parallax: Parallax::None,
+            parallax_order: 2,
+            parallax_size: 64,
             method: Method::Fit,
             no_content_aware: false,
             gutter: None,
@@ -262,6 +312,66 @@ impl BakeOptions {
         self.gutter.unwrap_or((self.texture_size as f64 / 256.0).clamp(1.0, 8.0))
     }
 
+    /// Whether there is only time for textures.
+    fn hurried(&self) -> bool {
+        self.time_budget.is_some_and(|seconds| seconds < LEAST_BUDGET)
+    }
+
+    /// What to do with vertices; none where they stay.
+    pub(crate) fn shape_plan(&self) -> Option<ShapePlan> {
+        let motion = match self.shape {
+            ShapeMode::Keep => return None,
+            ShapeMode::Normal => Motion::Normal,
+            ShapeMode::Free => Motion::Free,
+        };
+        let (views, steps) = match self.preset {
+            Preset::Fast => (96, 60),
+            Preset::Balanced => (192, 160),
+            Preset::Best => (384, 400),
+        };
+        let env = |name: &str, default: f32| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
+        let fit = ShapeOptions {
+            motion,
+            steps: env("S_STEPS", steps as f32) as usize,
+            rate: env("S_RATE", 4e-3),
+            texture_rate: env("S_TRATE", 0.02),
+            coverage: env("S_COV", 1.0),
+            overhang_discount: env("S_OVER", 0.0),
+            displacement: env("S_DISP", 0.0),
+            views_per_step: env("S_VPS", 12.0) as usize,
+            ..ShapeOptions::default()
+        };
+        (!self.hurried()).then_some(ShapePlan {
+            views: env("S_VIEWS", views as f32) as usize,
+            view_size: env("S_SIZE", 160.0) as usize,
+            texture_size: env("S_TEX", 128.0) as usize,
+            samples: 3,
+            fit,
+        })
+    }
+
+    /// How the parallax map is fitted; none where there is none.
+    pub(crate) fn parallax_plan(&self) -> Option<ParallaxPlan> {
+        let (views, steps) = match self.preset {
+            Preset::Fast => (192, 120),
+            Preset::Balanced => (384, 300),
+            Preset::Best => (768, 900),
+        };
+        let env = |name: &str, default: f32| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
+        (self.parallax == Parallax::Sh).then_some(ParallaxPlan {
+            views: env("P_VIEWS", views as f32) as usize,
+            texture_size: self.texture_size.min(env("P_TEX", 256.0) as usize),
+            fit: ParallaxOptions {
+                order: self.parallax_order,
+                size: self.parallax_size,
+                steps: env("P_STEPS", steps as f32) as usize,
+                rate: env("P_RATE", 3e-4),
+                texture_rate: env("P_TRATE", 1e-2),
+                ..ParallaxOptions::default()
+            },
+        })
+    }
+
     /// What to do with texture coordinates in another mode.
     pub(crate) fn unfold_as(&self, mode: UvMode) -> UnfoldOptions {
         UnfoldOptions { mode, ..self.unfold() }
@@ -275,9 +385,8 @@ impl BakeOptions {
             (Method::Fit, Preset::Balanced) => 30,
             (Method::Fit, Preset::Best) => 60,
         };
-        let hurried = self.time_budget.is_some_and(|seconds| seconds < LEAST_BUDGET);
         UnfoldOptions {
-            mode: if hurried && self.uv == UvMode::Optimize { UvMode::Repair } else { self.uv },
+            mode: if self.hurried() && self.uv == UvMode::Optimize { UvMode::Repair } else { self.uv },
             method: self.method,
             guide: Method::guide(self.no_content_aware),
             texture_size: self.texture_size,
@@ -304,6 +413,8 @@ impl BakeOptions {
         within("rounds", self.rounds.unwrap_or(0) as f64, 0.0, 100.0)?;
         within("gutter", self.gutter.unwrap_or(0.0), 0.0, 64.0)?;
         within("uv-steps", self.uv_steps.unwrap_or(0) as f64, 0.0, 10_000.0)?;
+        within("parallax-order", self.parallax_order as f64, 0.0, 7.0)?;
+        within("parallax-size", self.parallax_size as f64, 4.0, 1024.0)?;
         within("threads", self.threads as f64, 0.0, crate::threads::MOST_THREADS as f64)?;
         within("time-budget", self.time_budget.unwrap_or(0.0), 0.0, 1e9)?;
         self.method.check(self.no_content_aware)

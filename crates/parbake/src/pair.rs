@@ -19,7 +19,7 @@ pub fn common_frame(high: &Model) -> Result<Placement, BakeError> {
 pub fn placed(model: &Model, frame: &Placement) -> Mesh {
     let mut mesh = model.mesh.clone();
     let repaired = ensure_normals(&mut mesh);
-    let mapped = model.materials.iter().any(|m| m.normal_texture.is_some());
+    let mapped = model.materials.iter().any(|m| m.has_normal_map());
     if mapped && (repaired > 0 || mesh.tangents.is_empty()) {
         compute_tangents(&mut mesh);
     }

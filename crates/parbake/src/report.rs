@@ -2,6 +2,8 @@
 
 use crate::message::Stage;
 use crate::options::BakeOptions;
+use crate::parallax::ParallaxReport;
+use crate::shape::ShapeReport;
 use crate::unfold::UnfoldReport;
 use parbake_atlas::UvCheck;
 use parbake_fit::schedule::{LossPoint, Move};
@@ -42,6 +44,12 @@ impl From<&LossPoint> for LossStep {
 /// What a bake saw.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BakeReport {
+    /// What was done with vertices; none where they were kept.
+    #[serde(default)]
+    pub shape: Option<ShapeReport>,
+    /// How the parallax map was fitted; none where there is none.
+    #[serde(default)]
+    pub parallax: Option<ParallaxReport>,
     /// What was done with texture coordinates; none where they were kept.
     pub unfold: Option<UnfoldReport>,
     /// What was asked.

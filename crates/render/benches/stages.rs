@@ -136,7 +136,7 @@ impl Bench {
 
     fn view(&self) -> View<'_> {
         let (camera, reference, composer) = (&self.camera, &self.reference, &self.composer);
-        let comparison = Comparison { image: ImageLoss::L2, coverage: 1.0 };
+        let comparison = Comparison { image: ImageLoss::L2, coverage: 1.0, ..Comparison::default() };
         View { camera, reference, composer, comparison, antialias: true }
     }
 
@@ -458,7 +458,7 @@ fn loss_forward_and_adjoint(bencher: Bencher, image: ImageLoss) {
 #[divan::bench(args = [ImageLoss::L1, ImageLoss::L2, ImageLoss::LogL1])]
 fn compare_picture(bencher: Bencher, image: ImageLoss) {
     let b = Bench::new();
-    let comparison = Comparison { image, coverage: 1.0 };
+    let comparison = Comparison { image, coverage: 1.0, ..Comparison::default() };
     bencher.counter(b.pixels()).bench_local(|| compare(&b.picture, &b.composer, &b.reference, &comparison));
 }
 

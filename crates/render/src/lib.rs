@@ -11,8 +11,8 @@
 //! `pipeline.rs` goes the whole way and back; `patch.rs` is its inner loop, from a
 //! triangle's samples to light. `slopes.rs` and `scatter.rs` are the two halves of the
 //! texture's adjoint: towards the coordinates and towards the texels. `surface.rs` is
-//! what goes in. `scene.rs` renders
-//! whole models, forward only.
+//! what goes in. `scene.rs` renders whole models, forward only, with the textures of
+//! `scene_textures.rs`. `parallax_images.rs` takes parallax maps to 8-bit images and back.
 //!
 //! Stages are pure functions over plain data: no hidden state, so that a GPU
 //! backend can put a kernel in the place of each.
@@ -20,6 +20,7 @@
 pub mod antialias;
 pub mod background;
 pub mod camera;
+pub mod cutout;
 pub mod display;
 pub mod display_table;
 pub mod edges;
@@ -28,11 +29,13 @@ pub mod interpolate;
 pub mod loss;
 pub mod mip;
 pub mod parallax;
+mod parallax_images;
 pub mod patch;
 pub mod pipeline;
 pub mod raster;
 pub mod scatter;
 pub mod scene;
+mod scene_textures;
 pub mod shade;
 pub mod slopes;
 pub mod spherical_harmonics;

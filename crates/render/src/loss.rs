@@ -96,6 +96,9 @@ pub struct Comparison {
     pub image: ImageLoss,
     /// Weight of the coverage loss beside the image's; ≥ 0.
     pub coverage: f32,
+    /// How much less a pixel counts of which the view covers more than the reference: 0 as
+    /// much as any, 1 not at all. For surfaces whose overhang will be cut out.
+    pub overhang_discount: f32,
 }
 
 /// Mean losses of a view.
@@ -138,16 +141,17 @@ pub fn compare(
                 if composed.value == wanted[..3] && rgba[3] == wanted[3] {
                     continue;
                 }
+                let share = if rgba[3] > wanted[3] { 1.0 - comparison.overhang_discount } else { 1.0 };
                 let mut to_value = [0.0; 3];
                 for k in 0..3 {
                     let (value, slope) = comparison.image.with_derivative(composed.value[k], wanted[k]);
-                    sums[0] += f64::from(value);
-                    to_value[k] = slope * per_value;
+                    sums[0] += f64::from(share * value);
+                    to_value[k] = slope * share * per_value;
                 }
                 *out = composer.adjoint(&composed, to_value, column, row);
                 let (value, slope) = coverage_loss(rgba[3], wanted[3]);
-                sums[1] += f64::from(value);
-                out[3] += comparison.coverage * slope * per_pixel;
+                sums[1] += f64::from(share * value);
+                out[3] += comparison.coverage * slope * share * per_pixel;
             }
             sums
         })

@@ -102,9 +102,8 @@ impl ShParallax {
     #[inline]
     fn factors(&self, uv: Vec2, sight: &Sight) -> Factors {
         let steepness = 1.0 / sight.cosine.abs().max(self.limit);
-        let depth = self.depth.as_ref().map_or(1.0, |map| {
-            map.fetch(&taps(uv, map.width, map.height, self.wrap))[0]
-        });
+        let depth =
+            self.depth.as_ref().map_or(1.0, |map| map.fetch(&taps(uv, map.width, map.height, self.wrap))[0]);
         Factors { steepness, depth }
     }
 
@@ -118,6 +117,25 @@ impl ShParallax {
             .fold(Vec2::ZERO, |sum, (index, weight)| sum + self.at_texel(index, &values) * weight);
         let Factors { steepness, depth } = self.factors(uv, sight);
         sum * (steepness * depth)
+    }
+
+    /// The part of [`ShParallax::adjoint`] that goes to the coefficients alone: all that a fit
+    /// needs whose surface stands still.
+    #[inline]
+    pub fn adjoint_of_maps(&self, uv: Vec2, sight: &Sight, to_shift: Vec2, into: &mut Self) {
+        let mut values = [0.0; MOST_FUNCTIONS];
+        evaluate(self.order, sight.direction, &mut values);
+        let count = functions(self.order);
+        let at = self.taps(uv);
+        let Factors { steepness, depth } = self.factors(uv, sight);
+        let to_sum = to_shift * (steepness * depth);
+        for (index, weight) in at.index.into_iter().zip(at.weights()) {
+            let start = index as usize * count;
+            let to_texel = to_sum * weight;
+            for (to, y) in into.coefficients[start..start + count].iter_mut().zip(&values) {
+                *to += to_texel * *y;
+            }
+        }
     }
 
     /// Adjoint of [`ShParallax::shift`]: adds to the maps' gradients (`into` has this map's

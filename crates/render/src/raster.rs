@@ -103,6 +103,39 @@ impl ScreenTriangle {
 /// Finds the nearest triangle at each sample `(column + 0.5 + offset.0, row + 0.5
 /// + offset.1)`; `seen` is reused between calls.
 pub fn rasterise(screen: &ScreenTriangles, size: usize, offset: (f32, f32), seen: &mut Visibility) {
+    fill(screen, size, offset, seen, |_, _| true);
+}
+
+/// Finds the nearest triangle at each sample among those that lie behind what `front` sees
+/// there: depth peeling (Everitt 2001).
+pub fn rasterise_behind(
+    screen: &ScreenTriangles,
+    size: usize,
+    offset: (f32, f32),
+    front: &Visibility,
+    seen: &mut Visibility,
+) {
+    // The same sums in the same order: a triangle is never behind itself.
+    fill(screen, size, offset, seen, |sample, nearness| nearness < front.nearness[sample]);
+}
+
+impl Visibility {
+    /// Puts what another sees at a sample into the place of what is seen there; nothing,
+    /// without another.
+    pub fn replace(&mut self, sample: usize, other: Option<&Self>) {
+        self.triangle[sample] = other.map_or(NOTHING, |o| o.triangle[sample]);
+        self.nearness[sample] = other.map_or(f32::NEG_INFINITY, |o| o.nearness[sample]);
+    }
+}
+
+#[inline(always)]
+fn fill(
+    screen: &ScreenTriangles,
+    size: usize,
+    offset: (f32, f32),
+    seen: &mut Visibility,
+    passes: impl Fn(usize, f32) -> bool,
+) {
     seen.size = size;
     seen.triangle.clear();
     seen.triangle.resize(size * size, NOTHING);
@@ -140,11 +173,12 @@ pub fn rasterise(screen: &ScreenTriangles, size: usize, offset: (f32, f32), seen
             let start = (n.x * (first as f64 + f64::from(cx)) + n.y * y + n.z) as f32;
             let step = n.x as f32;
             let range = row * size + first..row * size + end + 1;
+            let begin = range.start;
             let nearness = &mut seen.nearness[range.clone()];
             let seen = &mut seen.triangle[range];
             for (i, (z, t)) in nearness.iter_mut().zip(seen).enumerate() {
                 let here = start + step * i as f32;
-                if here > *z {
+                if here > *z && passes(begin + i, here) {
                     *z = here;
                     *t = index as u32;
                 }

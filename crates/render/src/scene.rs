@@ -1,22 +1,25 @@
 //! A whole model made ready for rendering, forward only: the reference pictures of
 //! a high-poly and the pictures of an evaluation go through here.
 //!
-//! Forward: for each sample `raster → interpolate → frame → texture → shade`, as in
-//! the other files of this room; samples of a pixel are averaged.
+//! Forward: for each sample `raster → interpolate → frame → parallax → texture → shade`,
+//! as in the other files of this room; samples of a pixel are averaged.
 //!
 //! Contract: pictures are linear light, premultiplied, with coverage in the fourth
 //! channel; gain and display curve come later (`display.rs`). Pixels are
 //! independent, so the picture does not depend on the number of threads.
 
 use crate::camera::Camera;
-use crate::display::{decode_srgb, encode_srgb};
+use crate::display::encode_srgb;
 use crate::frame::tangent_light;
 use crate::interpolate::{barycentrics, interpolate};
+use crate::parallax::Sight;
 use crate::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
+use crate::scene_textures::{Builder, Map, Surface, Textures};
+pub use crate::scene_textures::{unpack_color, unpack_normal};
 use crate::shade::Shading;
-use crate::texture::{Level, Pyramid};
+use crate::texture::Pyramid;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
-use parbake_model::{Image, Material, Mesh, TextureSlot};
+use parbake_model::{Image, Material, Mesh};
 use rayon::prelude::*;
 
 /// What a file's numbers mean when they are rendered.
@@ -27,11 +30,14 @@ pub struct Interpretation {
     pub decode_srgb: bool,
     /// Fetch through mip levels; off: bilinear on the finest level.
     pub trilinear: bool,
+    /// Shift texture coordinates where a material has a parallax map; off: as viewers see
+    /// the model that know no such maps.
+    pub parallax: bool,
 }
 
 impl Default for Interpretation {
     fn default() -> Self {
-        Self { decode_srgb: true, trilinear: true }
+        Self { decode_srgb: true, trilinear: true, parallax: true }
     }
 }
 
@@ -44,21 +50,6 @@ pub struct Picture {
     pub rgba: Vec<[f32; 4]>,
 }
 
-/// One use of a texture, with what moves its coordinates.
-struct Map {
-    slot: TextureSlot,
-    /// Index into the scene's pyramids.
-    pyramid: usize,
-    moved: bool,
-}
-
-struct Surface {
-    factor: Vec3,
-    color: Option<Map>,
-    normal: Option<Map>,
-    normal_scale: f32,
-}
-
 /// A model with its textures unpacked into mip pyramids.
 pub struct Scene {
     mesh: Mesh,
@@ -66,23 +57,6 @@ pub struct Scene {
     pyramids: Vec<Pyramid<3>>,
     /// 0 where a face is degenerate.
     face_normals: Vec<Vec3>,
-}
-
-/// An image's RGB as numbers, each channel through `decode`.
-fn unpack(image: &Image, decode: impl Fn(f32) -> f32) -> Level<3> {
-    let table: Vec<f32> = (0..=255u32).map(|i| decode(i as f32 / 255.0)).collect();
-    let texels = image.pixels.par_iter().map(|p| [0, 1, 2].map(|k| table[p[k] as usize])).collect();
-    Level { width: image.width, height: image.height, texels }
-}
-
-/// Base colour texels as shading sees them.
-pub fn unpack_color(image: &Image, decode: bool) -> Level<3> {
-    unpack(image, |x| if decode { decode_srgb(x) } else { x })
-}
-
-/// Tangent-space normals, not normalised.
-pub fn unpack_normal(image: &Image) -> Level<3> {
-    unpack(image, |x| 2.0 * x - 1.0)
 }
 
 impl Scene {
@@ -95,49 +69,9 @@ impl Scene {
         images: &[Image],
         interpretation: Interpretation,
     ) -> Self {
-        let mut pyramids: Vec<Pyramid<3>> = Vec::new();
-        let mut built: Vec<(usize, bool, [parbake_model::Wrap; 2], usize)> = Vec::new();
-        let mut map = |slot: &Option<TextureSlot>, is_color: bool| {
-            let slot = (*slot)?;
-            let image = images.get(slot.image)?;
-            let key = (slot.image, is_color, slot.wrap);
-            let pyramid = match built.iter().find(|b| (b.0, b.1, b.2) == key) {
-                Some(b) => b.3,
-                None => {
-                    let base = if is_color {
-                        unpack_color(image, interpretation.decode_srgb)
-                    } else {
-                        unpack_normal(image)
-                    };
-                    let mut p = if interpretation.trilinear {
-                        Pyramid::from_base(base)
-                    } else {
-                        Pyramid::single(base)
-                    };
-                    p.wrap = slot.wrap;
-                    pyramids.push(p);
-                    built.push((key.0, key.1, key.2, pyramids.len() - 1));
-                    pyramids.len() - 1
-                }
-            };
-            Some(Map { slot, pyramid, moved: slot.transform != Default::default() })
-        };
-        let surfaces = materials
-            .iter()
-            .map(|m| {
-                let linear = Vec4::from(m.base_color).truncate();
-                Surface {
-                    factor: if interpretation.decode_srgb {
-                        linear
-                    } else {
-                        Vec3::from(linear.to_array().map(encode_srgb))
-                    },
-                    color: map(&m.base_color_texture, true),
-                    normal: map(&m.normal_texture, false),
-                    normal_scale: m.normal_scale,
-                }
-            })
-            .collect();
+        let mut builder = Builder::new(images, interpretation);
+        let surfaces = materials.iter().map(|m| builder.surface(m)).collect();
+        let pyramids = builder.pyramids;
         if !interpretation.decode_srgb {
             for c in &mut mesh.colors {
                 *c = Vec4::from(c.to_array().map(encode_srgb));
@@ -159,13 +93,14 @@ impl Scene {
 
     /// Albedo and unit normal of a point on the surface, textures included.
     ///
-    /// `width` is how wide an area to average over, in the mesh's unit.
+    /// `width` is how wide an area to average over, in the mesh's unit. No one looks from
+    /// anywhere, so parallax maps have no say.
     pub fn look(&self, triangle: usize, weights: [f32; 3], width: f32) -> (Vec3, Vec3) {
         let mesh = &self.mesh;
         let corners = mesh.triangles[triangle].map(|i| i as usize);
         let surface = &self.surfaces[mesh.triangle_materials[triangle] as usize];
         let fetch = |map: &Map| {
-            let uvs = self.map_uvs(map, corners);
+            let uvs = map.uvs(mesh, corners);
             let pyramid = &self.pyramids[map.pyramid];
             let area = self.face_normals[triangle].length().max(1e-20);
             let density = ((uvs[1] - uvs[0]).perp_dot(uvs[2] - uvs[0]).abs() / area).sqrt();
@@ -173,7 +108,7 @@ impl Scene {
             Vec3::from(pyramid.fetch(interpolate(uvs, weights), pyramid.lod(along, along)))
         };
         let normal = interpolate(corners.map(|i| mesh.normals[i]), weights);
-        let mapped = match &surface.normal {
+        let mapped = match &surface.plain.normal {
             Some(map) if !mesh.tangents.is_empty() => {
                 let tangent = interpolate(corners.map(|i| mesh.tangents[i].truncate()), weights);
                 let m = fetch(map) * Vec3::new(surface.normal_scale, surface.normal_scale, 1.0);
@@ -182,26 +117,20 @@ impl Scene {
             }
             _ => normal,
         };
-        (self.albedo(surface, corners, weights, fetch), mapped.normalize_or(Vec3::Z))
-    }
-
-    /// A map's texture coordinates at three vertices.
-    fn map_uvs(&self, map: &Map, corners: [usize; 3]) -> [Vec2; 3] {
-        let set = if map.slot.uv_set == 1 { &self.mesh.uvs1 } else { &self.mesh.uvs };
-        let uvs = corners.map(|i| set.get(i).copied().unwrap_or_default());
-        if map.moved { uvs.map(|uv| map.slot.transform.apply(uv)) } else { uvs }
+        (self.albedo(surface, &surface.plain, corners, weights, fetch), mapped.normalize_or(Vec3::Z))
     }
 
     /// Factor × texture × vertex colour.
     fn albedo(
         &self,
         surface: &Surface,
+        textures: &Textures,
         corners: [usize; 3],
         weights: [f32; 3],
         fetch: impl Fn(&Map) -> Vec3,
     ) -> Vec3 {
         let mut color = surface.factor;
-        if let Some(map) = &surface.color {
+        if let Some(map) = &textures.color {
             color *= fetch(map);
         }
         if !self.mesh.colors.is_empty() {
@@ -210,7 +139,9 @@ impl Scene {
         color
     }
 
-    /// Light that leaves the surface towards the camera at one sample.
+    /// Light that leaves the surface towards the camera at one sample. With parallax,
+    /// colours and normals are fetched at the shifted coordinate and filtered as at the
+    /// unshifted one, whose tangent frame stays.
     ///
     /// `footprint` scales the pixel over which textures are filtered: 1 for one
     /// sample a pixel of this screen.
@@ -227,19 +158,27 @@ impl Scene {
         let mesh = &self.mesh;
         let corners = mesh.triangles[triangle].map(|i| i as usize);
         let surface = &self.surfaces[mesh.triangle_materials[triangle] as usize];
+        let point = interpolate(corners.map(|i| mesh.positions[i]), b.weights);
+        let to_viewer = camera.view_direction(point);
+        let facing = if to_viewer.dot(self.face_normals[triangle]) < 0.0 { -1.0 } else { 1.0 };
+        let normal = interpolate(corners.map(|i| mesh.normals[i]), b.weights);
+        let (textures, shift) = match &surface.shifted {
+            Some(shifted) => {
+                let cosine = normal.normalize_or_zero().dot(to_viewer);
+                let sight = Sight { direction: to_viewer, cosine };
+                (&shifted.textures, shifted.at(mesh, corners, b.weights, &sight))
+            }
+            None => (&surface.plain, Vec2::ZERO),
+        };
         let fetch = |map: &Map| {
-            let uvs = self.map_uvs(map, corners);
+            let uvs = map.uvs(mesh, corners);
             let pyramid = &self.pyramids[map.pyramid];
             let along = |w: [f32; 3]| -> Vec2 { interpolate(uvs, w) };
             let lod = pyramid.lod(along(b.per_x) * footprint, along(b.per_y) * footprint);
-            Vec3::from(pyramid.fetch(along(b.weights), lod))
+            Vec3::from(pyramid.fetch(along(b.weights) + shift, lod))
         };
-        let color = self.albedo(surface, corners, b.weights, fetch);
-        let point = interpolate(corners.map(|i| mesh.positions[i]), b.weights);
-        let to_light = camera.view_direction(point);
-        let facing = if to_light.dot(self.face_normals[triangle]) < 0.0 { -1.0 } else { 1.0 };
-        let normal = interpolate(corners.map(|i| mesh.normals[i]), b.weights);
-        let (tangent, handedness, map_normal) = match &surface.normal {
+        let color = self.albedo(surface, textures, corners, b.weights, fetch);
+        let (tangent, handedness, map_normal) = match &textures.normal {
             Some(map) if !mesh.tangents.is_empty() => {
                 let t = interpolate(corners.map(|i| mesh.tangents[i].truncate()), b.weights);
                 let scale = Vec3::new(surface.normal_scale, surface.normal_scale, 1.0);
@@ -247,7 +186,7 @@ impl Scene {
             }
             _ => (Vec3::ZERO, 1.0, Vec3::Z),
         };
-        shading.forward(&tangent_light(normal, tangent, handedness, to_light, facing), color, map_normal)
+        shading.forward(&tangent_light(normal, tangent, handedness, to_viewer, facing), color, map_normal)
     }
 
     /// The whole view, each pixel the mean of `supersample`² samples.
@@ -285,3 +224,7 @@ impl Scene {
         Picture { size, rgba }
     }
 }
+
+#[cfg(test)]
+#[path = "scene_parallax_tests.rs"]
+mod parallax_tests;

@@ -91,7 +91,7 @@ fn scene(seed: u64, size: usize) -> Scene {
         size,
         trilinear: true,
         background: Background::Color([0.1, 0.3, 0.2]),
-        comparison: Comparison { image: ImageLoss::L2, coverage: 0.7 },
+        comparison: Comparison { image: ImageLoss::L2, coverage: 0.7, overhang_discount: 0.6 },
         antialias: true,
         lit: true,
     };
@@ -298,7 +298,7 @@ fn whole_view_trilinear() {
 #[test]
 fn whole_view_bilinear_log_loss() {
     for seed in 4..8 {
-        let comparison = Comparison { image: ImageLoss::LogL1, coverage: 0.0 };
+        let comparison = Comparison { image: ImageLoss::LogL1, coverage: 0.0, ..Comparison::default() };
         let background = Background::Checker { cells: 6 };
         let s = Scene { trilinear: false, comparison, background, ..scene(seed, 48) };
         check_all(&s, &format!("seed {seed}"));
@@ -309,7 +309,7 @@ fn whole_view_bilinear_log_loss() {
 #[test]
 fn whole_view_unlit() {
     for seed in 8..12 {
-        let comparison = Comparison { image: ImageLoss::L1, coverage: 0.3 };
+        let comparison = Comparison { image: ImageLoss::L1, coverage: 0.3, ..Comparison::default() };
         check_all(&Scene { lit: false, comparison, ..scene(seed, 48) }, &format!("seed {seed}"));
     }
 }
@@ -318,7 +318,7 @@ fn whole_view_unlit() {
 #[test]
 fn whole_view_without_antialiasing() {
     for seed in 12..16 {
-        let comparison = Comparison { image: ImageLoss::L2, coverage: 0.0 };
+        let comparison = Comparison { image: ImageLoss::L2, coverage: 0.0, ..Comparison::default() };
         check_all(&Scene { antialias: false, comparison, ..scene(seed, 48) }, &format!("seed {seed}"));
     }
 }

@@ -12,7 +12,6 @@
 //! adam, paper                         the paper's method
 //! ```
 
-pub mod adam;
 pub mod best_texture;
 pub mod contact;
 pub mod descent;

@@ -20,7 +20,7 @@
 mod energy;
 pub mod texture_loss;
 
-use crate::adam::{Adam, AdamOptions};
+use parbake_adam::{Adam, AdamOptions};
 use crate::best_texture::{Mapped, Texture};
 use crate::contact::Contact;
 use crate::descent::{Place, Region, Step};

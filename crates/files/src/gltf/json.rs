@@ -232,6 +232,25 @@ pub(super) struct MetallicRoughness {
 pub(super) struct MaterialExtensions {
     #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
     pub specular_glossiness: Option<SpecularGlossiness>,
+    #[serde(rename = "PARBAKE_materials_parallax_sh")]
+    pub parallax_sh: Option<Box<ParallaxSh>>,
+}
+
+/// Parbake's own: `docs/parallax_format.md`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct ParallaxSh {
+    #[serde(deserialize_with = "optional_integer")]
+    pub order: Option<usize>,
+    pub limit: Option<f32>,
+    pub coefficient_textures: Vec<TextureInfo>,
+    pub scale: Vec<f32>,
+    pub offset: Vec<f32>,
+    pub depth_texture: Option<TextureInfo>,
+    pub depth_scale: Option<f32>,
+    pub depth_offset: Option<f32>,
+    pub base_color_texture: Option<TextureInfo>,
+    pub normal_texture: Option<TextureInfo>,
 }
 
 #[derive(Debug, Default, Deserialize)]

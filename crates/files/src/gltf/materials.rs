@@ -1,13 +1,14 @@
 //! Materials, textures, samplers and images (glTF 2.0, 3.8 and 3.9), with
-//! KHR_texture_transform, EXT_texture_webp and the diffuse part of
-//! KHR_materials_pbrSpecularGlossiness.
+//! KHR_texture_transform, EXT_texture_webp, the diffuse part of
+//! KHR_materials_pbrSpecularGlossiness, and parallax maps (`parallax.rs`).
 //!
-//! Images are decoded once each, and only those that a base colour or a normal
-//! texture uses. An image that is not there is a warning; one that cannot be
+//! Images are decoded once each, and only those that a base colour, a normal texture or a
+//! parallax map uses. An image that is not there is a warning; one that cannot be
 //! decoded is an error.
 
 use super::buffers::{Buffers, pointer};
 use super::json::{self, TextureInfo};
+use super::parallax;
 use super::uri::{Uri, parse};
 use crate::FileError;
 use crate::context::{NamedBytes, Textures};
@@ -16,9 +17,11 @@ use parbake_model::{AlphaMode, Image, Material, TextureSlot, UvTransform, Wrap};
 use std::collections::HashMap;
 
 /// The document's materials of these indices (`None`: the default), and their images.
+/// `turned` says of each whether a node turns or stretches what has it.
 pub(super) fn build(
     buffers: &Buffers<'_>,
     indices: &[Option<usize>],
+    turned: &[bool],
 ) -> Result<(Vec<Material>, Vec<Image>), FileError> {
     let mut reader = Reader { buffers, pictures: Vec::new(), places: HashMap::new() };
     let mut materials = Vec::with_capacity(indices.len());
@@ -29,11 +32,12 @@ pub(super) fn build(
         });
     }
     let images = buffers.context.decode_images(&reader.pictures)?;
+    parallax::leave_out(&mut materials, turned, &images, buffers.context);
     Ok((materials, images))
 }
 
-struct Reader<'a, 'd> {
-    buffers: &'a Buffers<'d>,
+pub(super) struct Reader<'a, 'd> {
+    pub buffers: &'a Buffers<'d>,
     /// Those in use, to be decoded at the end.
     pictures: Vec<NamedBytes<'a>>,
     /// From the document's images to ours; `None` where one could not be found.
@@ -71,10 +75,14 @@ impl<'a> Reader<'a, '_> {
             material.normal_texture = self.slot(info, &format!("{here}/normalTexture"))?;
             material.normal_scale = info.scale.filter(|s| s.is_finite()).unwrap_or(1.0);
         }
+        if let Some(json) = &json.extensions.parallax_sh {
+            material.parallax = parallax::read(self, json, &here, &material.name);
+        }
         Ok(material)
     }
 
-    fn slot(&mut self, info: &TextureInfo, here: &str) -> Result<Option<TextureSlot>, FileError> {
+    /// One use of a texture; `None`, with a warning, when its picture cannot be found.
+    pub fn slot(&mut self, info: &TextureInfo, here: &str) -> Result<Option<TextureSlot>, FileError> {
         let (buffers, document) = (self.buffers, self.buffers.document);
         if buffers.context.textures == Textures::Skip {
             return Ok(None);

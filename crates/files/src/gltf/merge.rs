@@ -8,6 +8,7 @@
 use super::accessor::Accessor;
 use super::buffers::{Buffers, pointer};
 use super::json::Primitive;
+use super::parallax::turns;
 use super::scene::Instance;
 use super::topology::{has_triangles, triangles};
 use crate::{FileError, Place};
@@ -23,6 +24,9 @@ pub(super) struct Merge<'a, 'd> {
     pub mesh: Mesh,
     /// The document's materials (or none, for the default one) in order of first use.
     pub materials: Vec<Option<usize>>,
+    /// For each of these, whether a node turns, mirrors or stretches a mesh that has it:
+    /// what it says in the mesh's own axes then no longer goes for the merged mesh.
+    pub turned: Vec<bool>,
     material_ids: HashMap<Option<usize>, u32>,
     has: Attributes,
     /// Primitives placed so far: even those without triangles take time.
@@ -61,8 +65,8 @@ impl<'a, 'd> Merge<'a, 'd> {
             uvs1: any(|p| p.attributes.texcoord_1.is_some()),
             colors: any(|p| p.attributes.color_0.is_some()),
         };
-        let (mesh, materials, material_ids, placed, places) = Default::default();
-        Self { buffers, mesh, materials, material_ids, has, placed, places }
+        let (mesh, materials, turned, material_ids, placed, places) = Default::default();
+        Self { buffers, mesh, materials, turned, material_ids, has, placed, places }
     }
 
     /// Adds one placing of a mesh.
@@ -113,6 +117,7 @@ impl<'a, 'd> Merge<'a, 'd> {
         let limit = (context.limits.max_vertices as u64).min(u64::from(u32::MAX) - 1);
         context.within(pointer(here.into()), "vertices", found, limit)?;
         let determinant = at.world.matrix3.determinant();
+        self.turned[material as usize] |= turns(&at.world.matrix3);
         for triangle in &mut triangles {
             *triangle = triangle.map(|i| i + first as u32);
             if determinant < 0.0 {
@@ -138,6 +143,7 @@ impl<'a, 'd> Merge<'a, 'd> {
         let id = *self.material_ids.entry(index).or_insert(next);
         if id == next {
             self.materials.push(index);
+            self.turned.push(false);
         }
         Ok(id)
     }

@@ -1,6 +1,7 @@
 //! glTF 2.0 and GLB, in and out.
 //!
-//! Only what Parbake bakes from is understood: triangles, base colour, normals.
+//! Only what Parbake bakes from and to is understood: triangles, base colour, normals,
+//! parallax maps.
 //! Skins, morph targets and animations are passed over with a warning: the mesh
 //! is taken as its nodes place it.
 
@@ -13,12 +14,14 @@ mod json;
 mod locate;
 mod materials;
 mod merge;
+mod parallax;
 mod references;
 mod scene;
 mod topology;
 mod uri;
 mod write;
 mod write_material;
+mod write_parallax;
 
 pub use write::{glb_bytes, write_glb};
 
@@ -54,15 +57,16 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
     let mut merge = merge::Merge::new(&buffers);
     scene::visit(&buffers, &mut |instance| merge.add(instance))?;
     let (mesh, used) = (std::mem::take(&mut merge.mesh), std::mem::take(&mut merge.materials));
+    let turned = std::mem::take(&mut merge.turned);
     if mesh.triangles.is_empty() {
         references::check(&buffers)?;
     }
     let empty = emptiness(&document);
-    let (materials, images) = materials::build(&buffers, &used)?;
+    let (materials, images) = materials::build(&buffers, &used, &turned)?;
     drop(merge);
     drop(buffers);
     for material in &materials {
-        for slot in [material.base_color_texture, material.normal_texture].into_iter().flatten() {
+        for slot in material.texture_slots() {
             let uvs = if slot.uv_set == 0 { &mesh.uvs } else { &mesh.uvs1 };
             if uvs.is_empty() {
                 let (name, set) = (&material.name, slot.uv_set);

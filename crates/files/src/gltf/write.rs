@@ -65,8 +65,12 @@ fn to_bytes(path: &Path, model: &Model) -> Result<Vec<u8>, FileError> {
             document[key] = values.into();
         }
     }
-    if materials.uses_transforms {
-        document["extensionsUsed"] = json!(["KHR_texture_transform"]);
+    let extensions = [
+        ("KHR_texture_transform", materials.uses_transforms),
+        (super::parallax::NAME, materials.uses_parallax),
+    ];
+    if extensions.iter().any(|e| e.1) {
+        document["extensionsUsed"] = extensions.iter().filter(|e| e.1).map(|e| e.0).collect();
     }
     assemble(path, &document.to_string(), binary.bytes)
 }
@@ -144,10 +148,7 @@ fn attributes(binary: &mut Binary, model: &Model) -> Value {
         }
     }
     let zeros = vec![Vec2::ZERO; mesh.positions.len()];
-    let needed = |set: u8| {
-        let slots = model.materials.iter().flat_map(|m| [m.base_color_texture, m.normal_texture]);
-        slots.flatten().any(|s| s.uv_set >= set)
-    };
+    let needed = |set: u8| model.materials.iter().flat_map(|m| m.texture_slots()).any(|s| s.uv_set >= set);
     for (set, uvs) in [(0, &mesh.uvs), (1, &mesh.uvs1)] {
         // Sets are numbered without gaps, so that set 1 brings set 0 along.
         let uvs = match uvs.is_empty() {

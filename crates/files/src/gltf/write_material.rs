@@ -16,8 +16,18 @@ pub(super) struct Materials {
     pub textures: Vec<Value>,
     pub samplers: Vec<Value>,
     pub uses_transforms: bool,
-    texture_keys: Vec<(usize, [Wrap; 2])>,
-    sampler_keys: Vec<[Wrap; 2]>,
+    pub uses_parallax: bool,
+    texture_keys: Vec<(usize, [Wrap; 2], Filter)>,
+    sampler_keys: Vec<([Wrap; 2], Filter)>,
+}
+
+/// How a texture is fetched.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Filter {
+    /// Linear, and linear between mip levels: pictures.
+    Trilinear,
+    /// Linear, and no mip levels: data.
+    Linear,
 }
 
 impl Materials {
@@ -57,11 +67,12 @@ impl Materials {
             AlphaMode::Mask => json["alphaMode"] = "MASK".into(),
             AlphaMode::Blend => json["alphaMode"] = "BLEND".into(),
         }
+        self.add_parallax(material, &mut json);
         json
     }
 
-    fn texture_info(&mut self, slot: &TextureSlot) -> Value {
-        let mut info = json!({ "index": self.texture(slot.image, slot.wrap) });
+    pub fn texture_info(&mut self, slot: &TextureSlot) -> Value {
+        let mut info = json!({ "index": self.texture(slot.image, slot.wrap, Filter::Trilinear) });
         if slot.uv_set != 0 {
             info["texCoord"] = slot.uv_set.into();
         }
@@ -78,16 +89,17 @@ impl Materials {
         info
     }
 
-    fn texture(&mut self, image: usize, wrap: [Wrap; 2]) -> usize {
+    /// The index of a texture, which is added where it is not there yet.
+    pub fn texture(&mut self, image: usize, wrap: [Wrap; 2], filter: Filter) -> usize {
         let source = place(&mut self.images, image);
-        let key = (image, wrap);
+        let key = (image, wrap, filter);
         let index = place(&mut self.texture_keys, key);
         if index == self.textures.len() {
-            let sampler = place(&mut self.sampler_keys, wrap);
+            let sampler = place(&mut self.sampler_keys, (wrap, filter));
             if sampler == self.samplers.len() {
                 let [s, t] = wrap.map(code);
-                // Linear, and linear between mipmaps.
-                self.samplers.push(json!({ "magFilter": 9729, "minFilter": 9987, "wrapS": s, "wrapT": t }));
+                let min = if filter == Filter::Trilinear { 9987 } else { 9729 };
+                self.samplers.push(json!({ "magFilter": 9729, "minFilter": min, "wrapS": s, "wrapT": t }));
             }
             self.textures.push(json!({ "source": source, "sampler": sampler }));
         }

@@ -2,7 +2,7 @@
 //!
 //! Numbers are printed so that reading gives the same bits back (colours: nearly). What OBJ cannot
 //! say is refused rather than dropped: turned, mirrored or second-set texture
-//! coordinates, and a colour factor on a texture. Tangents and the alpha of vertex
+//! coordinates, a colour factor on a texture, and parallax maps. Tangents and the alpha of vertex
 //! colours are left out; readers can compute the former.
 
 use super::{NamedImage, srgb};
@@ -81,6 +81,9 @@ fn material_names(model: &Model) -> Vec<String> {
 fn library(path: &Path, model: &Model, pictures: &[Option<NamedImage>]) -> Result<String, FileError> {
     let mut out = format!("# Parbake {}\n", env!("CARGO_PKG_VERSION"));
     for (material, name) in model.materials.iter().zip(material_names(model)) {
+        if material.parallax.is_some() {
+            return Err(cannot(path, material, "a parallax map"));
+        }
         let [r, g, b, a] = material.base_color.map(f64::from);
         let [r, g, b] = [r, g, b].map(|x| srgb::encode(x.clamp(0.0, 1.0)));
         let _ = write!(out, "\nnewmtl {name}\nKd {r} {g} {b}\nKs 0 0 0\n");

@@ -61,8 +61,11 @@ pub fn check_model(path: &Path, loaded: &Loaded) {
     assert!(mesh.uvs.iter().chain(&mesh.uvs1).all(|uv| uv.is_finite()), "{path}");
     assert!(mesh.colors.iter().all(|c| c.is_finite()), "{path}");
     for material in &model.materials {
-        for slot in [material.base_color_texture, material.normal_texture].into_iter().flatten() {
+        for slot in material.texture_slots() {
             assert!(slot.image < model.images.len() && slot.uv_set < 2, "{path}");
+        }
+        if let Some(map) = &material.parallax {
+            assert_eq!(map.check(&model.images), Ok(()), "{path}");
         }
         assert!(material.base_color.iter().all(|x| (0.0..=1.0).contains(x)), "{path}");
     }

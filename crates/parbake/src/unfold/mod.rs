@@ -91,18 +91,15 @@ const MOST_SAMPLES: usize = 400_000;
 /// some 700 pixels.
 const PIXEL: f64 = 2.8 / 1024.0;
 
-/// Prepares the texture coordinates of a low-poly that `frame` places.
-///
-/// # Errors
-/// Where charts do not fit into the texture with the gutter asked for.
+/// Prepares the texture coordinates of a mended low-poly that `frame` places.
 pub fn unfold(
-    low: &Model,
+    low: Mended,
     frame: &Placement,
     source: &Source,
     options: &UnfoldOptions,
     watcher: &impl Watcher,
-) -> Result<Unfolded, BakeError> {
-    let (mut mesh, mended) = mended(low, options)?;
+) -> Unfolded {
+    let Mended { name, mut mesh, mended } = low;
     let start = Layout::new(&mesh);
     let before = check(&start, options.texture_size).utilisation;
     let mut report =
@@ -122,13 +119,25 @@ pub fn unfold(
         }
     }
     mesh.triangle_materials.fill(0);
-    let model =
-        Model { name: low.name.clone(), mesh, materials: vec![Material::default()], images: Vec::new() };
-    Ok(Unfolded { model, moves, report })
+    let model = Model { name, mesh, materials: vec![Material::default()], images: Vec::new() };
+    Unfolded { model, moves, report }
 }
 
-/// The mesh with sound coordinates, as the mode asks, and what was done for that.
-fn mended(low: &Model, options: &UnfoldOptions) -> Result<(Mesh, Vec<String>), BakeError> {
+/// A low-poly whose coordinates are sound, or as they were where they are to be kept.
+pub struct Mended {
+    /// The model's name.
+    pub name: String,
+    /// Its mesh with unit normals; what its materials said of coordinates is applied.
+    pub mesh: Mesh,
+    /// What was done, a sentence each.
+    pub mended: Vec<String>,
+}
+
+/// Makes a low-poly's coordinates sound, as the mode asks.
+///
+/// # Errors
+/// Where charts do not fit into the texture with the gutter asked for.
+pub fn mend(low: &Model, options: &UnfoldOptions) -> Result<Mended, BakeError> {
     let mut mesh = low.mesh.clone();
     mesh.uvs = texture_coordinates(&low.mesh, &low.materials);
     mesh.tangents.clear();
@@ -146,7 +155,7 @@ fn mended(low: &Model, options: &UnfoldOptions) -> Result<(Mesh, Vec<String>), B
     if repaired > 0 && !low.mesh.normals.is_empty() {
         mended.push(format!("{repaired} unusable normals were replaced."));
     }
-    Ok((mesh, mended))
+    Ok(Mended { name: low.name.clone(), mesh, mended })
 }
 
 fn packing(options: &UnfoldOptions) -> PackOptions {

@@ -1,5 +1,6 @@
 //! Reading glTF: tiny documents made by hand.
 
+mod parallax;
 mod textures;
 mod writing;
 

@@ -1,0 +1,77 @@
+//! Parallax maps in files, as `eval` shows them.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{demo_pair, parbake, run, text};
+use parbake::{Limits, Model, read_model, write_glb};
+use serde_json::Value;
+use std::path::Path;
+
+/// Gives every material a map of order 0 that shifts by `shift` texture widths along u where
+/// the surface is seen face on.
+fn add_map(model: &mut Model, shift: f32) {
+    let mut image = model.images[0].clone();
+    (image.name, image.width, image.height, image.pixels) =
+        ("parallax".into(), 2, 2, vec![[255, 0, 0, 255]; 4]);
+    model.images.push(image);
+    let last = model.images.len() - 1;
+    for material in &mut model.materials {
+        let map = material.parallax.get_or_insert_default();
+        map.images = vec![last];
+        // The function of order 0 is √(1 / 4π).
+        map.scale = vec![shift / 0.282_094_8, 0.0];
+        map.offset = vec![0.0; 2];
+    }
+}
+
+fn psnr(folder: &Path, high: &str, low: &str, more: &[&str]) -> f64 {
+    let arguments =
+        ["eval", high, low, "--views", "4", "--resolution", "64", "--no-flip", "--json", "-", "-q"];
+    let output = run(folder, &[&arguments[..], more].concat());
+    let evaluation: Value = serde_json::from_slice(&output.stdout).unwrap();
+    evaluation["mean"]["psnr"].as_f64().unwrap()
+}
+
+/// Protects whoever asks what a file looks like in viewers with and without the extension:
+/// the map is read from the file and shown, and with `--no-parallax` it is not.
+#[test]
+fn eval_shows_a_file_both_ways() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    let mut model = read_model(&folder.join("demo_high.glb"), &Limits::default()).unwrap().model;
+    add_map(&mut model, 0.05);
+    write_glb(&folder.join("shifted.glb"), &model).unwrap();
+    let (with, without) = (
+        psnr(folder, "demo_high.glb", "shifted.glb", &[]),
+        psnr(folder, "demo_high.glb", "shifted.glb", &["--no-parallax"]),
+    );
+    assert_eq!(without, 100.0, "the same pictures");
+    assert!(with < 40.0, "{with} dB");
+    assert_eq!(psnr(folder, "shifted.glb", "shifted.glb", &[]), 100.0);
+}
+
+/// Protects users from a map that is dropped in silence: they are told, and the rest of the
+/// model is evaluated.
+#[test]
+fn a_broken_map_is_mentioned() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    let mut model = read_model(&folder.join("demo_high.glb"), &Limits::default()).unwrap().model;
+    add_map(&mut model, 0.05);
+    write_glb(&folder.join("broken.glb"), &model).unwrap();
+    let mut bytes = std::fs::read(folder.join("broken.glb")).unwrap();
+    let at = bytes.windows(9).position(|w| w == b"\"order\":0").unwrap();
+    bytes[at + 8] = b'9';
+    std::fs::write(folder.join("broken.glb"), bytes).unwrap();
+    let arguments =
+        ["eval", "demo_high.glb", "broken.glb", "--views", "2", "--resolution", "32", "--no-flip"];
+    let output = parbake(folder).args(arguments).output().unwrap();
+    assert!(output.status.success());
+    let said = text(&output.stderr);
+    assert!(said.contains("was left out: its order is 9"), "{said}");
+    assert!(text(&output.stdout).contains("100.000"), "{}", text(&output.stdout));
+}

@@ -1,0 +1,149 @@
+//! SH parallax maps in: the material extension `PARBAKE_materials_parallax_sh`, as
+//! `docs/parallax_format.md` has it.
+//!
+//! Contract: a model looks right without its parallax maps. So a map that breaks the format
+//! is left out with a warning that says why, whatever is wrong with it; only JSON of the
+//! wrong types and pictures that cannot be decoded are errors, as everywhere in a document.
+
+use super::buffers::pointer;
+use super::json::{ParallaxSh, TextureInfo};
+use super::materials::Reader;
+use crate::FileError;
+use crate::context::{Context, Textures};
+use parbake_model::glam::DMat3;
+use parbake_model::{DepthMap, Image, Material, ShParallaxMap, TextureSlot, Wrap};
+
+/// The extension's name in a document.
+pub(super) const NAME: &str = "PARBAKE_materials_parallax_sh";
+
+/// The map that a material's extension describes, its images yet to be decoded; `None`
+/// where pictures are not wanted, or with a warning.
+pub(super) fn read(
+    reader: &mut Reader<'_, '_>,
+    json: &ParallaxSh,
+    here: &str,
+    material: &str,
+) -> Option<ShParallaxMap> {
+    let context = reader.buffers.context;
+    if context.textures == Textures::Skip {
+        return None;
+    }
+    let here = format!("{here}/extensions/{NAME}");
+    map(reader, json, &here).map_err(|error| left_out(context, material, &reason(error))).ok()
+}
+
+fn left_out(context: &Context<'_>, material: &str, reason: &str) {
+    context.warn(format!("the parallax map of material {material:?} was left out: {reason}"));
+}
+
+/// An error without the file's name, which goes without saying in a warning.
+fn reason(error: FileError) -> String {
+    match error {
+        FileError::Invalid { place, reason, .. } => format!("{reason}{place}"),
+        other => other.to_string(),
+    }
+}
+
+fn map(reader: &mut Reader<'_, '_>, json: &ParallaxSh, here: &str) -> Result<ShParallaxMap, FileError> {
+    let context = reader.buffers.context;
+    let refuse = |reason: String| context.invalid(pointer(here.into()), reason);
+    let default = ShParallaxMap::default();
+    let depth = json.depth_texture.as_ref().map(|_| DepthMap {
+        image: 0,
+        scale: json.depth_scale.unwrap_or(1.0),
+        offset: json.depth_offset.unwrap_or(0.0),
+    });
+    let mut map = ShParallaxMap {
+        order: json.order.ok_or_else(|| refuse("it has no order".into()))?,
+        images: vec![0; json.coefficient_textures.len()],
+        scale: json.scale.clone(),
+        offset: json.offset.clone(),
+        limit: json.limit.unwrap_or(default.limit),
+        depth,
+        ..default
+    };
+    // Before any picture is asked for: there may be a million of them.
+    map.check_numbers().map_err(|fault| refuse(fault.to_string()))?;
+    let mut wrap: Option<[Wrap; 2]> = None;
+    let mut image = |reader: &mut Reader<'_, '_>, info: &TextureInfo, name: String| {
+        let slot = slot(reader, info, &format!("{here}/{name}"))?;
+        if *wrap.get_or_insert(slot.wrap) != slot.wrap {
+            return Err(refuse("its textures differ in their wrap modes".into()));
+        }
+        Ok(slot.image)
+    };
+    for (i, info) in json.coefficient_textures.iter().enumerate() {
+        map.images[i] = image(reader, info, format!("coefficientTextures/{i}"))?;
+    }
+    if let (Some(depth), Some(info)) = (&mut map.depth, &json.depth_texture) {
+        depth.image = image(reader, info, "depthTexture".into())?;
+    }
+    map.wrap = wrap.unwrap_or(map.wrap);
+    let mut own = |info: &Option<TextureInfo>, name: &str| {
+        info.as_ref().map(|info| slot(reader, info, &format!("{here}/{name}"))).transpose()
+    };
+    map.base_color_texture = own(&json.base_color_texture, "baseColorTexture")?;
+    map.normal_texture = own(&json.normal_texture, "normalTexture")?;
+    Ok(map)
+}
+
+/// A texture that must be there.
+fn slot(reader: &mut Reader<'_, '_>, info: &TextureInfo, here: &str) -> Result<TextureSlot, FileError> {
+    let slot = reader.slot(info, here)?;
+    slot.ok_or_else(|| reader.buffers.context.invalid(pointer(here.into()), "its picture is not there"))
+}
+
+/// Leaves out the maps that cannot be shown, now that the pictures are there. `turned` says
+/// of each material whether a node turns or stretches what has it.
+pub(super) fn leave_out(
+    materials: &mut [Material],
+    turned: &[bool],
+    images: &[Image],
+    context: &Context<'_>,
+) {
+    // Pictures may serve many maps, each of which is unpacked into memory of its own.
+    let mut texels = 0u64;
+    let limit = context.limits.max_total_pixels;
+    for (i, material) in materials.iter_mut().enumerate() {
+        let Some(map) = &material.parallax else { continue };
+        let fault = map.check(images).err().map(|fault| fault.to_string()).or_else(|| {
+            texels = map
+                .data_images()
+                .filter_map(|i| images.get(i))
+                .fold(texels, |sum, image| sum.saturating_add(image.pixels.len() as u64));
+            if turned.get(i) == Some(&true) {
+                Some("a node turns or stretches a mesh that has it, which is not supported".into())
+            } else {
+                (texels > limit).then(|| format!("all maps together have more than {limit} texels"))
+            }
+        });
+        if let Some(fault) = fault {
+            left_out(context, &material.name, &fault);
+            material.parallax = None;
+        }
+    }
+}
+
+/// Whether a matrix does anything but scale, all axes alike.
+pub(super) fn turns(m: &DMat3) -> bool {
+    let scale = m.x_axis.x;
+    // Also where the scale is no number.
+    !(scale > 0.0 && m.abs_diff_eq(DMat3::IDENTITY * scale, 1e-6 * scale))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parbake_model::glam::DVec3;
+
+    /// Protects what is said in a mesh's own axes from being taken for the scene's.
+    #[test]
+    fn only_even_scales_keep_directions() {
+        let still = [DMat3::IDENTITY, DMat3::IDENTITY * 1e-9, DMat3::from_diagonal(DVec3::splat(3e7))];
+        assert!(!still.iter().any(turns));
+        let stretched = DMat3::from_diagonal(DVec3::new(1.0, 1.0, 1.1));
+        for m in [DMat3::from_rotation_y(0.1), stretched, -DMat3::IDENTITY, DMat3::ZERO, DMat3::NAN] {
+            assert!(turns(&m), "{m}");
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! Parallax maps, written, read back and read from broken documents.
+
+use super::*;
+use crate::{encode_png, write_obj};
+use parbake_model::{DepthMap, Image, Material, Mesh, ShParallaxMap, TextureSlot, UvTransform, Wrap};
+
+/// A triangle with a map of order 1: images 2 to 4, depth 5, own textures 6 and 1.
+fn model() -> Model {
+    let mesh = Mesh {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+        normals: vec![Vec3::Z; 3],
+        uvs: vec![Vec2::ZERO; 3],
+        uvs1: vec![Vec2::ONE; 3],
+        triangles: vec![[0, 1, 2]],
+        triangle_materials: vec![0],
+        ..Mesh::default()
+    };
+    let slot = |image| Some(TextureSlot { image, ..TextureSlot::default() });
+    let transform = UvTransform { rotation: 0.7, ..UvTransform::default() };
+    let map = ShParallaxMap {
+        order: 1,
+        images: vec![2, 3, 4],
+        scale: (0..8).map(|i| 0.1 / (i + 1) as f32).collect(),
+        offset: (0..8).map(|i| -0.07 * (i + 1) as f32).collect(),
+        limit: 0.1,
+        depth: Some(DepthMap { image: 5, scale: 1.3, offset: -0.3 }),
+        wrap: [Wrap::Clamp, Wrap::Mirror],
+        base_color_texture: slot(6).map(|s| TextureSlot { uv_set: 1, transform, ..s }),
+        normal_texture: slot(1),
+    };
+    let material = Material {
+        name: "m".into(),
+        base_color_texture: slot(0),
+        normal_texture: slot(1),
+        parallax: Some(map),
+        ..Material::default()
+    };
+    let sizes = [(2, 3), (3, 2), (4, 4), (4, 4), (4, 4), (2, 2), (5, 1)];
+    let image = |(i, (w, h))| Image::solid(&format!("i{i}"), w, h, [i as u8, 2, 3, 255]);
+    let images = sizes.into_iter().enumerate().map(image).collect();
+    Model { name: "x".into(), mesh, materials: vec![material], images }
+}
+
+fn read_glb(model: &Model) -> Loaded {
+    let bytes = glb_bytes(model).unwrap();
+    assert_eq!(bytes, glb_bytes(model).unwrap(), "deterministic");
+    read_gltf_bytes(Path::new("x.glb"), &bytes, &NoResources, &Limits::default()).unwrap()
+}
+
+/// The document inside a GLB file of a model.
+fn written(model: &Model) -> Value {
+    let bytes = glb_bytes(model).unwrap();
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    serde_json::from_slice(&bytes[20..20 + length]).unwrap()
+}
+
+/// Protects every bit of a map on its way through a file, with and without what it may have.
+#[test]
+fn maps_come_back_the_same() {
+    let full = model();
+    let mut bare = model();
+    let map = bare.materials[0].parallax.as_mut().unwrap();
+    (map.depth, map.base_color_texture, map.normal_texture) = (None, None, None);
+    bare.images.truncate(5);
+    for model in [full, bare] {
+        let loaded = read_glb(&model);
+        assert_eq!(loaded.warnings, [""; 0]);
+        assert_eq!(loaded.model, model);
+    }
+}
+
+/// Protects viewers without the extension, which must not be asked for it, and those with
+/// it from mip levels of data.
+#[test]
+fn the_extension_is_used_but_not_required() {
+    let document = written(&model());
+    assert_eq!(document["extensionsUsed"], json!(["KHR_texture_transform", "PARBAKE_materials_parallax_sh"]));
+    assert!(document.get("extensionsRequired").is_none());
+    let extension = &document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"];
+    let texture =
+        &document["textures"][extension["coefficientTextures"][0]["index"].as_u64().unwrap() as usize];
+    let sampler = &document["samplers"][texture["sampler"].as_u64().unwrap() as usize];
+    assert_eq!(*sampler, json!({ "magFilter": 9729, "minFilter": 9729, "wrapS": 33071, "wrapT": 33648 }));
+    assert!(
+        written(&Model { materials: vec![Material::default()], ..model() }).get("extensionsUsed").is_none()
+    );
+}
+
+/// A document with a map of order 0: one image, two channels.
+fn small() -> Value {
+    let mut document = document(&TRIANGLE);
+    document["meshes"][0]["primitives"][0]["material"] = 0.into();
+    document["materials"] = json!([{ "name": "m", "extensions": { "PARBAKE_materials_parallax_sh": {
+        "order": 0, "coefficientTextures": [{ "index": 0 }], "scale": [0.5, 0.25], "offset": [0, -0.5],
+    } } }]);
+    document["samplers"] = json!([{ "wrapS": 33071, "wrapT": 33071 }]);
+    document["textures"] = json!([{ "source": 0, "sampler": 0 }]);
+    let png = encode_png(&Image::solid("", 2, 2, [1, 2, 0, 255])).unwrap();
+    document["images"] = json!([{ "name": "t", "uri": hex_uri(&png) }]);
+    document
+}
+
+/// Protects readers of other writers' files: what may be left out has the page's defaults.
+#[test]
+fn defaults_are_those_of_the_page() {
+    let map = |document: &Value| {
+        let loaded = read_value(document).unwrap();
+        assert_eq!(loaded.warnings, [""; 0]);
+        loaded.model.materials[0].parallax.clone().unwrap()
+    };
+    let mut document = small();
+    let (scale, offset) = (vec![0.5, 0.25], vec![0.0, -0.5]);
+    let expected = ShParallaxMap { images: vec![0], scale, offset, ..ShParallaxMap::default() };
+    assert_eq!(map(&document), expected);
+    document["nodes"][0]["scale"] = json!([3, 3, 3]);
+    document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"]["depthTexture"] =
+        json!({ "index": 0 });
+    let depth = Some(DepthMap { image: 0, scale: 1.0, offset: 0.0 });
+    assert_eq!(map(&document), ShParallaxMap { depth, ..expected });
+}
+
+/// Protects models from broken maps: they are read without them, and the warning says why.
+#[test]
+fn broken_maps_are_left_out() {
+    type Change = fn(&mut Value, &mut Value);
+    let cases: [(Change, &str); 17] = [
+        (|_, x| x["order"] = 9.into(), "its order is 9, and the highest is 7"),
+        (|_, x| drop(x.as_object_mut().unwrap().remove("order")), "no order"),
+        (|_, x| x["order"] = 1.into(), "1 images of coefficients, and its order asks for 3"),
+        (|_, x| x["scale"] = json!([1]), "1 scales"),
+        (|_, x| drop(x.as_object_mut().unwrap().remove("offset")), "0 offsets"),
+        (|_, x| x["offset"] = json!([1, 1e39]), "not finite"),
+        (|_, x| x["limit"] = 0.into(), "limit is 0"),
+        (|_, x| x["limit"] = (-1e39).into(), "limit is -inf"),
+        (|_, x| x["coefficientTextures"][0]["index"] = 7.into(), "/coefficientTextures/0/index"),
+        (|_, x| x["depthTexture"] = json!({ "index": 7 }), "/depthTexture/index"),
+        (|_, x| x["baseColorTexture"] = json!({ "index": 7 }), "/baseColorTexture/index"),
+        (|_, x| x["normalTexture"] = json!({ "index": 0, "texCoord": 5 }), "coordinate set 5"),
+        (|d, _| d["textures"] = json!([{ "source": 4 }]), "/textures/0/source"),
+        (|d, _| d["textures"] = json!([{}]), "its picture is not there"),
+        (
+            |d, x| {
+                d["textures"] = json!([{ "source": 0 }, { "source": 0, "sampler": 0 }]);
+                x["depthTexture"] = json!({ "index": 1 });
+            },
+            "differ in their wrap modes",
+        ),
+        (|d, _| d["nodes"][0]["rotation"] = json!([0, 1, 0, 0]), "turns or stretches"),
+        (|d, _| d["nodes"][0]["scale"] = json!([1, 2, 1]), "turns or stretches"),
+    ];
+    for (change, expected) in cases {
+        let mut document = small();
+        let mut extension = document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"].take();
+        change(&mut document, &mut extension);
+        document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"] = extension;
+        let loaded = read_value(&document).unwrap();
+        assert_eq!(loaded.model.materials[0].parallax, None, "{expected}");
+        let said = loaded.warnings.join("\n");
+        assert!(
+            said.contains("map of material \"m\" was left out") && said.contains(expected),
+            "{expected}: {said}"
+        );
+    }
+    let mut document = small();
+    document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"]["order"] = "two".into();
+    assert!(read_value(&document).unwrap_err().contains("/extensions/PARBAKE_materials_parallax_sh/order"));
+}
+
+/// Protects against images of different sizes, and memory against one image that serves
+/// many maps.
+#[test]
+fn images_are_checked_together() {
+    let mut document = small();
+    let png = encode_png(&Image::solid("", 2, 1, [1, 2, 0, 255])).unwrap();
+    document["images"] = json!([document["images"][0], { "uri": hex_uri(&png) }]);
+    document["textures"] = json!([document["textures"][0], { "source": 1, "sampler": 0 }]);
+    let extension = &mut document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"];
+    extension["order"] = 1.into();
+    extension["scale"] = vec![0.5; 8].into();
+    extension["offset"] = vec![0.5; 8].into();
+    extension["coefficientTextures"] = json!([{ "index": 0 }, { "index": 1 }, { "index": 0 }]);
+    let loaded = read_value(&document).unwrap();
+    assert!(loaded.warnings[0].contains("2 × 2 and 2 × 1 texels"), "{:?}", loaded.warnings);
+    document["textures"][1]["source"] = 0.into();
+    let read = |most| {
+        let loaded =
+            read_limited(&document, &Limits { max_total_pixels: most, ..Limits::default() }).unwrap();
+        (loaded.model.materials[0].parallax.is_some(), loaded.warnings.join(""))
+    };
+    assert!(read(12).0);
+    assert!(!read(11).0 && read(11).1.contains("more than 11 texels"));
+}
+
+/// Protects the promise that geometry is read without a word about pictures, and users
+/// from losing a map in a format that has none.
+#[test]
+fn geometry_and_obj_have_no_maps() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.glb");
+    write_glb(&path, &model()).unwrap();
+    let loaded = crate::read_geometry(&path, &Limits::default()).unwrap();
+    assert_eq!((loaded.model.materials[0].parallax.as_ref(), loaded.warnings.len()), (None, 0));
+    let error = write_obj(&folder.path().join("a.obj"), &model()).unwrap_err().to_string();
+    assert!(error.contains("a parallax map") && error.contains(".glb"), "{error}");
+}

@@ -1,0 +1,179 @@
+//! The fit of an SH cutout (`parbake_render::cutout`): from where each point of the low-poly
+//! is to be left out, because the high-poly is not there.
+//!
+//! Every pixel of the training views gives examples: where the high-poly fills it, the
+//! low-poly's nearest layer shall be opaque; where it does not, all of its layers shall be
+//! left out. With y = ±1 and the opacity o, the squared hinge `max(0, 1 − y o)²` is convex in
+//! the coefficients; Adam walks down it in small groups of views. Texels that no view wants
+//! left out stay opaque from everywhere, and only examples near the others are looked at.
+//!
+//! Contract: examples are summed in their order, so the result does not depend on the number
+//! of threads.
+
+use crate::reference::Reference;
+use crate::view_walk::Walker;
+use crate::watch::{Stage, Watch};
+use parbake_adam::{Adam, AdamOptions};
+use parbake_model::glam::{Vec2, Vec3, Vec4};
+use parbake_render::cutout::ShCutout;
+use parbake_render::spherical_harmonics::functions;
+use parbake_render::texture::taps;
+use rayon::prelude::*;
+
+/// How a cutout is fitted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CutoutOptions {
+    /// Highest order of the functions, 0 to 7.
+    pub order: usize,
+    /// Texels along a side of the map.
+    pub size: usize,
+    /// Steps of Adam.
+    pub steps: usize,
+    /// Views that a step looks at.
+    pub views_per_step: usize,
+    /// About how far a coefficient moves in a step; an opaque texel's first one is 3.5.
+    pub rate: f32,
+}
+
+impl Default for CutoutOptions {
+    fn default() -> Self {
+        Self { order: 2, size: 64, steps: 200, views_per_step: 24, rate: 0.1 }
+    }
+}
+
+/// One layer of one pixel: seen from where, and whether it shall be there.
+#[derive(Clone, Copy, Debug)]
+pub struct Example {
+    uv: Vec2,
+    direction: [i16; 3],
+    opaque: bool,
+}
+
+impl Example {
+    #[inline]
+    fn direction(&self) -> Vec3 {
+        Vec3::from(self.direction.map(|v| f32::from(v) * (1.0 / 32767.0)))
+    }
+}
+
+/// The high-poly fills a pixel from this coverage on.
+const FILLED: f32 = 0.5;
+
+/// The examples of each of these views, for a map of `size`² texels: those whose fetch
+/// touches a texel that some view wants left out.
+pub fn examples(walker: &Walker, references: &[Reference], size: usize) -> Vec<Vec<Example>> {
+    let mut views: Vec<Vec<Example>> = (references.par_iter())
+        .map(|reference| {
+            let mut out = Vec::new();
+            walker.walk_layers(reference, |coverage, layer, uv, direction| {
+                let opaque = coverage >= FILLED;
+                if layer == 0 || !opaque {
+                    let direction = direction.to_array().map(|x| (x * 32767.0).round_ties_even() as i16);
+                    out.push(Example { uv, direction, opaque });
+                }
+            });
+            out
+        })
+        .collect();
+    let map = ShCutout::opaque(0, size);
+    let at = |e: &Example| taps(e.uv, size, size, map.wrap).index;
+    let mut wanted = vec![false; size * size];
+    for example in views.iter().flatten().filter(|e| !e.opaque) {
+        at(example).into_iter().for_each(|texel| wanted[texel as usize] = true);
+    }
+    views.par_iter_mut().for_each(|view| {
+        view.retain(|e| at(e).into_iter().any(|texel| wanted[texel as usize]));
+    });
+    views
+}
+
+/// Half the gradient of the examples' loss, and the loss.
+fn view_gradient(examples: &[Example], map: &ShCutout) -> (f64, Vec<f32>) {
+    let mut into = vec![0.0; map.coefficients.len()];
+    let mut loss = 0.0;
+    for example in examples {
+        let direction = example.direction();
+        let side = if example.opaque { 1.0 } else { -1.0 };
+        let short = 1.0 - side * map.opacity(example.uv, direction);
+        if short > 0.0 {
+            loss += f64::from(short * short);
+            map.adjoint(example.uv, direction, -side * short, &mut into);
+        }
+    }
+    (loss, into)
+}
+
+/// Fits the map; returns it with the share of examples that it gets wrong, before and after.
+pub fn fit_cutout(
+    views: &[Vec<Example>],
+    options: &CutoutOptions,
+    watch: &impl Watch,
+) -> (ShCutout, [f64; 2]) {
+    let mut map = ShCutout::opaque(options.order, options.size);
+    let before = wrong(views, &map);
+    let lanes = |values: &[f32]| -> Vec<Vec4> {
+        let four = |c: &[f32]| Vec4::from(std::array::from_fn(|k| c.get(k).copied().unwrap_or(0.0)));
+        values.chunks(4).map(four).collect()
+    };
+    let mut moving = lanes(&map.coefficients);
+    let rate = AdamOptions { rate: options.rate, ..AdamOptions::default() };
+    let mut adam = Adam::new(moving.len(), rate);
+    for step in 0..options.steps {
+        watch.progress(Stage::Cutout, step, options.steps);
+        if views.iter().all(Vec::is_empty) || watch.should_stop() {
+            break;
+        }
+        let chosen: Vec<&[Example]> = (0..options.views_per_step)
+            .map(|i| views[(step * options.views_per_step + i) % views.len()].as_slice())
+            .collect();
+        let parts: Vec<Vec<f32>> = chosen.par_iter().map(|view| view_gradient(view, &map).1).collect();
+        let gradient: Vec<f32> = (0..map.coefficients.len())
+            .into_par_iter()
+            .map(|i| parts.iter().map(|part| part[i]).sum())
+            .collect();
+        let left = 1.0 - step as f32 / options.steps as f32;
+        adam.step(&mut moving, &lanes(&gradient), left);
+        for (four, moved) in map.coefficients.chunks_mut(4).zip(&moving) {
+            four.copy_from_slice(&moved.to_array()[..four.len()]);
+        }
+    }
+    watch.progress(Stage::Cutout, options.steps, options.steps);
+    debug_assert_eq!(map.coefficients.len(), options.size * options.size * functions(options.order));
+    let after = wrong(views, &map);
+    (map, [before, after])
+}
+
+/// Share of the examples whose opacity has the wrong sign.
+fn wrong(views: &[Vec<Example>], map: &ShCutout) -> f64 {
+    let count = |view: &Vec<Example>| {
+        view.iter().filter(|e| (map.opacity(e.uv, e.direction()) >= 0.0) != e.opaque).count()
+    };
+    let all: usize = views.iter().map(Vec::len).sum();
+    views.par_iter().map(count).sum::<usize>() as f64 / all.max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects the method: a point that is beside the model for half of the directions is
+    /// left out for those, and others stay opaque.
+    #[test]
+    fn a_half_space_of_directions_is_learnt() {
+        let border = Vec3::new(0.6, 0.0, 0.8);
+        let view = |i: usize| {
+            let directions = parbake_render::camera::fibonacci_sphere(200, i as f64);
+            let example = |d: Vec3| Example {
+                uv: Vec2::splat(0.25),
+                direction: d.to_array().map(|x| (x * 32767.0) as i16),
+                opaque: d.dot(border) > 0.2,
+            };
+            directions.into_iter().map(example).collect::<Vec<_>>()
+        };
+        let views: Vec<_> = (0..8).map(view).collect();
+        let options = CutoutOptions { size: 4, views_per_step: 4, ..CutoutOptions::default() };
+        let (map, [before, after]) = fit_cutout(&views, &options, &());
+        assert!(before > 0.3 && after < 0.03, "{before} {after}");
+        assert!((map.opacity(Vec2::splat(0.875), -border) - 1.0).abs() < 1e-5);
+    }
+}

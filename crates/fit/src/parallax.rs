@@ -1,0 +1,230 @@
+//! The fit of an SH parallax map (Knodt et al. 2023, section 4.2), shape and texture
+//! coordinates held: coefficients, colours and normals follow the gradient together.
+//!
+//! A texture that was solved for without parallax is blurred where views disagree, and one
+//! that is solved again after every small shift would be exact but slow; so all three move
+//! at once by Adam, in small groups of views, and the textures are solved for afterwards
+//! with the shifts that came out (`schedule.rs`). A map of zeros has a gradient already:
+//! that of the colours beside the one that is fetched.
+//!
+//! Contract: what is minimised is what the solvers minimise: squared differences of display
+//! values, weighted by sample. Views of a step are summed in their order, so the result does
+//! not depend on the number of threads.
+
+use crate::canvas::Canvas;
+use crate::color::respond;
+use crate::reference::Reference;
+use crate::samples::{packed, unpacked};
+use crate::view_walk::Walker;
+use crate::watch::{Stage, Watch};
+use parbake_adam::{Adam, AdamOptions};
+use parbake_model::Wrap;
+use parbake_model::glam::{Vec2, Vec3, Vec4};
+use parbake_render::display_table::DisplayTable;
+use parbake_render::parallax::{ShParallax, Sight};
+use parbake_render::shade::cosine_with_derivative;
+use parbake_render::texture::{Taps, taps};
+use rayon::prelude::*;
+
+/// How the map is fitted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParallaxOptions {
+    /// Highest order of the functions, 0 to 7.
+    pub order: usize,
+    /// Texels along a side of the coefficient map.
+    pub size: usize,
+    /// Steps of Adam.
+    pub steps: usize,
+    /// Views that a step looks at.
+    pub views_per_step: usize,
+    /// About how far a coefficient moves in a step, in texture widths.
+    pub rate: f32,
+    /// The same for textures, whose values go from 0 to 1.
+    pub texture_rate: f32,
+}
+
+impl Default for ParallaxOptions {
+    fn default() -> Self {
+        Self { order: 2, size: 64, steps: 240, views_per_step: 12, rate: 3e-4, texture_rate: 0.01 }
+    }
+}
+
+/// One pixel of a training view before its coordinate is shifted, as in `Sample`.
+#[derive(Clone, Copy, Debug)]
+pub struct Sighted {
+    uv: Vec2,
+    /// Direction to the viewer and cosine, in 32767ths.
+    sight: [i16; 4],
+    light: [i16; 9],
+    target: [u16; 3],
+    weight: u16,
+}
+
+const STEP: f32 = 1.0 / 32767.0;
+
+impl Sighted {
+    #[inline]
+    fn sight(&self) -> Sight {
+        let [x, y, z, cosine] = self.sight.map(|v| f32::from(v) * STEP);
+        Sight { direction: Vec3::new(x, y, z), cosine }
+    }
+}
+
+/// The pixels of each of these views.
+pub fn sighted_views(walker: &Walker, references: &[Reference]) -> Vec<Vec<Sighted>> {
+    let rounded = |x: f32| (x.clamp(-1.0, 1.0) * 32767.0).round_ties_even() as i16;
+    (references.par_iter())
+        .map(|reference| {
+            let mut out = Vec::with_capacity(reference.pixels.len() / 3);
+            walker.walk(reference, |seen| {
+                let [x, y, z] = seen.sight.direction.to_array();
+                out.push(Sighted {
+                    uv: seen.uv,
+                    sight: [x, y, z, seen.sight.cosine].map(rounded),
+                    light: packed(&seen.light),
+                    target: seen.target,
+                    weight: seen.weight,
+                });
+            });
+            out
+        })
+        .collect()
+}
+
+/// What moves together.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// The map.
+    pub map: ShParallax,
+    /// Albedo, 0 … 1.
+    pub color: Canvas,
+    /// Unit tangent-space normals.
+    pub normal: Canvas,
+}
+
+/// Loss and gradients of one view.
+struct Part {
+    loss: f64,
+    map: ShParallax,
+    color: Vec<Vec4>,
+    normal: Vec<Vec4>,
+}
+
+/// The gradient of a bilinear fetch by its coordinate.
+#[inline]
+fn by_coordinate(canvas: &Canvas, at: &Taps, gradient: Vec4) -> Vec2 {
+    let [a, b, c, d] = at.index.map(|i| canvas.texels[i as usize].dot(gradient));
+    let size = canvas.size as f32;
+    Vec2::new((b - a) * (1.0 - at.fy) + (d - c) * at.fy, (c - a) * (1.0 - at.fx) + (d - b) * at.fx) * size
+}
+
+/// Half the gradient of the squared differences of one view.
+fn view_gradient(samples: &[Sighted], state: &State, display: &DisplayTable) -> Part {
+    let State { map, color, normal } = state;
+    let size = color.size;
+    let mut part = Part {
+        loss: 0.0,
+        map: ShParallax { coefficients: vec![Vec2::ZERO; map.coefficients.len()], ..map.clone() },
+        color: vec![Vec4::ZERO; size * size],
+        normal: vec![Vec4::ZERO; size * size],
+    };
+    for sample in samples {
+        let sight = sample.sight();
+        let uv = sample.uv + map.shift(sample.uv, &sight);
+        let at = taps(uv, size, size, [Wrap::Repeat; 2]);
+        let (places, weights) = (at.index.map(|i| i as usize), at.weights());
+        let albedo = color.fetch(places, weights);
+        let (k, per_normal) =
+            cosine_with_derivative(&unpacked(sample.light), normal.fetch(places, weights).truncate());
+        let [r, g, b] = sample.target.map(|t| f32::from(t) * (1.0 / 65535.0));
+        let response = respond(display, albedo * k.max(0.0), Vec4::new(r, g, b, 0.0));
+        let weight = f32::from(sample.weight) * (1.0 / 65535.0);
+        part.loss += f64::from(response.residual.length_squared() * weight);
+        let to_light = response.residual * response.slope * weight;
+        let to_k = to_light.dot(albedo);
+        // Turned away from the light: only asked to turn back, see `normal.rs`.
+        let to_color = if k > 0.0 { to_light * k } else { Vec4::ZERO };
+        let to_normal =
+            if k > 0.0 || to_k < 0.0 { (per_normal * to_k).extend(0.0) } else { Vec4::ZERO };
+        for (place, weight) in places.into_iter().zip(weights) {
+            part.color[place] += to_color * weight;
+            part.normal[place] += to_normal * weight;
+        }
+        let to_shift = by_coordinate(color, &at, to_color) + by_coordinate(normal, &at, to_normal);
+        map.adjoint_of_maps(sample.uv, &sight, to_shift, &mut part.map);
+    }
+    part
+}
+
+/// Pairs of coefficients in lanes of four.
+fn lanes(coefficients: &[Vec2]) -> Vec<Vec4> {
+    let four = |c: &[Vec2]| {
+        let second = c.get(1).copied().unwrap_or_default();
+        Vec4::new(c[0].x, c[0].y, second.x, second.y)
+    };
+    coefficients.chunks(2).map(four).collect()
+}
+
+/// Share of the steps that go at the full rate; then it falls as a cosine does.
+const FULL_RATE: f32 = 0.3;
+
+fn rate_at(step: usize, steps: usize) -> f32 {
+    let t = (step as f32 / steps.max(1) as f32 - FULL_RATE).max(0.0) / (1.0 - FULL_RATE);
+    0.002 + 0.998 * 0.5 * (1.0 + (std::f32::consts::PI * t).cos())
+}
+
+/// Moves all three; returns the mean squared difference of each step's views.
+pub fn fit_parallax(
+    views: &[Vec<Sighted>],
+    state: &mut State,
+    display: &DisplayTable,
+    options: &ParallaxOptions,
+    watch: &impl Watch,
+) -> Vec<f64> {
+    let texels = state.color.texels.len();
+    let at_rate = |rate| AdamOptions { rate, ..AdamOptions::default() };
+    let mut moving = lanes(&state.map.coefficients);
+    let mut adam_map = Adam::new(moving.len(), at_rate(options.rate));
+    let mut adam_color = Adam::new(texels, at_rate(options.texture_rate));
+    let mut adam_normal = Adam::new(texels, at_rate(options.texture_rate));
+    let mut losses = Vec::with_capacity(options.steps);
+    for step in 0..options.steps {
+        watch.progress(Stage::Parallax, step, options.steps);
+        if views.is_empty() || watch.should_stop() {
+            break;
+        }
+        // The pool's every prefix is well spread, and so is every run of it.
+        let chosen: Vec<&[Sighted]> = (0..options.views_per_step)
+            .map(|i| views[(step * options.views_per_step + i) % views.len()].as_slice())
+            .collect();
+        let parts: Vec<Part> =
+            chosen.par_iter().map(|samples| view_gradient(samples, state, display)).collect();
+        let count: usize = chosen.iter().map(|samples| samples.len()).sum();
+        losses.push(parts.iter().map(|p| p.loss).sum::<f64>() / (3 * count.max(1)) as f64);
+        let share = rate_at(step, options.steps);
+        let sum = |of: fn(&Part) -> &[Vec4]| -> Vec<Vec4> {
+            (0..texels).into_par_iter().map(|i| parts.iter().map(|p| of(p)[i]).sum()).collect()
+        };
+        adam_color.step(&mut state.color.texels, &sum(|p| &p.color), share);
+        adam_normal.step(&mut state.normal.texels, &sum(|p| &p.normal), share);
+        for texel in &mut state.color.texels {
+            *texel = texel.clamp(Vec4::ZERO, Vec4::ONE);
+        }
+        for texel in &mut state.normal.texels {
+            let [x, y, z, _] = texel.to_array();
+            *texel = Vec3::new(x, y, z.max(0.02)).normalize().extend(0.0);
+        }
+        let to_map: Vec<Vec2> = (0..state.map.coefficients.len())
+            .into_par_iter()
+            .map(|i| parts.iter().map(|p| p.map.coefficients[i]).sum())
+            .collect();
+        adam_map.step(&mut moving, &lanes(&to_map), share);
+        for (pair, four) in state.map.coefficients.chunks_mut(2).zip(&moving) {
+            for (c, x) in pair.iter_mut().zip([Vec2::new(four.x, four.y), Vec2::new(four.z, four.w)]) {
+                *c = x;
+            }
+        }
+    }
+    watch.progress(Stage::Parallax, options.steps, options.steps);
+    losses
+}

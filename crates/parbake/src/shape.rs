@@ -1,0 +1,143 @@
+//! A low-poly's vertices before the bake: kept, or moved until its silhouettes and pictures
+//! agree with the high-poly's.
+//!
+//! ```text
+//! mended low-poly ─┬ provisional texture (projected) ─┬ fit ─ positions, turned normals
+//! high-poly ───────┴ small smooth views ──────────────┘
+//! ```
+//!
+//! Contract: what is not moved keeps its position and its normal to the bit; triangles,
+//! texture coordinates and the order of the vertices stay.
+
+use crate::error::BakeError;
+use crate::low::LowPoly;
+use crate::unfold::Mended;
+use parbake_fit::canvas::Canvas;
+use parbake_fit::reference::{Sampling, render_references};
+use parbake_fit::start::project;
+use parbake_fit::views::{Rig, View, view_pool};
+use parbake_fit::watch::Watch;
+use parbake_mesh::{HighSurface, TexelMap};
+use parbake_model::glam::{Mat3, Vec3};
+use parbake_model::{Material, Mesh, Model, Placement};
+use parbake_render::display::Display;
+use parbake_render::interpolate::interpolate;
+use parbake_render::scene::Scene;
+use parbake_render::shade::Lambert;
+use parbake_shape::joint::Provisional;
+use parbake_shape::normals::turned_normals;
+use parbake_shape::{ShapeOptions, fit_shape};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapePlan {
+    /// Views that vertices are fitted to.
+    pub views: usize,
+    /// Side of these views in pixels.
+    pub view_size: usize,
+    /// Side of the provisional texture in texels.
+    pub texture_size: usize,
+    /// Samples along a side of each pixel of the high-poly's views.
+    pub samples: usize,
+    /// The fit's own.
+    pub fit: ShapeOptions,
+}
+
+/// What was done.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ShapeReport {
+    /// Steps that vertices took.
+    pub steps: usize,
+    /// Mean and longest way of a vertex, as shares of the high-poly's longest side.
+    pub moved: [f32; 2],
+    /// Mean squared error of coverage over the views of the first steps and of the last.
+    pub coverage_error: [f64; 2],
+}
+
+/// The high-poly, as vertices are fitted to it.
+#[derive(Clone, Copy)]
+pub struct Target<'a> {
+    /// To be rendered.
+    pub scene: &'a Scene,
+    /// To be projected.
+    pub surface: &'a HighSurface,
+    /// How far projection looks to either side, in the common frame.
+    pub reach: f32,
+    /// How light is shown.
+    pub display: Display,
+    /// Where cameras stand.
+    pub rig: Rig,
+}
+
+/// Steps at either end whose mean the report gives.
+const REPORTED: usize = 10;
+
+/// Moves the vertices of a low-poly that `frame` places.
+///
+/// # Errors
+/// Where its texture coordinates are absent or have no area.
+pub fn shape(
+    low: &mut Mended,
+    frame: &Placement,
+    target: &Target,
+    plan: &ShapePlan,
+    seed: u64,
+    watch: &impl Watch,
+) -> Result<ShapeReport, BakeError> {
+    let model = Model {
+        name: low.name.clone(),
+        mesh: low.mesh.clone(),
+        materials: vec![Material::default()],
+        images: Vec::new(),
+    };
+    let LowPoly { placed, map, atlas, .. } = LowPoly::new(&model, frame, plan.texture_size)?;
+    let start = project(&placed, &map, &atlas, target.scene, target.surface, target.reach);
+    let start = Provisional { normal: in_world(&placed, &map, &start.normal), color: start.color };
+    let pool: Vec<View> = (view_pool(plan.views, &target.rig, seed).into_iter())
+        .map(|view| View { jitter: [0.0; 2], ..view })
+        .collect();
+    // Edges are told from each other by how much of a pixel they cover: whole pixels are
+    // averaged here.
+    let sampling = Sampling { size: plan.view_size, filter: 1.0, samples: plan.samples };
+    let references = render_references(target.scene, &Lambert, &pool, &sampling, 1, watch);
+    let options = ShapeOptions { seed, ..plan.fit };
+    let shaped = fit_shape(&placed, start, &references, plan.view_size, target.display, &options, watch);
+
+    let before = &placed.positions;
+    for ((written, placed), moved) in low.mesh.positions.iter_mut().zip(before).zip(&shaped.positions) {
+        *written += (*moved - *placed) / frame.scale;
+    }
+    low.mesh.normals =
+        turned_normals(before, &shaped.positions, &low.mesh.normals, &low.mesh.triangles);
+    let mean = |losses: &[parbake_render::loss::LossValue]| {
+        losses.iter().map(|l| l.coverage).sum::<f64>() / losses.len().max(1) as f64
+    };
+    let few = REPORTED.min(shaped.losses.len());
+    Ok(ShapeReport {
+        steps: shaped.losses.len(),
+        moved: shaped.moved.map(|way| 0.5 * way),
+        coverage_error: [mean(&shaped.losses[..few]), mean(&shaped.losses[shaped.losses.len() - few..])],
+    })
+}
+
+/// Tangent-space normals turned into world space, texel by texel.
+fn in_world(mesh: &Mesh, map: &TexelMap, normals: &Canvas) -> Canvas {
+    let texels = (normals.texels.par_iter().enumerate())
+        .map(|(texel, m)| {
+            let Some(triangle) = mesh.triangles.get(map.triangle[texel] as usize) else {
+                return Vec3::Z.extend(0.0);
+            };
+            let corners = triangle.map(|i| i as usize);
+            let [second, third] = map.barycentric[texel];
+            let weights = [1.0 - second - third, second, third];
+            let normal = interpolate(corners.map(|i| mesh.normals[i]), weights);
+            let tangent = interpolate(corners.map(|i| mesh.tangents[i].truncate()), weights);
+            let bitangent = normal.cross(tangent) * mesh.tangents[corners[0]].w;
+            let world = Mat3::from_cols(tangent, bitangent, normal) * m.truncate();
+            world.normalize_or(Vec3::Z).extend(0.0)
+        })
+        .collect();
+    Canvas { size: normals.size, texels }
+}

@@ -1,0 +1,280 @@
+//! The fit of the shape: vertices, and a provisional texture of colours and normals, follow
+//! the gradient of rendered views together.
+//!
+//! Textures that were fitted first would hold the vertices where they are, so both move at
+//! once (Adam for all, each with its rate). The texture is only there to tell the vertices
+//! what the inside of the silhouette asks for; it is thrown away. Its normals are world
+//! space's, with a constant identity for the tangent frame, so that a vertex that moves
+//! does not turn what the texture says.
+//!
+//! Backgrounds are black, white and saturated colours, another in each view and step
+//! ([`Background::Random`]), and coverage has its own loss: a vertex that overshoots behind
+//! a black background, where nobody would see it, is seen here.
+//!
+//! Contract: the mesh has texture coordinates and lies in the common frame; triangles stay
+//! sane (`guard.rs`), vertices at one position stay together. The result does not depend on
+//! the number of threads.
+
+use crate::guard::Guard;
+use crate::points::{Motion, Points};
+use glam::{Vec3, Vec4};
+use parbake_adam::{Adam, AdamOptions};
+use parbake_fit::canvas::Canvas;
+use parbake_fit::reference::Reference as Rendered;
+use parbake_fit::views::mixed;
+use parbake_fit::watch::{Stage, Watch};
+use parbake_model::Mesh;
+use parbake_render::background::{Background, Composer};
+use parbake_render::display::Display;
+use parbake_render::edges::EdgeAdjacency;
+use parbake_render::loss::{Comparison, ImageLoss, LossValue, Reference};
+use parbake_render::pipeline::{Gradients, Tape, View, adjoint, forward};
+use parbake_render::shade::Lambert;
+use parbake_render::surface::{Surface, Textures};
+use parbake_render::texture::{Level, Pyramid};
+use rayon::prelude::*;
+
+/// How the shape is fitted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeOptions {
+    /// Where vertices may go.
+    pub motion: Motion,
+    /// Steps of Adam.
+    pub steps: usize,
+    /// Views that a step looks at.
+    pub views_per_step: usize,
+    /// How far a vertex moves in a step at first, in the common frame, in which a model is
+    /// 2 long.
+    pub rate: f32,
+    /// The same for the texture, whose values go from 0 to 1.
+    pub texture_rate: f32,
+    /// Weight of the coverage loss beside the picture's.
+    pub coverage: f32,
+    /// How much less overhang counts, 0 … 1: what stands out can be cut out, what is missing
+    /// cannot be put there.
+    pub overhang_discount: f32,
+    /// Weight of the squared displacement (λ_ΔV), a mean over points.
+    pub displacement: f32,
+    /// What is behind the model.
+    pub background: Background,
+    /// Chooses views' order and backgrounds.
+    pub seed: u64,
+}
+
+impl Default for ShapeOptions {
+    fn default() -> Self {
+        Self {
+            motion: Motion::Free,
+            steps: 160,
+            views_per_step: 12,
+            rate: 4e-3,
+            texture_rate: 0.02,
+            coverage: 1.0,
+            overhang_discount: 0.0,
+            displacement: 0.0,
+            background: Background::Random,
+            seed: 0,
+        }
+    }
+}
+
+/// A provisional texture: colours as shading sees them, normals in world space.
+#[derive(Clone, Debug)]
+pub struct Provisional {
+    /// 0 … 1.
+    pub color: Canvas,
+    /// Unit vectors.
+    pub normal: Canvas,
+}
+
+/// Where the vertices came to lie.
+#[derive(Clone, Debug)]
+pub struct Shaped {
+    /// V positions in the common frame.
+    pub positions: Vec<Vec3>,
+    /// Mean loss of the views of each step.
+    pub losses: Vec<LossValue>,
+    /// How far points moved: mean and most, in the common frame.
+    pub moved: [f32; 2],
+    /// The texture as the fit left it.
+    pub texture: Provisional,
+    /// True when it was asked to stop early.
+    pub stopped: bool,
+}
+
+/// Share of the steps that go at the full rate; then it falls as a cosine does.
+const FULL_RATE: f32 = 0.3;
+
+fn rate_at(step: usize, steps: usize) -> f32 {
+    let t = step as f32 / steps.max(1) as f32;
+    if t < FULL_RATE {
+        return 1.0;
+    }
+    let t = (t - FULL_RATE) / (1.0 - FULL_RATE);
+    0.002 + 0.998 * 0.5 * (1.0 + (std::f32::consts::PI * t).cos())
+}
+
+/// What stays through a fit.
+struct Problem<'a> {
+    mesh: &'a Mesh,
+    edges: EdgeAdjacency,
+    /// The identity's columns, for every vertex.
+    normals: Vec<Vec3>,
+    tangents: Vec<Vec4>,
+    references: &'a [Rendered],
+    size: usize,
+    display: Display,
+    comparison: Comparison,
+    background: Background,
+}
+
+fn pyramid(canvas: &Canvas) -> Pyramid<3> {
+    let texels = canvas.texels.iter().map(|t| [t.x, t.y, t.z]).collect();
+    Pyramid::single(Level { width: canvas.size, height: canvas.size, texels })
+}
+
+impl Problem<'_> {
+    /// Loss and gradients of some views, added up in their order.
+    fn look(&self, positions: &[Vec3], texture: &Provisional, views: &[(usize, u64)]) -> (LossValue, Gradients) {
+        let (color, normal) = (pyramid(&texture.color), pyramid(&texture.normal));
+        let textures = Textures::new(&color, Some(&normal));
+        let surface = Surface {
+            positions,
+            normals: &self.normals,
+            tangents: &self.tangents,
+            uvs: &self.mesh.uvs,
+            triangles: &self.mesh.triangles,
+            edges: &self.edges,
+        };
+        let each: Vec<(LossValue, Gradients)> = views
+            .par_iter()
+            .map(|&(index, seed)| {
+                let rendered = &self.references[index];
+                let composer = Composer::new(self.background.for_view(seed), self.display, self.size);
+                let rgba: Vec<[f32; 4]> = rendered.pixels.iter().map(|p| p.map(f32::from)).collect();
+                let reference = Reference::new(&rgba, self.size, &composer);
+                let view = View {
+                    camera: &rendered.view.camera,
+                    reference: &reference,
+                    composer: &composer,
+                    comparison: self.comparison,
+                    antialias: true,
+                };
+                let tape: Tape = forward(&surface, &textures, &Lambert, &view);
+                let mut gradients = Gradients::zeros(&surface, &textures, true);
+                adjoint(&surface, &textures, &Lambert, &view, &tape, &mut gradients);
+                (tape.loss, gradients)
+            })
+            .collect();
+        let mut sum = Gradients::zeros(&surface, &textures, true);
+        let mut loss = LossValue::default();
+        for (value, gradients) in each {
+            loss.image += value.image / views.len() as f64;
+            loss.coverage += value.coverage / views.len() as f64;
+            add(&mut sum.color, &gradients.color);
+            if let (Some(sum), Some(normal)) = (&mut sum.normal, &gradients.normal) {
+                add(sum, normal);
+            }
+            for (sum, position) in sum.positions.iter_mut().zip(gradients.positions) {
+                *sum += position;
+            }
+        }
+        (loss, sum)
+    }
+}
+
+fn add(sum: &mut Pyramid<3>, more: &Pyramid<3>) {
+    for (sum, more) in sum.levels.iter_mut().zip(&more.levels) {
+        for (sum, more) in sum.texels.iter_mut().zip(&more.texels) {
+            for k in 0..3 {
+                sum[k] += more[k];
+            }
+        }
+    }
+}
+
+fn lanes(level: Option<&Level<3>>) -> Vec<Vec4> {
+    level.map(|l| l.texels.iter().map(|&[x, y, z]| Vec4::new(x, y, z, 0.0)).collect()).unwrap_or_default()
+}
+
+/// Fits the positions of a mesh to `references`, pictures of `size`² pixels that were
+/// rendered without jitter.
+pub fn fit_shape(
+    mesh: &Mesh,
+    start: Provisional,
+    references: &[Rendered],
+    size: usize,
+    display: Display,
+    options: &ShapeOptions,
+    watch: &impl Watch,
+) -> Shaped {
+    let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
+    let guard = Guard::new(&points.home, &points.triangles);
+    let problem = Problem {
+        mesh,
+        edges: EdgeAdjacency::new(&mesh.positions, &mesh.triangles),
+        normals: vec![Vec3::Z; mesh.positions.len()],
+        tangents: vec![Vec4::new(1.0, 0.0, 0.0, 1.0); mesh.positions.len()],
+        references,
+        size,
+        display,
+        comparison: Comparison {
+            image: ImageLoss::L2,
+            coverage: options.coverage,
+            overhang_discount: options.overhang_discount,
+        },
+        background: options.background,
+    };
+    let mut texture = start;
+    let texels = texture.color.texels.len();
+    let at_rate = |rate| AdamOptions { rate, ..AdamOptions::default() };
+    let mut adam_points = Adam::new(points.home.len(), at_rate(options.rate));
+    let mut adam_color = Adam::new(texels, at_rate(options.texture_rate));
+    let mut adam_normal = Adam::new(texels, at_rate(options.texture_rate));
+    let mut values = vec![Vec4::ZERO; points.home.len()];
+    let mut at = points.home.clone();
+    let (mut losses, mut stopped) = (Vec::new(), false);
+    for step in 0..options.steps {
+        watch.progress(Stage::Shape, step, options.steps);
+        if references.is_empty() || watch.should_stop() {
+            stopped = true;
+            break;
+        }
+        // The pool's every prefix is well spread, and so is every run of it.
+        let views: Vec<(usize, u64)> = (0..options.views_per_step)
+            .map(|i| {
+                let counter = step * options.views_per_step + i;
+                (counter % references.len(), mixed(options.seed ^ mixed(counter as u64)))
+            })
+            .collect();
+        let (loss, gradients) = problem.look(&points.vertices(&at), &texture, &views);
+        losses.push(loss);
+        let share = rate_at(step, options.steps);
+
+        let mut to_values = points.adjoint(options.motion, &gradients.positions);
+        let pull = 2.0 * options.displacement * views.len() as f32 / values.len().max(1) as f32;
+        for (gradient, value) in to_values.iter_mut().zip(&values) {
+            *gradient += *value * pull;
+        }
+        adam_points.step(&mut values, &to_values, share);
+        let mut next = points.displaced(options.motion, &values);
+        if guard.hold(&at, &mut next) > 0 {
+            values = points.values(options.motion, &next);
+        }
+        at = next;
+
+        adam_color.step(&mut texture.color.texels, &lanes(gradients.color.levels.first()), share);
+        for texel in &mut texture.color.texels {
+            *texel = texel.clamp(Vec4::ZERO, Vec4::ONE);
+        }
+        let to_normal = gradients.normal.as_ref().and_then(|n| n.levels.first());
+        adam_normal.step(&mut texture.normal.texels, &lanes(to_normal), share);
+        for texel in &mut texture.normal.texels {
+            *texel = texel.truncate().normalize_or(Vec3::Z).extend(0.0);
+        }
+    }
+    watch.progress(Stage::Shape, options.steps, options.steps);
+    let way: Vec<f32> = at.iter().zip(&points.home).map(|(a, h)| a.distance(*h)).collect();
+    let moved = [way.iter().sum::<f32>() / way.len().max(1) as f32, way.iter().copied().fold(0.0, f32::max)];
+    Shaped { positions: points.vertices(&at), losses, moved, texture, stopped }
+}
