@@ -26,6 +26,17 @@ fn add_map(model: &mut Model, shift: f32) {
     }
 }
 
+/// Gives every map a cutout of order 1 with these coefficients everywhere, of the functions 1,
+/// y, z and x but for factors.
+fn add_cutout(model: &mut Model, coefficients: [f32; 4]) {
+    for map in model.materials.iter_mut().filter_map(|m| m.parallax.as_mut()) {
+        let image = map.images[0];
+        let cutout = map.cutout.get_or_insert_default();
+        (cutout.order, cutout.images) = (1, vec![image; 2]);
+        (cutout.scale, cutout.offset) = (vec![0.0; 4], coefficients.to_vec());
+    }
+}
+
 fn psnr(folder: &Path, high: &str, low: &str, more: &[&str]) -> f64 {
     let arguments =
         ["eval", high, low, "--views", "4", "--resolution", "64", "--no-flip", "--json", "-", "-q"];
@@ -51,6 +62,33 @@ fn eval_shows_a_file_both_ways() {
     assert_eq!(without, 100.0, "the same pictures");
     assert!(with < 40.0, "{with} dB");
     assert_eq!(psnr(folder, "shifted.glb", "shifted.glb", &[]), 100.0);
+}
+
+/// Protects whoever asks what a cutout does to a file's silhouettes: what it leaves out is
+/// background, of whichever colour, and with `--no-parallax` nothing is.
+#[test]
+fn eval_shows_cutouts_both_ways() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    let mut model = read_model(&folder.join("demo_high.glb"), &Limits::default()).unwrap().model;
+    add_map(&mut model, 0.0);
+    let cuts =
+        [("whole", [1.0, 0.0, 0.0, 0.0]), ("above", [0.0, 1.0, 0.0, 0.0]), ("none", [-1.0, 0.0, 0.0, 0.0])];
+    for (name, coefficients) in cuts {
+        add_cutout(&mut model, coefficients);
+        write_glb(&folder.join(format!("{name}.glb")), &model).unwrap();
+    }
+    let figures = |name: &str, more: &[&str]| psnr(folder, "demo_high.glb", &format!("{name}.glb"), more);
+    assert_eq!(figures("whole", &[]), 100.0);
+    for (name, _) in cuts {
+        assert_eq!(figures(name, &["--no-parallax"]), 100.0, "{name}: the same pictures");
+    }
+    for background in ["black", "1,0,1"] {
+        let [above, none] = ["above", "none"].map(|name| figures(name, &["--background", background]));
+        // Some of the views, and all of them.
+        assert!(none < 20.0 && none + 10.0 < above && above < 90.0, "{background}: {none} and {above} dB");
+    }
 }
 
 /// Protects users from a map that is dropped in silence: they are told, and the rest of the

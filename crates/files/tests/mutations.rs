@@ -14,7 +14,7 @@ use parbake_files::{
     read_obj_bytes,
 };
 use parbake_model::glam::{Vec2, Vec3, Vec4};
-use parbake_model::{Image, Material, Mesh, Model, ShParallaxMap, TextureSlot};
+use parbake_model::{CutoutMap, Image, Material, Mesh, Model, ShParallaxMap, TextureSlot};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -148,7 +148,8 @@ const GLTF: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0
     "meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2,"COLOR_0":3},"indices":4,"material":0,"mode":5},
     {"attributes":{"POSITION":0}}]}],"materials":[{"name":"m","alphaMode":"MASK","normalTexture":{"index":0,"scale":0.5},
     "extensions":{"PARBAKE_materials_parallax_sh":{"order":0,"limit":0.5,"coefficientTextures":[{"index":0}],"scale":[1,0.5],
-    "offset":[0,0.1],"depthTexture":{"index":0},"depthScale":2,"depthOffset":-1,"normalTexture":{"index":0,"texCoord":1}}},
+    "offset":[0,0.1],"depthTexture":{"index":0},"depthScale":2,"depthOffset":-1,"normalTexture":{"index":0,"texCoord":1},
+    "cutout":{"order":1,"coefficientTextures":[{"index":0},{"index":0}],"scale":[1,2,0,2],"offset":[0,-1,3.5,-1]}}},
     "pbrMetallicRoughness":{"baseColorFactor":[1,1,0.5,1],"baseColorTexture":{"index":0,"texCoord":0,
     "extensions":{"KHR_texture_transform":{"offset":[0,1],"scale":[2,2],"rotation":0.5}}}}}],
     "textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071,"wrapT":33648}],
@@ -173,7 +174,8 @@ fn glb() -> Vec<u8> {
         triangle_materials: vec![0],
     };
     let base_color_texture = Some(TextureSlot::default());
-    let map = ShParallaxMap { images: vec![0], ..ShParallaxMap::default() };
+    let cutout = Some(CutoutMap { order: 0, images: vec![0], scale: vec![2.0], offset: vec![-1.0] });
+    let map = ShParallaxMap { images: vec![0], cutout, ..ShParallaxMap::default() };
     let parallax =
         Some(ShParallaxMap { scale: vec![0.5; 2], offset: vec![-0.1; 2], base_color_texture, ..map });
     let materials = vec![Material { base_color_texture, parallax, ..Material::default() }];

@@ -7,7 +7,8 @@
 use parbake_files::{Limits, read_model, write_glb, write_obj};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{
-    AlphaMode, DepthMap, Image, Material, Mesh, Model, ShParallaxMap, TextureSlot, UvTransform, Wrap,
+    AlphaMode, CutoutMap, DepthMap, Image, Material, Mesh, Model, ShParallaxMap, TextureSlot, UvTransform,
+    Wrap,
 };
 use std::path::{Path, PathBuf};
 
@@ -60,10 +61,17 @@ fn rich(side: u32) -> Model {
         scale: (0..18).map(|i| 0.01 * i as f32).collect(),
         offset: vec![-0.05; 18],
         depth: Some(DepthMap { image: 8, scale: 2.0, offset: 0.5 }),
+        cutout: Some(CutoutMap {
+            order: 1,
+            images: vec![9, 10],
+            scale: vec![0.1, 0.0, 6.5, 1e-7],
+            offset: vec![3.544_907_7, 0.0, -1.0 / 3.0, 1e7],
+        }),
         base_color_texture: plain.base_color_texture,
         ..ShParallaxMap::default()
     });
-    model.images.extend((2..9).map(|i| Image::solid(&format!("parallax {i}"), 8, 8, [i, 2 * i, 3 * i, 255])));
+    let data = |i| Image::solid(&format!("parallax {i}"), 8, 8, [i, 2 * i, 3 * i, 255]);
+    model.images.extend((2..11).map(data));
     model
 }
 

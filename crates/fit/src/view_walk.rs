@@ -31,6 +31,7 @@ pub enum Beyond {
 }
 
 /// What every view of a fit has in common.
+#[derive(Clone)]
 pub struct Walker<'a> {
     low: &'a Mesh,
     face_normals: Vec<Vec3>,

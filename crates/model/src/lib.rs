@@ -8,17 +8,21 @@
 //!   texel of the first row, `v` grows downwards (OBJ's are flipped on reading);
 //! * images are 8-bit RGBA, row 0 on top.
 
+mod cutout;
 mod image;
 mod material;
 mod mesh;
 mod parallax;
+mod parallax_fault;
 mod placement;
 
+pub use cutout::CutoutMap;
 pub use glam;
 pub use image::Image;
 pub use material::{AlphaMode, Material, TextureSlot, UvTransform, Wrap};
 pub use mesh::Mesh;
-pub use parallax::{DepthMap, ParallaxFault, ShParallaxMap};
+pub use parallax::{DepthMap, ShParallaxMap};
+pub use parallax_fault::ParallaxFault;
 pub use placement::{Bounds, Placement};
 
 /// A textured model: one mesh, and what its triangles' materials name.

@@ -8,8 +8,8 @@
 //! `offset[c] + scale[c] · stored / 255`. Components after the last channel are 0, alpha
 //! says nothing: browsers multiply colours with it, and block compression is made for RGB.
 
-use crate::{Image, TextureSlot, Wrap};
-use std::fmt;
+use crate::parallax_fault::{Coefficients, ParallaxFault, check_images};
+use crate::{CutoutMap, Image, TextureSlot, Wrap};
 
 /// A material's parallax map.
 ///
@@ -29,7 +29,9 @@ pub struct ShParallaxMap {
     pub limit: f32,
     /// Multiplies the shift; 1 everywhere where there is none.
     pub depth: Option<DepthMap>,
-    /// Wrap modes along u and v of all images of the map.
+    /// Where the surface is left out; nowhere where there is none.
+    pub cutout: Option<CutoutMap>,
+    /// Wrap modes along u and v of all images of the map, the cutout's too.
     pub wrap: [Wrap; 2],
     /// Base colour to be fetched at the shifted coordinate, instead of the material's own,
     /// which is then for viewers that know no parallax.
@@ -60,6 +62,7 @@ impl Default for ShParallaxMap {
             offset: Vec::new(),
             limit: 0.25,
             depth: None,
+            cutout: None,
             wrap: [Wrap::Clamp; 2],
             base_color_texture: None,
             normal_texture: None,
@@ -81,36 +84,26 @@ impl ShParallaxMap {
         Self::channel_count(order).div_ceil(3)
     }
 
-    /// All images of the map itself: coefficients, then depth.
+    /// All images of the map itself: coefficients, depth, the cutout's.
     pub fn data_images(&self) -> impl Iterator<Item = usize> {
-        self.images.iter().copied().chain(self.depth.map(|d| d.image))
+        let cutout = self.cutout.iter().flat_map(|c| &c.images);
+        self.images.iter().copied().chain(self.depth.map(|d| d.image)).chain(cutout.copied())
     }
 
-    /// Whether order, counts and numbers keep the contract.
+    /// Whether order, counts and numbers keep the contract, the cutout's too.
     ///
     /// # Errors
     /// The first fault.
     pub fn check_numbers(&self) -> Result<(), ParallaxFault> {
-        if self.order > Self::HIGHEST_ORDER {
-            return Err(ParallaxFault::Order(self.order));
-        }
-        let channels = Self::channel_count(self.order);
-        let counts = [
-            ("images of coefficients", self.images.len(), Self::image_count(self.order)),
-            ("scales", self.scale.len(), channels),
-            ("offsets", self.offset.len(), channels),
-        ];
-        if let Some(&(what, found, wanted)) = counts.iter().find(|(_, found, wanted)| found != wanted) {
-            return Err(ParallaxFault::Count { what, found, wanted });
-        }
-        let depth = self.depth.iter().flat_map(|d| [d.scale, d.offset]);
-        if !self.scale.iter().chain(&self.offset).copied().chain(depth).all(f32::is_finite) {
+        let Self { order, images, scale, offset, .. } = self;
+        Coefficients { order: *order, images, scale, offset }.check_numbers(Self::channel_count)?;
+        if !self.depth.iter().flat_map(|d| [d.scale, d.offset]).all(f32::is_finite) {
             return Err(ParallaxFault::NotFinite);
         }
         if !(self.limit > 0.0 && self.limit <= 1.0) {
             return Err(ParallaxFault::Limit(self.limit));
         }
-        Ok(())
+        self.cutout.as_ref().map_or(Ok(()), CutoutMap::check_numbers).map_err(in_cutout)
     }
 
     /// Whether the map keeps its contract, given the model's images.
@@ -119,77 +112,29 @@ impl ShParallaxMap {
     /// The first fault.
     pub fn check(&self, images: &[Image]) -> Result<(), ParallaxFault> {
         self.check_numbers()?;
+        check_images(&self.images, images)?;
+        if let Some(depth) = &self.depth {
+            check_images(&[depth.image], images)?;
+        }
         let own = [self.base_color_texture, self.normal_texture].into_iter().flatten().map(|s| s.image);
-        if let Some(image) = self.data_images().chain(own).find(|&i| i >= images.len()) {
+        if let Some(image) = own.into_iter().find(|&i| i >= images.len()) {
             return Err(ParallaxFault::MissingImage(image));
         }
-        let size = |i: usize| [images[i].width, images[i].height];
-        for image in self.data_images() {
-            let ([width, height], texels) = (size(image), images[image].pixels.len());
-            if texels == 0 || width.checked_mul(height) != Some(texels) {
-                return Err(ParallaxFault::BrokenImage(image));
-            }
-        }
-        let first = size(self.images[0]);
-        match self.images.iter().map(|&i| size(i)).find(|&other| other != first) {
-            Some(other) => Err(ParallaxFault::Sizes(first, other)),
-            None => Ok(()),
-        }
+        self.cutout.as_ref().map_or(Ok(()), |cutout| cutout.check(images)).map_err(in_cutout)
     }
 }
 
-/// How a map breaks its contract.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum ParallaxFault {
-    /// The order is too high.
-    Order(usize),
-    /// There are too many or too few of something.
-    Count {
-        /// What was counted.
-        what: &'static str,
-        /// How many there are.
-        found: usize,
-        /// How many the order asks for.
-        wanted: usize,
-    },
-    /// A scale or an offset is not a finite number.
-    NotFinite,
-    /// The limit is out of range.
-    Limit(f32),
-    /// The model does not have this image.
-    MissingImage(usize),
-    /// This image has no texels, or not as many as its size says.
-    BrokenImage(usize),
-    /// Two images of coefficients have different sizes: width and height of each.
-    Sizes([usize; 2], [usize; 2]),
+fn in_cutout(fault: ParallaxFault) -> ParallaxFault {
+    ParallaxFault::Cutout(Box::new(fault))
 }
-
-impl fmt::Display for ParallaxFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Order(order) => {
-                write!(f, "its order is {order}, and the highest is {}", ShParallaxMap::HIGHEST_ORDER)
-            }
-            Self::Count { what, found, wanted } => {
-                write!(f, "it has {found} {what}, and its order asks for {wanted}")
-            }
-            Self::NotFinite => f.write_str("a scale or an offset is not finite"),
-            Self::Limit(limit) => write!(f, "its limit is {limit}, and should be above 0 and at most 1"),
-            Self::MissingImage(image) => write!(f, "image {image} is not there"),
-            Self::BrokenImage(image) => write!(f, "image {image} does not have the texels of its size"),
-            Self::Sizes([a, b], [c, d]) => {
-                write!(f, "its images differ in size: {a} × {b} and {c} × {d} texels")
-            }
-        }
-    }
-}
-
-impl std::error::Error for ParallaxFault {}
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn cut(map: &mut ShParallaxMap) -> &mut CutoutMap {
+        map.cutout.as_mut().unwrap()
+    }
 
     /// Protects readers, writers and renderers, who all rely on this check: every way to
     /// break a map is found.
@@ -198,10 +143,21 @@ mod tests {
         let images = [Image::solid("a", 4, 2, [0; 4]), Image::solid("b", 2, 4, [0; 4]), Image::default()];
         let depth = Some(DepthMap { image: 1, scale: 1.0, offset: 0.0 });
         let (scale, offset) = (vec![1.0; 8], vec![0.0; 8]);
-        let good = ShParallaxMap { order: 1, images: vec![0; 3], scale, offset, depth, ..Default::default() };
+        let cutout =
+            Some(CutoutMap { order: 1, images: vec![1; 2], scale: vec![0.0; 4], offset: vec![2.0; 4] });
+        let (order, images_of_map) = (1, vec![0; 3]);
+        let good = ShParallaxMap {
+            order,
+            images: images_of_map,
+            scale,
+            offset,
+            depth,
+            cutout,
+            ..Default::default()
+        };
         assert_eq!(good.check(&images), Ok(()));
         type Breakage = fn(&mut ShParallaxMap);
-        let breakages: [(Breakage, &str); 11] = [
+        let breakages: [(Breakage, &str); 17] = [
             (|m| m.order = 8, "its order is 8"),
             (|m| m.order = usize::MAX, "its order is"),
             (|m| m.order = 2, "3 images of coefficients, and its order asks for 6"),
@@ -213,6 +169,12 @@ mod tests {
             (|m| m.images[1] = 3, "image 3 is not there"),
             (|m| m.images[2] = 1, "4 × 2 and 2 × 4"),
             (|m| m.depth.iter_mut().for_each(|d| d.image = 2), "image 2 does not have"),
+            (|m| cut(m).order = 8, "its cutout is broken: its order is 8"),
+            (|m| cut(m).images.truncate(1), "its cutout is broken: it has 1 images"),
+            (|m| cut(m).scale.push(1.0), "its cutout is broken: it has 5 scales"),
+            (|m| cut(m).offset[3] = f32::INFINITY, "its cutout is broken: a scale or"),
+            (|m| cut(m).images[0] = 9, "its cutout is broken: image 9 is not there"),
+            (|m| cut(m).images[0] = 0, "its cutout is broken: its images differ in size"),
         ];
         for (breakage, expected) in breakages {
             let mut map = good.clone();

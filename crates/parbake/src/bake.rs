@@ -6,14 +6,16 @@
 //! low ── LowPoly (texel map, charts) ─────── start ┴ samples ─ fit ─ Model
 //! ```
 
+use crate::algorithm_one::algorithm_one;
+use crate::bridge::{Bridge, Clock};
 use crate::check::{check_mesh, warning};
 use crate::error::BakeError;
 use crate::low::LowPoly;
 use crate::message::{Message, Stage, Watcher};
 use crate::options::{BakeOptions, UvMode};
 use crate::pair::{common_frame, placed};
-use crate::parallax::parallax;
-use crate::report::{BakeReport, StageTime};
+use crate::depth::{DepthMaps, fit_depth};
+use crate::report::BakeReport;
 use crate::shape::{Target, shape};
 use crate::unfold::{Source, mend, unfold};
 use crate::uv_animation::UvMoves;
@@ -24,14 +26,12 @@ use parbake_fit::schedule::fit_textures;
 use parbake_fit::start::project;
 use parbake_fit::view_walk::{Beyond, Walker};
 use parbake_fit::views::{Rig, view_pool};
-use parbake_fit::watch;
 use parbake_mesh::HighSurface;
 use parbake_model::{Image, Material, Mesh, Model, TextureSlot, Wrap};
 use parbake_render::camera::Projection;
-use parbake_render::parallax::ShParallax;
 use parbake_render::scene::Scene;
 use parbake_render::shade::Lambert;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// The training cameras: the paper's distance, and the field of view at which a
 /// model fills most of the picture.
@@ -50,76 +50,12 @@ pub struct Baked {
     pub uv_moves: Option<UvMoves>,
 }
 
-/// Passes the fit's messages on, and its question whether to stop.
-struct Bridge<'a, W> {
-    watcher: &'a W,
-    /// When a budget is spent, besides what the watcher says.
-    until: Option<Instant>,
-}
-
-impl<W: Watcher> Bridge<'_, W> {
-    /// The same for a stage that may take this share of the time that is left.
-    fn share(&self, share: f64) -> Self {
-        let own = self.until.map(|until| until.saturating_duration_since(Instant::now()).as_secs_f64());
-        let left = own.into_iter().chain(self.watcher.seconds_left()).reduce(f64::min);
-        let until = left.map(|left| Instant::now() + Duration::from_secs_f64((left * share).clamp(0.0, 1e9)));
-        Self { watcher: self.watcher, until }
-    }
-}
-
-impl<W: Watcher> Watcher for Bridge<'_, W> {
-    fn message(&self, message: Message) {
-        self.watcher.message(message);
-    }
-
-    fn stopped(&self) -> bool {
-        watch::Watch::should_stop(self)
-    }
-}
-
-impl<W: Watcher> watch::Watch for Bridge<'_, W> {
-    fn progress(&self, stage: watch::Stage, done: usize, total: usize) {
-        let stage = match stage {
-            watch::Stage::Shape => Stage::Shape,
-            watch::Stage::Reference => Stage::Reference,
-            watch::Stage::Start => Stage::Start,
-            watch::Stage::Sampling => Stage::Sampling,
-            watch::Stage::Cutout => Stage::Cutout,
-            watch::Stage::Parallax => Stage::Parallax,
-            watch::Stage::Solve => Stage::Solve,
-        };
-        self.watcher.message(Message::Progress { stage, done, total });
-    }
-
-    fn should_stop(&self) -> bool {
-        self.watcher.stopped() || self.until.is_some_and(|until| Instant::now() >= until)
-    }
-}
-
-/// The share of vertices in a time budget.
+/// The shares of stages in the time that a budget leaves them: textures are worth most, and
+/// what reference pictures show must be solved for.
 const SHAPE_SHARE: f64 = 0.3;
-
-/// The share of the parallax map in a time budget.
-const PARALLAX_SHARE: f64 = 0.5;
-
-/// The share of texture coordinates in a time budget: textures are worth more.
 const UNFOLD_SHARE: f64 = 0.3;
-
-/// The reference pictures' share of a time budget: what they show must be solved for.
 const REFERENCE_SHARE: f64 = 0.3;
-
-struct Clock {
-    since: Instant,
-    stages: Vec<StageTime>,
-}
-
-impl Clock {
-    fn lap(&mut self, stage: Stage) {
-        let seconds = self.since.elapsed().as_secs_f64();
-        self.since = Instant::now();
-        self.stages.push(StageTime { stage, seconds });
-    }
-}
+const DEPTH_SHARE: f64 = 0.5;
 
 /// Bakes the high-poly's look onto the low-poly.
 ///
@@ -150,9 +86,8 @@ pub(crate) fn bake_pair(
     }
     let (convention, size) = (options.convention, options.texture_size);
     let begin = Instant::now();
-    let until = options.time_budget.map(|seconds| begin + Duration::from_secs_f64(seconds.min(1e9)));
-    let bridge = Bridge { watcher, until };
-    let mut clock = Clock { since: begin, stages: Vec::new() };
+    let bridge = Bridge::new(watcher, begin, options.time_budget);
+    let mut clock = Clock::new(begin);
     let frame = common_frame(high)?;
     let mesh = placed(high, &frame);
     let (scene, surface) = rayon::join(
@@ -162,13 +97,15 @@ pub(crate) fn bake_pair(
     drop(mesh);
     let (display, reach) = (convention.display(), 2.0 * options.reach);
     let (mut shaped, mut unfolded) = (None, None);
+    let target = Target { scene: &scene, surface: &surface, reach, display, rig: RIG };
     let shape_plan = options.shape_plan().filter(|_| !same);
+    let algorithm_plan = options.algorithm_plan().filter(|_| !same);
     let unfold_options = options.unfold();
-    if options.uv != UvMode::Keep || shape_plan.is_some() {
+    let mut map_of_paper = None;
+    if options.uv != UvMode::Keep || shape_plan.is_some() || algorithm_plan.is_some() {
         let mut low = mend(low, &unfold_options)?;
         clock.lap(Stage::Prepare);
         if let Some(plan) = &shape_plan {
-            let target = Target { scene: &scene, surface: &surface, reach, display, rig: RIG };
             let share = bridge.share(SHAPE_SHARE);
             shaped = Some(shape(&mut low, &frame, &target, plan, options.seed, &share)?);
             clock.lap(Stage::Shape);
@@ -179,8 +116,15 @@ pub(crate) fn bake_pair(
             reach,
             encode: convention.decodes_srgb(),
         };
-        unfolded = Some(unfold(low, &frame, &source, &unfold_options, &bridge.share(UNFOLD_SHARE)));
+        let mut moved = unfold(low, &frame, &source, &unfold_options, &bridge.share(UNFOLD_SHARE));
         clock.lap(Stage::Unfold);
+        if let Some(plan) = &algorithm_plan {
+            let share = bridge.share(DEPTH_SHARE);
+            let outcome = algorithm_one(&mut moved.model, &frame, &target, plan, options.seed, &share)?;
+            (shaped, map_of_paper) = (Some(outcome.report), outcome.map);
+            clock.lap(Stage::Shape);
+        }
+        unfolded = Some(moved);
     }
     let low = unfolded.as_ref().map_or(low, |u| &u.model);
     let LowPoly { written, placed, map, atlas, mut warnings } = LowPoly::new(low, &frame, size)?;
@@ -200,43 +144,23 @@ pub(crate) fn bake_pair(
         render_references(&scene, &Lambert, &pool, &plan.reference, 1, &bridge.share(REFERENCE_SHARE));
     clock.lap(Stage::Reference);
 
-    let beyond = match options.silhouette {
+    let beyond = match options.silhouette_weight() {
         0.0 => Beyond::Ignore,
         weight => Beyond::Background(options.backdrop.light(), weight),
     };
-    let walker = Walker::new(&placed, plan.reference.size, &display, beyond);
-    let env = |name: &str, default: f32| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
-    let _ = std::fs::remove_file("/tmp/cutout.bin");
-    let cut = (env("C_STEPS", 0.0) > 0.0).then(|| {
-        let o = parbake_fit::cutout::CutoutOptions {
-            order: env("C_ORDER", 2.0) as usize,
-            size: env("C_SIZE", 64.0) as usize,
-            steps: env("C_STEPS", 200.0) as usize,
-            rate: env("C_RATE", 0.1),
-            ..Default::default()
-        };
-        let t = Instant::now();
-        let ex = parbake_fit::cutout::examples(&walker, &references, o.size);
-        let t1 = t.elapsed();
-        let (map, wrong) = parbake_fit::cutout::fit_cutout(&ex, &o, &bridge);
-        eprintln!("cutout {:?} {t1:?} {:?} of {}", wrong, t.elapsed(), ex.iter().map(Vec::len).sum::<usize>());
-        let mut b: Vec<u8> = vec![o.order as u8, o.size as u8];
-        for c in &map.coefficients { b.extend(c.to_le_bytes()); }
-        std::fs::write("/tmp/cutout.bin", b).unwrap();
-        map
-    });
-    let walker = walker.with_cutout(cut.as_ref());
     let srgb = convention.decodes_srgb();
-    let mut shifts = None;
-    if let Some(plan) = options.parallax_plan() {
-        let target = Target { scene: &scene, surface: &surface, reach, display, rig: RIG };
-        let share = bridge.share(PARALLAX_SHARE);
-        shifts = Some(parallax(low, &frame, &target, &references, &walker, srgb, &plan, &share)?);
+    let mut walker = Walker::new(&placed, plan.reference.size, &display, beyond);
+    let mut depth = None;
+    if let Some(plan) = options.depth_plan() {
+        let share = bridge.share(DEPTH_SHARE);
+        depth = Some(fit_depth(low, &frame, &target, &references, &walker, srgb, &plan, &share)?);
         clock.lap(Stage::Parallax);
     }
     drop(surface);
-    let shift_map = shifts.as_ref().map(|(map, _)| map);
-    let samples = collect_samples(&walker, &references, size, shift_map, &bridge);
+    let of_paper = map_of_paper.map(|parallax| DepthMaps { parallax, cutout: None });
+    let maps = depth.as_ref().map(|d| &d.maps).or(of_paper.as_ref());
+    walker = walker.with_cutout(maps.and_then(|m| m.cutout.as_ref()));
+    let samples = collect_samples(&walker, &references, size, maps.map(|m| &m.parallax), &bridge);
     let views = references.len();
     drop(references);
     if samples.is_empty() {
@@ -254,7 +178,7 @@ pub(crate) fn bake_pair(
     }
     let report = BakeReport {
         shape: shaped,
-        parallax: shifts.as_ref().map(|(_, report)| report.clone()),
+        depth: depth.as_ref().map(|d| d.report.clone()),
         unfold: unfolded.as_ref().filter(|_| options.uv != UvMode::Keep).map(|u| u.report.clone()),
         options: options.clone(),
         high_triangles: high.mesh.triangles.len(),
@@ -280,22 +204,22 @@ pub(crate) fn bake_pair(
         None,
     );
     Ok(Baked {
-        model: textured(low, &written, fitted.color, fitted.normal, shift_map),
+        model: textured(low, &written, fitted.color, fitted.normal, maps),
         projected,
         report,
         uv_moves: unfolded.as_ref().and_then(|u| u.moves.clone()),
     })
 }
 
-/// The low-poly with one material of these two textures and this parallax map.
-fn textured(low: &Model, mesh: &Mesh, color: Image, normal: Image, shifts: Option<&ShParallax>) -> Model {
+/// The low-poly with one material of these two textures and these maps.
+fn textured(low: &Model, mesh: &Mesh, color: Image, normal: Image, maps: Option<&DepthMaps>) -> Model {
     let mut mesh = mesh.clone();
     mesh.colors.clear();
     mesh.uvs1.clear();
     mesh.triangle_materials.fill(0);
     let slot = |image| TextureSlot { image, wrap: [Wrap::Repeat; 2], ..TextureSlot::default() };
     let mut images = vec![color, normal];
-    let parallax = shifts.map(|map| map.pack(&mut images));
+    let parallax = maps.map(|maps| maps.pack(&mut images));
     let material = Material {
         parallax,
         name: low.name.clone(),

@@ -79,7 +79,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     };
     let report = BakeReport {
         shape: None,
-        parallax: None,
+        depth: None,
         unfold: Some(unfolded.report.clone()),
         options: options.clone(),
         high_triangles: model.mesh.triangles.len(),

@@ -57,7 +57,7 @@ pub struct EvaluateOptions {
     #[cfg_attr(feature = "clap", arg(long))]
     pub no_mips: bool,
 
-    /// Ignore parallax maps, as viewers without the extension do
+    /// Ignore parallax maps and their cutouts, as viewers without the extension do
     #[cfg_attr(feature = "clap", arg(long))]
     pub no_parallax: bool,
 

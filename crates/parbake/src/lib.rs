@@ -16,9 +16,12 @@
 //! # }
 //! ```
 
+mod algorithm_one;
 mod bake;
+mod bridge;
 mod check;
 mod compress;
+mod depth;
 mod error;
 mod evaluate;
 mod html;
@@ -28,7 +31,6 @@ mod message;
 mod models;
 mod options;
 mod pair;
-mod parallax;
 mod picture;
 mod report;
 mod threads;
@@ -50,7 +52,7 @@ pub use parbake_atlas::UvCheck;
 pub use parbake_files::{
     FileError, Limits, Loaded, read_image, read_model, write_atomically as write_file, write_glb, write_obj,
 };
-pub use parallax::ParallaxReport;
+pub use depth::DepthReport;
 pub use parbake_model::Model;
 pub use picture::{BakedImage, ImageOptions, ImageReport, bake_image};
 pub use report::{BakeReport, LossStep, StageTime};

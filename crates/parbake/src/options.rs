@@ -3,14 +3,17 @@
 //! quality field means "as the preset says".
 
 use crate::error::BakeError;
-use crate::parallax::ParallaxPlan;
+use crate::algorithm_one::AlgorithmPlan;
+use crate::depth::DepthPlan;
 use crate::shape::ShapePlan;
 use crate::unfold::UnfoldOptions;
+use parbake_fit::cutout::CutoutOptions;
 use parbake_fit::parallax::ParallaxOptions;
 use parbake_fit::reference::Sampling;
 use parbake_fit::schedule::Schedule;
 use parbake_render::display::{Curve, Display};
 use parbake_render::scene::Interpretation;
+use parbake_shape::paper::PaperOptions as AlgorithmOptions;
 use parbake_shape::{Motion, ShapeOptions};
 use parbake_uv::paper::{Guide, PaperOptions};
 use serde::{Deserialize, Serialize};
@@ -187,6 +190,19 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "ORDER", default_value_t = 2))]
     pub parallax_order: usize,
 
+    /// Keep what the low-poly shows beyond the high-poly's silhouette instead of cutting it out;
+    /// only with --parallax sh
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub no_cutout: bool,
+
+    /// Highest order of the cutout's spherical harmonics, 0 to 7
+    #[cfg_attr(feature = "clap", arg(long, value_name = "ORDER", default_value_t = 2))]
+    pub cutout_order: usize,
+
+    /// Side of the cutout map in texels, 4 to 1024
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 128))]
+    pub cutout_size: usize,
+
     /// Side of the parallax map in texels, 4 to 1024
     #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 64))]
     pub parallax_size: usize,
@@ -217,12 +233,10 @@ pub struct BakeOptions {
     pub backdrop: Backdrop,
 
     /// How much pixels count where the low-poly reaches beyond the high-poly's silhouette, 0 to 1:
-    /// 1 looks best on the backdrop's colour, 0 treats all backgrounds alike
-    #[cfg_attr(
-        feature = "clap",
-        arg(long, allow_negative_numbers = true, value_name = "WEIGHT", default_value_t = 0.5)
-    )]
-    pub silhouette: f32,
+    /// 1 looks best on the backdrop's colour, 0 treats all backgrounds alike [default: 0.5, with a
+    /// cutout 0]
+    #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "WEIGHT"))]
+    pub silhouette: Option<f32>,
 
     /// Keep the projected normal map instead of fitting it
     #[cfg_attr(feature = "clap", arg(long))]
@@ -273,13 +287,16 @@ impl Default for BakeOptions {
             parallax: Parallax::None,
             parallax_order: 2,
             parallax_size: 64,
+            no_cutout: false,
+            cutout_order: 2,
+            cutout_size: 128,
             method: Method::Fit,
             no_content_aware: false,
             gutter: None,
             uv_steps: None,
             convention: Convention::Gltf,
             backdrop: Backdrop::Black,
-            silhouette: 0.5,
+            silhouette: None,
             keep_normals: false,
             reach: 0.05,
             views: None,
@@ -336,12 +353,12 @@ impl BakeOptions {
             rate: env("S_RATE", 4e-3),
             texture_rate: env("S_TRATE", 0.02),
             coverage: env("S_COV", 1.0),
-            overhang_discount: env("S_OVER", 0.0),
+            overhang_discount: env("S_OVER", if self.cuts() { 0.9 } else { 0.0 }),
             displacement: env("S_DISP", 0.0),
             views_per_step: env("S_VPS", 12.0) as usize,
             ..ShapeOptions::default()
         };
-        (!self.hurried()).then_some(ShapePlan {
+        (self.method == Method::Fit && !self.hurried()).then_some(ShapePlan {
             views: env("S_VIEWS", views as f32) as usize,
             view_size: env("S_SIZE", 160.0) as usize,
             texture_size: env("S_TEX", 128.0) as usize,
@@ -350,18 +367,24 @@ impl BakeOptions {
         })
     }
 
-    /// How the parallax map is fitted; none where there is none.
-    pub(crate) fn parallax_plan(&self) -> Option<ParallaxPlan> {
-        let (views, steps) = match self.preset {
-            Preset::Fast => (192, 120),
-            Preset::Balanced => (384, 300),
-            Preset::Best => (768, 900),
+    /// How cutout and parallax map are fitted; none where there are none.
+    pub(crate) fn depth_plan(&self) -> Option<DepthPlan> {
+        let (views, cutout_steps, steps) = match self.preset {
+            Preset::Fast => (240, 200, 150),
+            Preset::Balanced => (480, 300, 400),
+            Preset::Best => (960, 500, 900),
         };
         let env = |name: &str, default: f32| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
-        (self.parallax == Parallax::Sh).then_some(ParallaxPlan {
+        (self.parallax == Parallax::Sh && self.method == Method::Fit).then_some(DepthPlan {
             views: env("P_VIEWS", views as f32) as usize,
-            texture_size: self.texture_size.min(env("P_TEX", 256.0) as usize),
-            fit: ParallaxOptions {
+            texture_size: self.texture_size.min(env("P_TEX", 128.0) as usize),
+            cutout: (!self.no_cutout).then_some(CutoutOptions {
+                order: self.cutout_order,
+                size: self.cutout_size,
+                steps: env("C_STEPS", cutout_steps as f32) as usize,
+                ..CutoutOptions::default()
+            }),
+            parallax: ParallaxOptions {
                 order: self.parallax_order,
                 size: self.parallax_size,
                 steps: env("P_STEPS", steps as f32) as usize,
@@ -370,6 +393,35 @@ impl BakeOptions {
                 ..ParallaxOptions::default()
             },
         })
+    }
+
+    /// Whether the low-poly is cut at the high-poly's silhouettes.
+    fn cuts(&self) -> bool {
+        self.parallax == Parallax::Sh && self.method == Method::Fit && !self.no_cutout
+    }
+
+    /// The paper's optimiser for vertices and parallax; none where neither is asked for.
+    pub(crate) fn algorithm_plan(&self) -> Option<AlgorithmPlan> {
+        let paper = AlgorithmOptions::default();
+        let env = |name: &str, default: f32| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
+        let fit = AlgorithmOptions {
+            motion: (self.shape != ShapeMode::Keep).then_some(Motion::Normal),
+            parallax: (self.parallax == Parallax::Sh).then_some((self.parallax_order, self.parallax_size)),
+            texture_size: self.texture_size.min(256),
+            displacement: env("A_DISP", paper.displacement),
+            steps: env("A_STEPS", paper.steps as f32) as usize,
+            vertex_rate: env("A_VRATE", paper.vertex_rate),
+            coefficient_rate: env("A_CRATE", paper.coefficient_rate),
+            views_per_step: env("A_VPS", paper.views_per_step as f32) as usize,
+            ..paper
+        };
+        let moves = fit.motion.is_some() || fit.parallax.is_some();
+        (self.method == Method::Paper && moves).then_some(AlgorithmPlan { views: 192, view_size: 160, fit })
+    }
+
+    /// How much pixels count beyond the high-poly's silhouette: none where they are cut out.
+    pub(crate) fn silhouette_weight(&self) -> f32 {
+        self.silhouette.unwrap_or(if self.cuts() { 0.0 } else { 0.5 })
     }
 
     /// What to do with texture coordinates in another mode.
@@ -407,7 +459,7 @@ impl BakeOptions {
         };
         within("texture-size", self.texture_size as f64, 16.0, 8192.0)?;
         within("reach", f64::from(self.reach), 0.0, 1.0)?;
-        within("silhouette", f64::from(self.silhouette), 0.0, 1.0)?;
+        within("silhouette", f64::from(self.silhouette.unwrap_or(0.0)), 0.0, 1.0)?;
         within("views", self.views.unwrap_or(1) as f64, 1.0, 4096.0)?;
         within("view-size", self.view_size.unwrap_or(32) as f64, 32.0, 2048.0)?;
         within("rounds", self.rounds.unwrap_or(0) as f64, 0.0, 100.0)?;
@@ -415,6 +467,8 @@ impl BakeOptions {
         within("uv-steps", self.uv_steps.unwrap_or(0) as f64, 0.0, 10_000.0)?;
         within("parallax-order", self.parallax_order as f64, 0.0, 7.0)?;
         within("parallax-size", self.parallax_size as f64, 4.0, 1024.0)?;
+        within("cutout-order", self.cutout_order as f64, 0.0, 7.0)?;
+        within("cutout-size", self.cutout_size as f64, 4.0, 1024.0)?;
         within("threads", self.threads as f64, 0.0, crate::threads::MOST_THREADS as f64)?;
         within("time-budget", self.time_budget.unwrap_or(0.0), 0.0, 1e9)?;
         self.method.check(self.no_content_aware)

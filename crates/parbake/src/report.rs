@@ -2,7 +2,7 @@
 
 use crate::message::Stage;
 use crate::options::BakeOptions;
-use crate::parallax::ParallaxReport;
+use crate::depth::DepthReport;
 use crate::shape::ShapeReport;
 use crate::unfold::UnfoldReport;
 use parbake_atlas::UvCheck;
@@ -47,9 +47,9 @@ pub struct BakeReport {
     /// What was done with vertices; none where they were kept.
     #[serde(default)]
     pub shape: Option<ShapeReport>,
-    /// How the parallax map was fitted; none where there is none.
+    /// How cutout and parallax map were fitted; none where there are none.
     #[serde(default)]
-    pub parallax: Option<ParallaxReport>,
+    pub depth: Option<DepthReport>,
     /// What was done with texture coordinates; none where they were kept.
     pub unfold: Option<UnfoldReport>,
     /// What was asked.

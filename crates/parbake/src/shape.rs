@@ -13,7 +13,7 @@ use crate::error::BakeError;
 use crate::low::LowPoly;
 use crate::unfold::Mended;
 use parbake_fit::canvas::Canvas;
-use parbake_fit::reference::{Sampling, render_references};
+use parbake_fit::reference::{Reference, Sampling, render_references};
 use parbake_fit::start::project;
 use parbake_fit::views::{Rig, View, view_pool};
 use parbake_fit::watch::Watch;
@@ -52,8 +52,9 @@ pub struct ShapeReport {
     pub steps: usize,
     /// Mean and longest way of a vertex, as shares of the high-poly's longest side.
     pub moved: [f32; 2],
-    /// Mean squared error of coverage over the views of the first steps and of the last.
-    pub coverage_error: [f64; 2],
+    /// Mean error over the views of the first steps and of the last: squared, of coverage; by the
+    /// paper's method absolute, of display values.
+    pub error: [f64; 2],
 }
 
 /// The high-poly, as vertices are fitted to it.
@@ -95,22 +96,11 @@ pub fn shape(
     let LowPoly { placed, map, atlas, .. } = LowPoly::new(&model, frame, plan.texture_size)?;
     let start = project(&placed, &map, &atlas, target.scene, target.surface, target.reach);
     let start = Provisional { normal: in_world(&placed, &map, &start.normal), color: start.color };
-    let pool: Vec<View> = (view_pool(plan.views, &target.rig, seed).into_iter())
-        .map(|view| View { jitter: [0.0; 2], ..view })
-        .collect();
-    // Edges are told from each other by how much of a pixel they cover: whole pixels are
-    // averaged here.
-    let sampling = Sampling { size: plan.view_size, filter: 1.0, samples: plan.samples };
-    let references = render_references(target.scene, &Lambert, &pool, &sampling, 1, watch);
+    let references = smooth_references(target, plan.views, plan.view_size, plan.samples, seed, watch);
     let options = ShapeOptions { seed, ..plan.fit };
     let shaped = fit_shape(&placed, start, &references, plan.view_size, target.display, &options, watch);
 
-    let before = &placed.positions;
-    for ((written, placed), moved) in low.mesh.positions.iter_mut().zip(before).zip(&shaped.positions) {
-        *written += (*moved - *placed) / frame.scale;
-    }
-    low.mesh.normals =
-        turned_normals(before, &shaped.positions, &low.mesh.normals, &low.mesh.triangles);
+    move_vertices(&mut low.mesh, &placed, &shaped.positions, frame);
     let mean = |losses: &[parbake_render::loss::LossValue]| {
         losses.iter().map(|l| l.coverage).sum::<f64>() / losses.len().max(1) as f64
     };
@@ -118,8 +108,33 @@ pub fn shape(
     Ok(ShapeReport {
         steps: shaped.losses.len(),
         moved: shaped.moved.map(|way| 0.5 * way),
-        coverage_error: [mean(&shaped.losses[..few]), mean(&shaped.losses[shaped.losses.len() - few..])],
+        error: [mean(&shaped.losses[..few]), mean(&shaped.losses[shaped.losses.len() - few..])],
     })
+}
+
+/// Views of the high-poly for gradients through silhouettes: edges are told from each other by
+/// how much of a pixel they cover, so whole pixels are averaged, and none is shifted.
+pub(crate) fn smooth_references(
+    target: &Target,
+    views: usize,
+    size: usize,
+    samples: usize,
+    seed: u64,
+    watch: &impl Watch,
+) -> Vec<Reference> {
+    let pool: Vec<View> = (view_pool(views, &target.rig, seed).into_iter())
+        .map(|view| View { jitter: [0.0; 2], ..view })
+        .collect();
+    let sampling = Sampling { size, filter: 1.0, samples };
+    render_references(target.scene, &Lambert, &pool, &sampling, 1, watch)
+}
+
+/// Moves a mesh as its copy in the common frame has moved, its normals with it.
+pub(crate) fn move_vertices(mesh: &mut Mesh, placed: &Mesh, positions: &[Vec3], frame: &Placement) {
+    for ((written, before), after) in mesh.positions.iter_mut().zip(&placed.positions).zip(positions) {
+        *written += (*after - *before) / frame.scale;
+    }
+    mesh.normals = turned_normals(&placed.positions, positions, &mesh.normals, &mesh.triangles);
 }
 
 /// Tangent-space normals turned into world space, texel by texel.

@@ -128,11 +128,11 @@ mod tests {
         let (uv, direction) = (Vec2::new(0.4, 0.6), Vec3::new(0.48, -0.6, 0.64));
         let mut into = vec![0.0; 54];
         map.adjoint(uv, direction, 1.5, &mut into);
-        for k in 0..54 {
+        for (k, have) in into.into_iter().enumerate() {
             let mut moved = map.clone();
             moved.coefficients[k] += 1.0;
             let want = 1.5 * (moved.opacity(uv, direction) - map.opacity(uv, direction));
-            assert!((into[k] - want).abs() < 1e-4);
+            assert!((have - want).abs() < 1e-4);
         }
     }
 

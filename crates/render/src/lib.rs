@@ -12,7 +12,9 @@
 //! triangle's samples to light. `slopes.rs` and `scatter.rs` are the two halves of the
 //! texture's adjoint: towards the coordinates and towards the texels. `surface.rs` is
 //! what goes in. `scene.rs` renders whole models, forward only, with the textures of
-//! `scene_textures.rs`. `parallax_images.rs` takes parallax maps to 8-bit images and back.
+//! `scene_textures.rs`. `cutout.rs` is where a surface is not there, seen from the wrong side.
+//! `parallax_images.rs` and `cutout_images.rs` take maps to 8-bit images and back, by
+//! `channels.rs`.
 //!
 //! Stages are pure functions over plain data: no hidden state, so that a GPU
 //! backend can put a kernel in the place of each.
@@ -20,7 +22,9 @@
 pub mod antialias;
 pub mod background;
 pub mod camera;
+mod channels;
 pub mod cutout;
+mod cutout_images;
 pub mod display;
 pub mod display_table;
 pub mod edges;

@@ -79,6 +79,13 @@ impl ShParallax {
         }
     }
 
+    /// Zeros in this map's shape, depth included.
+    pub fn zeros_like(&self) -> Self {
+        let coefficients = vec![Vec2::ZERO; self.coefficients.len()];
+        let depth = self.depth.as_ref().map(|d| Level::zeros(d.width, d.height));
+        Self { coefficients, depth, ..*self }
+    }
+
     /// Where the coefficients of this coordinate lie.
     #[inline]
     pub fn taps(&self, uv: Vec2) -> Taps {
@@ -119,8 +126,8 @@ impl ShParallax {
         sum * (steepness * depth)
     }
 
-    /// The part of [`ShParallax::adjoint`] that goes to the coefficients alone: all that a fit
-    /// needs whose surface stands still.
+    /// The part of [`ShParallax::adjoint`] that goes to the maps: all that a fit needs whose
+    /// surface stands still.
     #[inline]
     pub fn adjoint_of_maps(&self, uv: Vec2, sight: &Sight, to_shift: Vec2, into: &mut Self) {
         let mut values = [0.0; MOST_FUNCTIONS];
@@ -128,6 +135,11 @@ impl ShParallax {
         let count = functions(self.order);
         let at = self.taps(uv);
         let Factors { steepness, depth } = self.factors(uv, sight);
+        if let (Some(map), Some(into)) = (&self.depth, &mut into.depth) {
+            let sum = (at.index.into_iter().zip(at.weights()))
+                .fold(Vec2::ZERO, |sum, (index, weight)| sum + self.at_texel(index, &values) * weight);
+            into.scatter(&taps(uv, map.width, map.height, self.wrap), &[sum.dot(to_shift) * steepness]);
+        }
         let to_sum = to_shift * (steepness * depth);
         for (index, weight) in at.index.into_iter().zip(at.weights()) {
             let start = index as usize * count;
@@ -138,9 +150,8 @@ impl ShParallax {
         }
     }
 
-    /// Adjoint of [`ShParallax::shift`]: adds to the maps' gradients (`into` has this map's
-    /// shape) and returns those of the rest.
-    pub fn adjoint(&self, uv: Vec2, sight: &Sight, to_shift: Vec2, into: &mut Self) -> ShiftGradient {
+    /// The part of [`ShParallax::adjoint`] that goes to the point and to the direction.
+    pub fn sight_adjoint(&self, uv: Vec2, sight: &Sight, to_shift: Vec2) -> ShiftGradient {
         let mut values = [0.0; MOST_FUNCTIONS];
         evaluate(self.order, sight.direction, &mut values);
         let count = functions(self.order);
@@ -153,10 +164,8 @@ impl ShParallax {
 
         let mut to_values = [0.0; MOST_FUNCTIONS];
         for (index, weight) in at.index.into_iter().zip(weights) {
-            let start = index as usize * count;
-            for k in 0..count {
-                to_values[k] += weight * self.coefficients[start + k].dot(to_sum);
-                into.coefficients[start + k] += to_sum * (weight * values[k]);
+            for (to, c) in to_values[..count].iter_mut().zip(self.texel(index)) {
+                *to += weight * c.dot(to_sum);
             }
         }
         let [a, b, c, d] = sums.map(|s| s.dot(to_sum));
@@ -165,19 +174,23 @@ impl ShParallax {
             ((c - a) * (1.0 - at.fx) + (d - b) * at.fx) * self.height as f32,
         );
         let along = sum.dot(to_shift);
-        if let (Some(map), Some(into)) = (&self.depth, &mut into.depth) {
+        if let Some(map) = &self.depth {
             let at = taps(uv, map.width, map.height, self.wrap);
-            let gradient = [along * steepness];
-            into.scatter(&at, &gradient);
-            to_uv += map.uv_adjoint(&at, &gradient);
+            to_uv += map.uv_adjoint(&at, &[along * steepness]);
         }
-        let steep = sight.cosine.abs() < self.limit;
         let to_cosine = -along * depth * steepness * steepness * sight.cosine.signum();
         ShiftGradient {
             uv: to_uv,
             direction: sh_adjoint(self.order, sight.direction, &to_values),
-            cosine: if steep { 0.0 } else { to_cosine },
+            cosine: if sight.cosine.abs() < self.limit { 0.0 } else { to_cosine },
         }
+    }
+
+    /// Adjoint of [`ShParallax::shift`]: adds to the maps' gradients (`into` has this map's
+    /// shape) and returns those of the rest.
+    pub fn adjoint(&self, uv: Vec2, sight: &Sight, to_shift: Vec2, into: &mut Self) -> ShiftGradient {
+        self.adjoint_of_maps(uv, sight, to_shift, into);
+        self.sight_adjoint(uv, sight, to_shift)
     }
 }
 

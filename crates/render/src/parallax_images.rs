@@ -1,14 +1,12 @@
 //! SH parallax maps to and from images of 8 bits a channel, as `docs/parallax_format.md`
 //! has them (and the packing in short: `parbake_model::ShParallaxMap`).
 //!
-//! Forward (pack): with a and b the least and the greatest value of a channel,
-//! `stored = round(255 (value − a) / (b − a))`, offset a, scale b − a; a channel of one
-//! value has scale 0 and stores 0. Back (unpack): `value = offset + scale · stored / 255`.
+//! Each function has two channels, u and v, stored as `channels.rs` does; the depth is the red
+//! channel of an image of its own, which spans its least to its greatest value, too.
 //!
-//! Contract: the rounding error is at most half a step, scale / 510, up to the precision of
-//! floats. Values are finite, and so is their span; where they are not, the map's own check
-//! refuses what comes of them.
+//! Contract: as of `channels.rs`.
 
+use crate::channels::{Span, listed, pack, spans, unpack};
 use crate::parallax::ShParallax;
 use crate::spherical_harmonics::{HIGHEST_ORDER, functions};
 use crate::texture::Level;
@@ -17,72 +15,25 @@ use parbake_model::{DepthMap, Image, ShParallaxMap};
 
 const _: () = assert!(HIGHEST_ORDER == ShParallaxMap::HIGHEST_ORDER);
 
-/// Least value and span of a channel.
-fn range(values: impl Iterator<Item = f32>) -> (f32, f32) {
-    let (low, high) =
-        values.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-    // A channel of one value, or of none.
-    if low >= high { (low, 0.0) } else { (low, high - low) }
-}
-
-fn stored(value: f32, offset: f32, scale: f32) -> u8 {
-    // The cast saturates, and makes NaN 0.
-    if scale > 0.0 { (255.0 * ((value - offset) / scale)).round() as u8 } else { 0 }
-}
-
-/// What each stored number of a channel stands for.
-fn values(offset: f32, scale: f32) -> [f32; 256] {
-    std::array::from_fn(|stored| offset + scale * (stored as f32 / 255.0))
-}
-
 impl ShParallax {
     /// Rounds to 8 bits: adds the images to these and returns the map that names them
-    /// there. It has no textures of its own yet. What a reader of the file sees is
-    /// [`ShParallax::unpack`] of the two.
+    /// there. It has no textures of its own yet, and no cutout. What a reader of the file sees
+    /// is [`ShParallax::unpack`] of the two.
     pub fn pack(&self, images: &mut Vec<Image>) -> ShParallaxMap {
         let (count, channels) = (functions(self.order), ShParallaxMap::channel_count(self.order));
-        let ranges: Vec<(f32, f32)> = (0..channels)
-            .map(|c| range(self.coefficients.iter().skip(c / 2).step_by(count).map(|&t| t[c % 2])))
-            .collect();
-        let first = images.len();
-        for i in 0..ShParallaxMap::image_count(self.order) {
-            let texel = |texel: &[Vec2]| {
-                let mut pixel = [0, 0, 0, 255];
-                for (c, (offset, scale)) in ranges.iter().enumerate().skip(3 * i).take(3) {
-                    pixel[c % 3] = stored(texel[c / 2][c % 2], *offset, *scale);
-                }
-                pixel
-            };
-            let pixels = self.coefficients.chunks_exact(count).map(texel).collect();
-            images.push(Image {
-                name: format!("parallax {i}"),
-                width: self.width,
-                height: self.height,
-                pixels,
-            });
-        }
-        let last = images.len();
+        let channel = |c: usize| self.coefficients.iter().skip(c / 2).step_by(count).map(move |t| t[c % 2]);
+        let packed: Vec<Span> = (0..channels).map(|c| Span::of(channel(c))).collect();
+        let value = |texel: usize, c: usize| self.coefficients[texel * count + c / 2][c % 2];
+        let places = pack(&packed, [self.width, self.height], |i| format!("parallax {i}"), images, value);
+        let [scale, offset] = listed(&packed);
         let depth = self.depth.as_ref().map(|map| {
-            let (offset, scale) = range(map.texels.iter().map(|t| t[0]));
-            let pixels = map.texels.iter().map(|t| [stored(t[0], offset, scale), 0, 0, 255]).collect();
-            images.push(Image {
-                name: "parallax depth".into(),
-                width: map.width,
-                height: map.height,
-                pixels,
-            });
-            DepthMap { image: last, scale, offset }
+            let span = Span::of(map.texels.iter().map(|t| t[0]));
+            let (size, name) = ([map.width, map.height], |_| "parallax depth".into());
+            let image = pack(&[span], size, name, images, |texel, _| map.texels[texel][0])[0];
+            DepthMap { image, scale: span.scale, offset: span.offset }
         });
-        ShParallaxMap {
-            order: self.order,
-            images: (first..last).collect(),
-            scale: ranges.iter().map(|r| r.1).collect(),
-            offset: ranges.iter().map(|r| r.0).collect(),
-            limit: self.limit,
-            depth,
-            wrap: self.wrap,
-            ..ShParallaxMap::default()
-        }
+        let (order, limit, wrap) = (self.order, self.limit, self.wrap);
+        ShParallaxMap { order, images: places, scale, offset, limit, depth, wrap, ..ShParallaxMap::default() }
     }
 
     /// The coefficients that a map's images hold; `None` where the map breaks its contract.
@@ -91,15 +42,12 @@ impl ShParallax {
         let first = &images[map.images[0]];
         let count = functions(map.order);
         let mut coefficients = vec![Vec2::ZERO; first.pixels.len() * count];
-        for (c, (offset, scale)) in map.offset.iter().zip(&map.scale).enumerate() {
-            let values = values(*offset, *scale);
-            let texels = coefficients.iter_mut().skip(c / 2).step_by(count);
-            for (to, pixel) in texels.zip(&images[map.images[c / 3]].pixels) {
-                to[c % 2] = values[pixel[c % 3] as usize];
-            }
-        }
-        let depth = map.depth.map(|depth| {
-            let (image, values) = (&images[depth.image], values(depth.offset, depth.scale));
+        let image = |i: usize| &images[map.images[i]];
+        unpack(spans(&map.scale, &map.offset), image, |texel, c, value| {
+            coefficients[texel * count + c / 2][c % 2] = value;
+        });
+        let depth = map.depth.map(|DepthMap { image, scale, offset }| {
+            let (image, values) = (&images[image], Span { offset, scale }.values());
             let texels = image.pixels.iter().map(|p| [values[p[0] as usize]]).collect();
             Level { width: image.width, height: image.height, texels }
         });
@@ -112,10 +60,11 @@ impl ShParallax {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cutout::ShCutout;
     use crate::parallax::Sight;
     use crate::spherical_harmonics::{MOST_FUNCTIONS, evaluate};
-    use parbake_model::Wrap;
     use parbake_model::glam::Vec3;
+    use parbake_model::{CutoutMap, Wrap};
 
     fn noise(i: usize) -> f32 {
         ((i * 37 + 11) % 101) as f32 / 50.0 - 1.0
@@ -213,6 +162,15 @@ mod tests {
         images.push(Image::solid("depth", 1, 1, [51, 0, 0, 255]));
         map.depth = Some(DepthMap { image: 3, scale: 2.0, offset: 0.1 });
         close(shift(&map, &images)[0], FACING * 0.5);
+        let image = |texels: [[u8; 3]; 2]| Image { width: 1, height: 2, ..image(texels) };
+        images.extend([image([[102, 204, 153], [51, 0, 204]]), image([[51, 0, 0], [102, 0, 0]])]);
+        let (scale, offset) = (vec![5.0, 2.0, 4.0, 3.0], vec![-1.0, -1.0, -2.0, -1.5]);
+        map.cutout = Some(CutoutMap { order: 1, images: vec![4, 5], scale, offset });
+        assert_eq!(map.check(&images), Ok(()));
+        let cutout = ShCutout::unpack(map.cutout.as_ref().unwrap(), map.wrap, &images).unwrap();
+        for (sight, opacity) in sights.into_iter().zip([0.309_127, -0.113_026]) {
+            assert!((cutout.opacity(uv, sight.direction) - opacity).abs() < 2e-6);
+        }
     }
 
     const FACING: Vec2 = Vec2::new(-0.083531, 0.065215);

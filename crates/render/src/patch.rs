@@ -1,6 +1,6 @@
 //! One triangle's samples: interpolation, frame, texture and shading in one go.
 //!
-//! Forward: `β → (uv, footprint, point, n, t) → (light, gram), colour, map normal →
+//! Forward: `β → (uv, footprint, point, n, t) → shift → (light, gram), colour, map normal →
 //! light`, by the stages of the other files. Adjoint: the same stages backwards, each
 //! sample computed anew: its texels are in the cache, a record of it would not be.
 //! What is linear in the corners' gradients is summed over a run of samples and leaves
@@ -11,10 +11,11 @@
 
 use crate::camera::{Camera, Projection};
 use crate::frame::{TangentLight, tangent_light, tangent_light_adjoint};
+use crate::parallax::{ShParallax, Sight};
 use crate::interpolate::{Barycentrics, barycentrics, footprint_adjoint, interpolate, planes_adjoint};
 use crate::raster::ScreenTriangle;
 use crate::scatter::Fetch;
-use crate::shade::Shading;
+use crate::shade::{ShadeGradient, Shading};
 use crate::slopes::Reach;
 use crate::surface::{Surface, Textures};
 use glam::DVec3;
@@ -51,7 +52,11 @@ pub struct CornerGradients {
 /// A sample's way as far as the shading.
 struct Sample {
     at: Barycentrics,
+    /// Before the shift.
     uv: Vec2,
+    /// Where textures are fetched.
+    fetched: Vec2,
+    sight: Sight,
     per_x: Vec2,
     per_y: Vec2,
     to_light: Vec3,
@@ -64,6 +69,21 @@ struct Sample {
     reaches: [Reach; 2],
 }
 
+/// One use of a parallax map, and the gradient of the shift that it gave.
+#[derive(Clone, Copy, Debug)]
+pub struct ShiftUse {
+    uv: Vec2,
+    sight: Sight,
+    to_shift: Vec2,
+}
+
+impl ShiftUse {
+    /// Adds to the gradient of the map that it was a use of.
+    pub fn scatter(&self, map: &ShParallax, into: &mut ShParallax) {
+        map.adjoint_of_maps(self.uv, &self.sight, self.to_shift, into);
+    }
+}
+
 /// Where one sample fetched, and the gradients of what it got: colour, then normal.
 #[derive(Clone, Copy, Debug)]
 pub struct SampleTexels {
@@ -72,6 +92,8 @@ pub struct SampleTexels {
     pub fetches: [Fetch; 2],
     /// Of the fetched colour and the fetched normal.
     pub gradients: [[f32; 3]; 2],
+    /// Of the shift, where there is a parallax map.
+    pub shift: Option<ShiftUse>,
 }
 
 impl<'a> Patch<'a> {
@@ -120,16 +142,24 @@ impl<'a> Patch<'a> {
             Projection::Orthographic(_) => (self.camera.back, 1.0),
         };
         let (uv, per_x, per_y) = (along(at.weights), along(at.per_x), along(at.per_y));
-        let Textures { color, normal: map, .. } = self.textures;
+        let Textures { color, normal: map, parallax, .. } = self.textures;
+        let mut sight = Sight { direction: to_light, cosine: 1.0 };
+        let mut fetched = uv;
+        if let Some(parallax) = parallax {
+            sight.cosine = normal.normalize_or_zero().dot(to_light);
+            fetched += parallax.shift(uv, &sight);
+        }
         let mut lods = [color.lod(per_x, per_y); 2];
-        let mut reaches = [color.reach(uv, lods[0]); 2];
+        let mut reaches = [color.reach(fetched, lods[0]); 2];
         if let (Some(map), false) = (map, self.textures.shared) {
             lods[1] = map.lod(per_x, per_y);
-            reaches[1] = map.reach(uv, lods[1]);
+            reaches[1] = map.reach(fetched, lods[1]);
         }
         Sample {
             at,
             uv,
+            fetched,
+            sight,
             per_x,
             per_y,
             lods,
@@ -168,14 +198,17 @@ impl<'a> Patch<'a> {
         corners: Option<&mut CornerGradients>,
     ) -> SampleTexels {
         let s = self.sample(x, y);
-        let texels = |color: Vec3, normal: Vec3| SampleTexels {
-            fetches: s.lods.map(|lod| Fetch { uv: s.uv, lod }),
+        let texels = |color: Vec3, normal: Vec3, shift| SampleTexels {
+            fetches: s.lods.map(|lod| Fetch { uv: s.fetched, lod }),
             gradients: [color.to_array(), normal.to_array()],
+            shift,
         };
+        let used = |to_shift| ShiftUse { uv: s.uv, sight: s.sight, to_shift };
         let Some(corners) = corners else {
             let (color, map_normal) = self.fetch(&s);
             let shade = shading.adjoint(&s.light, color, map_normal, gradient);
-            return texels(shade.color, shade.map_normal);
+            let to_shift = self.textures.parallax.map(|_| used(self.to_coordinate(&s, &shade)));
+            return texels(shade.color, shade.map_normal, to_shift);
         };
         let color = self.textures.color.slopes_at(&s.reaches[0]);
         let mapped = self.textures.normal.map(|map| (map, map.slopes_at(&s.reaches[1])));
@@ -189,7 +222,7 @@ impl<'a> Patch<'a> {
             let (x, y) = map.lod_adjoint(s.per_x, s.per_y, to_lod);
             (to_uv, to_x, to_y) = (to_uv + uv, to_x + x, to_y + y);
         }
-        let (to_normal, to_tangent, to_direction) = tangent_light_adjoint(
+        let (mut to_normal, to_tangent, mut to_direction) = tangent_light_adjoint(
             s.normal,
             s.tangent,
             self.handedness,
@@ -197,6 +230,16 @@ impl<'a> Patch<'a> {
             self.facing,
             &shade.surface,
         );
+        let to_shift = self.textures.parallax.map(|parallax| {
+            let used = used(to_uv);
+            let shift = parallax.sight_adjoint(s.uv, &s.sight, to_uv);
+            to_uv += shift.uv;
+            let unit = s.normal.normalize_or_zero();
+            let across = s.to_light - unit * s.sight.cosine;
+            to_normal += across * (shift.cosine / s.normal.length().max(1e-20));
+            to_direction += shift.direction + unit * shift.cosine;
+            used
+        });
         let to_point = match self.camera.projection {
             // d = (eye − p) / |eye − p|: what is along d does not turn it.
             Projection::Perspective(_) => {
@@ -222,7 +265,16 @@ impl<'a> Patch<'a> {
         for (sum, plane) in corners.planes.iter_mut().zip(planes) {
             *sum += plane;
         }
-        texels(shade.color, shade.map_normal)
+        texels(shade.color, shade.map_normal, to_shift)
+    }
+
+    /// The gradient of the coordinate that is fetched at, levels of detail held.
+    fn to_coordinate(&self, s: &Sample, shade: &ShadeGradient) -> Vec2 {
+        let of_color = self.textures.color.slopes_at(&s.reaches[0]).adjoint(&shade.color.to_array()).0;
+        let of_normal = self.textures.normal.map_or(Vec2::ZERO, |map| {
+            map.slopes_at(&s.reaches[1]).adjoint(&shade.map_normal.to_array()).0
+        });
+        of_color + of_normal
     }
 
     /// Ends a run of samples of an image `size` pixels wide: what moved on the screen

@@ -13,7 +13,8 @@ use crate::antialias::{BlendTape, Blends, find_blends};
 use crate::background::Composer;
 use crate::camera::Camera;
 use crate::loss::{Comparison, LossValue, Reference, compare};
-use crate::patch::{CornerGradients, Patch};
+use crate::parallax::ShParallax;
+use crate::patch::{CornerGradients, Patch, ShiftUse};
 use crate::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 use crate::scatter::{Fetch, Scatter};
 use crate::shade::Shading;
@@ -60,6 +61,8 @@ pub struct Gradients {
     pub color: Pyramid<3>,
     /// Of the normal texels, on all levels.
     pub normal: Option<Pyramid<3>>,
+    /// Of the parallax map's coefficients and depth.
+    pub parallax: Option<ShParallax>,
     /// V positions' (empty if not asked for, as all that follow).
     pub positions: Vec<Vec3>,
     /// V normals'.
@@ -78,11 +81,50 @@ impl Gradients {
         Self {
             color: textures.color.zeros_like(),
             normal: textures.normal.map(Pyramid::zeros_like),
+            parallax: textures.parallax.map(ShParallax::zeros_like),
             positions: vec![Vec3::ZERO; count],
             normals: vec![Vec3::ZERO; count],
             tangents: vec![Vec3::ZERO; count],
             uvs: vec![Vec2::ZERO; count],
         }
+    }
+}
+
+fn add_pyramids(sum: &mut Pyramid<3>, more: &Pyramid<3>) {
+    for (sum, more) in sum.levels.iter_mut().zip(&more.levels) {
+        for (sum, more) in sum.texels.iter_mut().zip(&more.texels) {
+            for (sum, more) in sum.iter_mut().zip(more) {
+                *sum += more;
+            }
+        }
+    }
+}
+
+fn add_all<T: Copy + std::ops::AddAssign>(sum: &mut [T], more: &[T]) {
+    for (sum, more) in sum.iter_mut().zip(more) {
+        *sum += *more;
+    }
+}
+
+impl Gradients {
+    /// Adds those of another view of the same surface.
+    pub fn add(&mut self, more: &Self) {
+        add_pyramids(&mut self.color, &more.color);
+        if let (Some(sum), Some(more)) = (&mut self.normal, &more.normal) {
+            add_pyramids(sum, more);
+        }
+        if let (Some(sum), Some(more)) = (&mut self.parallax, &more.parallax) {
+            add_all(&mut sum.coefficients, &more.coefficients);
+            if let (Some(sum), Some(more)) = (&mut sum.depth, &more.depth) {
+                for (sum, more) in sum.texels.iter_mut().zip(&more.texels) {
+                    sum[0] += more[0];
+                }
+            }
+        }
+        add_all(&mut self.positions, &more.positions);
+        add_all(&mut self.normals, &more.normals);
+        add_all(&mut self.tangents, &more.tangents);
+        add_all(&mut self.uvs, &more.uvs);
     }
 }
 
@@ -131,6 +173,7 @@ const BAND: usize = 8;
 struct Band {
     fetches: [Vec<Fetch>; 2],
     texels: [Vec<[f32; 3]>; 2],
+    shifts: Vec<ShiftUse>,
     corners: Vec<(u32, CornerGradients)>,
 }
 
@@ -166,6 +209,7 @@ pub fn adjoint(
                         let (at, to_light) = ((column as f64 + 0.5, y), Vec3::new(r, g, b));
                         let sink = vertices.then_some(&mut corners);
                         let texels = patch.adjoint(shading, at, to_light, sink);
+                        band.shifts.extend(texels.shift);
                         for k in 0..count {
                             band.texels[k].push(texels.gradients[k]);
                         }
@@ -193,6 +237,9 @@ pub fn adjoint(
         } else {
             Scatter::new(map, fetches(1)).add(&texels(1), into);
         }
+    }
+    if let (Some(map), Some(into)) = (textures.parallax, &mut into.parallax) {
+        bands.iter().flat_map(|band| &band.shifts).for_each(|shift| shift.scatter(map, into));
     }
     if !vertices {
         return;

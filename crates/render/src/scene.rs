@@ -2,13 +2,15 @@
 //! a high-poly and the pictures of an evaluation go through here.
 //!
 //! Forward: for each sample `raster → interpolate → frame → parallax → texture → shade`,
-//! as in the other files of this room; samples of a pixel are averaged.
+//! as in the other files of this room; samples of a pixel are averaged. Where a material has
+//! a cutout, what that leaves out is looked through (`cutout.rs`).
 //!
 //! Contract: pictures are linear light, premultiplied, with coverage in the fourth
 //! channel; gain and display curve come later (`display.rs`). Pixels are
 //! independent, so the picture does not depend on the number of threads.
 
 use crate::camera::Camera;
+use crate::cutout::rasterise_cut;
 use crate::display::encode_srgb;
 use crate::frame::tangent_light;
 use crate::interpolate::{barycentrics, interpolate};
@@ -30,8 +32,8 @@ pub struct Interpretation {
     pub decode_srgb: bool,
     /// Fetch through mip levels; off: bilinear on the finest level.
     pub trilinear: bool,
-    /// Shift texture coordinates where a material has a parallax map; off: as viewers see
-    /// the model that know no such maps.
+    /// Shift texture coordinates where a material has a parallax map, and leave out what its
+    /// cutout does; off: as viewers see the model that know no such maps.
     pub parallax: bool,
 }
 
@@ -94,7 +96,7 @@ impl Scene {
     /// Albedo and unit normal of a point on the surface, textures included.
     ///
     /// `width` is how wide an area to average over, in the mesh's unit. No one looks from
-    /// anywhere, so parallax maps have no say.
+    /// anywhere, so parallax maps and cutouts have no say.
     pub fn look(&self, triangle: usize, weights: [f32; 3], width: f32) -> (Vec3, Vec3) {
         let mesh = &self.mesh;
         let corners = mesh.triangles[triangle].map(|i| i as usize);
@@ -189,6 +191,26 @@ impl Scene {
         shading.forward(&tangent_light(normal, tangent, handedness, to_viewer, facing), color, map_normal)
     }
 
+    /// What is seen at each sample, through all that is cut out.
+    fn see(&self, camera: &Camera, screen: &ScreenTriangles, size: usize) -> Visibility {
+        let mut seen = Visibility::default();
+        // Asking every sample takes time, so it is done only where the answer matters.
+        if self.surfaces.iter().filter_map(|s| s.shifted.as_ref()).all(|s| s.cutout.is_none()) {
+            rasterise(screen, size, (0.0, 0.0), &mut seen);
+            return seen;
+        }
+        rasterise_cut(screen, size, (0.0, 0.0), &mut seen, |triangle, (x, y)| {
+            let mesh = &self.mesh;
+            let surface = &self.surfaces[mesh.triangle_materials[triangle] as usize];
+            let Some(shifted) = &surface.shifted else { return true };
+            let weights = barycentrics(&screen.triangles[triangle], x, y).weights;
+            let corners = mesh.triangles[triangle].map(|i| i as usize);
+            let point = interpolate(corners.map(|i| mesh.positions[i]), weights);
+            shifted.is_opaque(mesh, corners, weights, camera.view_direction(point))
+        });
+        seen
+    }
+
     /// The whole view, each pixel the mean of `supersample`² samples.
     pub fn render(
         &self,
@@ -199,8 +221,7 @@ impl Scene {
     ) -> Picture {
         let fine = size * supersample;
         let screen = self.on_screen(camera, fine);
-        let mut seen = Visibility::default();
-        rasterise(&screen, fine, (0.0, 0.0), &mut seen);
+        let seen = self.see(camera, &screen, fine);
         let mut rgba = vec![[0.0; 4]; size * size];
         let share = 1.0 / (supersample * supersample) as f32;
         rgba.par_chunks_mut(size).enumerate().for_each(|(row, pixels)| {
@@ -228,3 +249,7 @@ impl Scene {
 #[cfg(test)]
 #[path = "scene_parallax_tests.rs"]
 mod parallax_tests;
+
+#[cfg(test)]
+#[path = "scene_cutout_tests.rs"]
+mod cutout_tests;

@@ -1,9 +1,11 @@
 //! A scene's materials, ready to be fetched from: every image unpacked once for each
-//! meaning and wrap mode that it is used with, and parallax maps with their coefficients.
+//! meaning and wrap mode that it is used with, and parallax maps and cutouts with their
+//! coefficients.
 //!
 //! Contract: one interpretation goes for all of them; parallax maps that it leaves out, or
 //! that break their contract, are not there.
 
+use crate::cutout::ShCutout;
 use crate::display::{decode_srgb, encode_srgb};
 use crate::interpolate::interpolate;
 use crate::parallax::{ShParallax, Sight};
@@ -36,21 +38,31 @@ pub(crate) struct Textures {
     pub normal: Option<Map>,
 }
 
-/// A look whose coordinates shift, and by what.
+/// A look whose coordinates shift, by what, and what is left out of it.
 pub(crate) struct Shifted {
     pub textures: Textures,
     pub parallax: ShParallax,
+    pub cutout: Option<ShCutout>,
 }
 
 impl Shifted {
-    /// How far coordinates move at a point of a triangle, seen from there: the maps are
-    /// fetched at the base colour's coordinate, or at the normal's where there is no colour.
-    pub fn at(&self, mesh: &Mesh, corners: [usize; 3], weights: [f32; 3], sight: &Sight) -> Vec2 {
+    /// Where the maps are fetched at a point of a triangle: at the base colour's coordinate,
+    /// or at the normal's where there is no colour.
+    fn anchor(&self, mesh: &Mesh, corners: [usize; 3], weights: [f32; 3]) -> Option<Vec2> {
         let Textures { color, normal } = &self.textures;
-        let anchor = color.as_ref().or(normal.as_ref());
-        anchor.map_or(Vec2::ZERO, |map| {
-            self.parallax.shift(interpolate(map.uvs(mesh, corners), weights), sight)
-        })
+        let map = color.as_ref().or(normal.as_ref())?;
+        Some(interpolate(map.uvs(mesh, corners), weights))
+    }
+
+    /// How far coordinates move at a point of a triangle, seen from there.
+    pub fn at(&self, mesh: &Mesh, corners: [usize; 3], weights: [f32; 3], sight: &Sight) -> Vec2 {
+        self.anchor(mesh, corners, weights).map_or(Vec2::ZERO, |uv| self.parallax.shift(uv, sight))
+    }
+
+    /// Whether a point of a triangle is there, seen along this direction to the viewer.
+    pub fn is_opaque(&self, mesh: &Mesh, corners: [usize; 3], weights: [f32; 3], direction: Vec3) -> bool {
+        let Some(cutout) = &self.cutout else { return true };
+        self.anchor(mesh, corners, weights).is_none_or(|uv| cutout.opacity(uv, direction) >= 0.0)
     }
 }
 
@@ -114,9 +126,10 @@ impl<'a> Builder<'a> {
     fn shifted(&mut self, material: &Material, plain: [Option<TextureSlot>; 2]) -> Option<Shifted> {
         let map = material.parallax.as_ref().filter(|_| self.interpretation.parallax)?;
         let parallax = ShParallax::unpack(map, self.images)?;
+        let cutout = map.cutout.as_ref().and_then(|c| ShCutout::unpack(c, map.wrap, self.images));
         let own = [map.base_color_texture, map.normal_texture];
         let textures = self.textures([own[0].or(plain[0]), own[1].or(plain[1])]);
-        Some(Shifted { textures, parallax })
+        Some(Shifted { textures, parallax, cutout })
     }
 
     fn textures(&mut self, [color, normal]: [Option<TextureSlot>; 2]) -> Textures {

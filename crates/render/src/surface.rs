@@ -4,6 +4,7 @@
 //! Contract: one entry a vertex in each slice that is not empty; finite numbers.
 
 use crate::edges::EdgeAdjacency;
+use crate::parallax::ShParallax;
 use crate::texture::Pyramid;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 
@@ -31,6 +32,8 @@ pub struct Textures<'a> {
     pub color: &'a Pyramid<3>,
     /// Tangent-space normals, not normalised.
     pub normal: Option<&'a Pyramid<3>>,
+    /// How coordinates shift before both are fetched.
+    pub parallax: Option<&'a ShParallax>,
     /// Both have the same sizes and wrap modes: most of the work on fetches is done once.
     pub(crate) shared: bool,
 }
@@ -38,6 +41,11 @@ pub struct Textures<'a> {
 impl<'a> Textures<'a> {
     /// A colour texture and perhaps a normal texture, of any sizes.
     pub fn new(color: &'a Pyramid<3>, normal: Option<&'a Pyramid<3>>) -> Self {
-        Self { color, normal, shared: normal.is_some_and(|map| map.same_shape(color)) }
+        Self { color, normal, parallax: None, shared: normal.is_some_and(|map| map.same_shape(color)) }
+    }
+
+    /// The same behind a parallax map.
+    pub fn with_parallax(self, parallax: Option<&'a ShParallax>) -> Self {
+        Self { parallax, ..self }
     }
 }

@@ -13,6 +13,7 @@ use parbake_render::camera::{Camera, Projection};
 use parbake_render::display::{Curve, Display};
 use parbake_render::edges::EdgeAdjacency;
 use parbake_render::loss::{Comparison, ImageLoss, Reference};
+use parbake_render::parallax::ShParallax;
 use parbake_render::pipeline::{Gradients, Tape, View, adjoint, forward};
 use parbake_render::shade::{Lambert, Unlit};
 use parbake_render::surface::{Surface, Textures};
@@ -54,6 +55,7 @@ struct Scene {
     comparison: Comparison,
     antialias: bool,
     lit: bool,
+    parallax: Option<ShParallax>,
 }
 
 /// A lumpy torus with one texture seam each way. Odd seeds are turned inside out:
@@ -94,6 +96,7 @@ fn scene(seed: u64, size: usize) -> Scene {
         comparison: Comparison { image: ImageLoss::L2, coverage: 0.7, overhang_discount: 0.6 },
         antialias: true,
         lit: true,
+        parallax: None,
     };
     let facing = if inside_out { -1.0 } else { 1.0 };
     for i in 0..=around {
@@ -162,7 +165,7 @@ impl Scene {
             triangles: &self.triangles,
             edges: &self.edges,
         };
-        let textures = Textures::new(&color, self.lit.then_some(&normal));
+        let textures = Textures::new(&color, self.lit.then_some(&normal)).with_parallax(self.parallax.as_ref());
         let display = Display { gain: 0.95, curve: Curve::Srgb };
         let composer = Composer::new(self.background.for_view(3), display, self.size);
         let reference = Reference::new(&self.reference, self.size, &composer);
@@ -291,6 +294,33 @@ fn check_all(scene: &Scene, name: &str) {
 fn whole_view_trilinear() {
     for seed in 0..4 {
         check_all(&scene(seed, 48), &format!("seed {seed}"));
+    }
+}
+
+/// Protects the gradients through shifted fetches, and those of what shifts them: maps,
+/// direction and cosine.
+#[test]
+fn whole_view_with_parallax() {
+    for seed in 0..4 {
+        let mut random = Random(seed + 400);
+        let mut map = ShParallax { wrap: [Wrap::Repeat; 2], ..ShParallax::zeros(2, 6) };
+        let mut shift = || Vec2::new(random.signed(), random.signed()) * 0.02;
+        map.coefficients.iter_mut().for_each(|c| *c = shift());
+        let texels = (0..25).map(|i| [0.5 + (i % 7) as f32 * 0.2]).collect();
+        map.depth = (seed % 2 == 0).then_some(Level { width: 5, height: 5, texels });
+        let s = Scene { parallax: Some(map), ..scene(seed, 48) };
+        check_all(&s, &format!("seed {seed}"));
+        let maps = s.run(true).1.unwrap().parallax.unwrap();
+        let to_map: Vec<f32> = maps.coefficients.iter().flat_map(|c| c.to_array()).collect();
+        check(&format!("seed {seed} coefficients"), &s, &to_map, 4e-4, |s, i, h| {
+            nudge_by(&mut s.parallax.as_mut().unwrap().coefficients[i / 2][i % 2], h)
+        });
+        if let Some(depth) = maps.depth {
+            let to_depth: Vec<f32> = depth.texels.iter().map(|t| t[0]).collect();
+            check(&format!("seed {seed} depth"), &s, &to_depth, 1e-2, |s, i, h| {
+                nudge_by(&mut s.parallax.as_mut().unwrap().depth.as_mut().unwrap().texels[i][0], h)
+            });
+        }
     }
 }
 

@@ -16,7 +16,9 @@
 //! the number of threads.
 
 use crate::guard::Guard;
+use crate::laplacian::Laplacian;
 use crate::points::{Motion, Points};
+use crate::views::Views;
 use glam::{Vec3, Vec4};
 use parbake_adam::{Adam, AdamOptions};
 use parbake_fit::canvas::Canvas;
@@ -24,15 +26,12 @@ use parbake_fit::reference::Reference as Rendered;
 use parbake_fit::views::mixed;
 use parbake_fit::watch::{Stage, Watch};
 use parbake_model::Mesh;
-use parbake_render::background::{Background, Composer};
+use parbake_render::background::Background;
 use parbake_render::display::Display;
 use parbake_render::edges::EdgeAdjacency;
-use parbake_render::loss::{Comparison, ImageLoss, LossValue, Reference};
-use parbake_render::pipeline::{Gradients, Tape, View, adjoint, forward};
-use parbake_render::shade::Lambert;
+use parbake_render::loss::{Comparison, ImageLoss, LossValue};
 use parbake_render::surface::{Surface, Textures};
 use parbake_render::texture::{Level, Pyramid};
-use rayon::prelude::*;
 
 /// How the shape is fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +54,8 @@ pub struct ShapeOptions {
     pub overhang_discount: f32,
     /// Weight of the squared displacement (λ_ΔV), a mean over points.
     pub displacement: f32,
+    /// Weight of the Laplacian term (`laplacian.rs`); 0 leaves it out.
+    pub laplacian: f32,
     /// What is behind the model.
     pub background: Background,
     /// Chooses views' order and backgrounds.
@@ -72,6 +73,7 @@ impl Default for ShapeOptions {
             coverage: 1.0,
             overhang_discount: 0.0,
             displacement: 0.0,
+            laplacian: 0.0,
             background: Background::Random,
             seed: 0,
         }
@@ -105,7 +107,7 @@ pub struct Shaped {
 /// Share of the steps that go at the full rate; then it falls as a cosine does.
 const FULL_RATE: f32 = 0.3;
 
-fn rate_at(step: usize, steps: usize) -> f32 {
+pub(crate) fn rate_at(step: usize, steps: usize) -> f32 {
     let t = step as f32 / steps.max(1) as f32;
     if t < FULL_RATE {
         return 1.0;
@@ -114,86 +116,12 @@ fn rate_at(step: usize, steps: usize) -> f32 {
     0.002 + 0.998 * 0.5 * (1.0 + (std::f32::consts::PI * t).cos())
 }
 
-/// What stays through a fit.
-struct Problem<'a> {
-    mesh: &'a Mesh,
-    edges: EdgeAdjacency,
-    /// The identity's columns, for every vertex.
-    normals: Vec<Vec3>,
-    tangents: Vec<Vec4>,
-    references: &'a [Rendered],
-    size: usize,
-    display: Display,
-    comparison: Comparison,
-    background: Background,
-}
-
-fn pyramid(canvas: &Canvas) -> Pyramid<3> {
+pub(crate) fn pyramid(canvas: &Canvas) -> Pyramid<3> {
     let texels = canvas.texels.iter().map(|t| [t.x, t.y, t.z]).collect();
     Pyramid::single(Level { width: canvas.size, height: canvas.size, texels })
 }
 
-impl Problem<'_> {
-    /// Loss and gradients of some views, added up in their order.
-    fn look(&self, positions: &[Vec3], texture: &Provisional, views: &[(usize, u64)]) -> (LossValue, Gradients) {
-        let (color, normal) = (pyramid(&texture.color), pyramid(&texture.normal));
-        let textures = Textures::new(&color, Some(&normal));
-        let surface = Surface {
-            positions,
-            normals: &self.normals,
-            tangents: &self.tangents,
-            uvs: &self.mesh.uvs,
-            triangles: &self.mesh.triangles,
-            edges: &self.edges,
-        };
-        let each: Vec<(LossValue, Gradients)> = views
-            .par_iter()
-            .map(|&(index, seed)| {
-                let rendered = &self.references[index];
-                let composer = Composer::new(self.background.for_view(seed), self.display, self.size);
-                let rgba: Vec<[f32; 4]> = rendered.pixels.iter().map(|p| p.map(f32::from)).collect();
-                let reference = Reference::new(&rgba, self.size, &composer);
-                let view = View {
-                    camera: &rendered.view.camera,
-                    reference: &reference,
-                    composer: &composer,
-                    comparison: self.comparison,
-                    antialias: true,
-                };
-                let tape: Tape = forward(&surface, &textures, &Lambert, &view);
-                let mut gradients = Gradients::zeros(&surface, &textures, true);
-                adjoint(&surface, &textures, &Lambert, &view, &tape, &mut gradients);
-                (tape.loss, gradients)
-            })
-            .collect();
-        let mut sum = Gradients::zeros(&surface, &textures, true);
-        let mut loss = LossValue::default();
-        for (value, gradients) in each {
-            loss.image += value.image / views.len() as f64;
-            loss.coverage += value.coverage / views.len() as f64;
-            add(&mut sum.color, &gradients.color);
-            if let (Some(sum), Some(normal)) = (&mut sum.normal, &gradients.normal) {
-                add(sum, normal);
-            }
-            for (sum, position) in sum.positions.iter_mut().zip(gradients.positions) {
-                *sum += position;
-            }
-        }
-        (loss, sum)
-    }
-}
-
-fn add(sum: &mut Pyramid<3>, more: &Pyramid<3>) {
-    for (sum, more) in sum.levels.iter_mut().zip(&more.levels) {
-        for (sum, more) in sum.texels.iter_mut().zip(&more.texels) {
-            for k in 0..3 {
-                sum[k] += more[k];
-            }
-        }
-    }
-}
-
-fn lanes(level: Option<&Level<3>>) -> Vec<Vec4> {
+pub(crate) fn lanes(level: Option<&Level<3>>) -> Vec<Vec4> {
     level.map(|l| l.texels.iter().map(|&[x, y, z]| Vec4::new(x, y, z, 0.0)).collect()).unwrap_or_default()
 }
 
@@ -210,11 +138,12 @@ pub fn fit_shape(
 ) -> Shaped {
     let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
     let guard = Guard::new(&points.home, &points.triangles);
-    let problem = Problem {
-        mesh,
-        edges: EdgeAdjacency::new(&mesh.positions, &mesh.triangles),
-        normals: vec![Vec3::Z; mesh.positions.len()],
-        tangents: vec![Vec4::new(1.0, 0.0, 0.0, 1.0); mesh.positions.len()],
+    let laplacian = Laplacian::new(points.home.len(), &points.triangles);
+    let edges = EdgeAdjacency::new(&mesh.positions, &mesh.triangles);
+    // The identity's columns, for every vertex.
+    let normals = vec![Vec3::Z; mesh.positions.len()];
+    let tangents = vec![Vec4::new(1.0, 0.0, 0.0, 1.0); mesh.positions.len()];
+    let looker = Views {
         references,
         size,
         display,
@@ -247,7 +176,18 @@ pub fn fit_shape(
                 (counter % references.len(), mixed(options.seed ^ mixed(counter as u64)))
             })
             .collect();
-        let (loss, gradients) = problem.look(&points.vertices(&at), &texture, &views);
+        let positions = points.vertices(&at);
+        let surface = Surface {
+            positions: &positions,
+            normals: &normals,
+            tangents: &tangents,
+            uvs: &mesh.uvs,
+            triangles: &mesh.triangles,
+            edges: &edges,
+        };
+        let (color, normal) = (pyramid(&texture.color), pyramid(&texture.normal));
+        let judged = looker.look(&surface, &Textures::new(&color, Some(&normal)), &views);
+        let (loss, gradients) = (judged.loss, judged.gradients);
         losses.push(loss);
         let share = rate_at(step, options.steps);
 
@@ -255,6 +195,14 @@ pub fn fit_shape(
         let pull = 2.0 * options.displacement * views.len() as f32 / values.len().max(1) as f32;
         for (gradient, value) in to_values.iter_mut().zip(&values) {
             *gradient += *value * pull;
+        }
+        if options.laplacian > 0.0 {
+            let way: Vec<Vec3> = at.iter().zip(&points.home).map(|(a, h)| *a - *h).collect();
+            let (_, smooth) = laplacian.energy(&way);
+            let share = options.laplacian * views.len() as f32;
+            for (gradient, smooth) in to_values.iter_mut().zip(points.lanes(options.motion, &smooth)) {
+                *gradient += smooth * share;
+            }
         }
         adam_points.step(&mut values, &to_values, share);
         let mut next = points.displaced(options.motion, &values);

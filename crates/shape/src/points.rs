@@ -66,11 +66,8 @@ impl Points {
 
     /// The values that bring the points there, as far as the motion can.
     pub fn values(&self, motion: Motion, points: &[Vec3]) -> Vec<Vec4> {
-        let value = |i: usize, way: Vec3| match motion {
-            Motion::Normal => Vec4::new(way.dot(self.normals[i]), 0.0, 0.0, 0.0),
-            Motion::Free => way.extend(0.0),
-        };
-        points.iter().enumerate().map(|(i, &point)| value(i, point - self.home[i])).collect()
+        let ways: Vec<Vec3> = points.iter().zip(&self.home).map(|(point, home)| *point - *home).collect();
+        self.lanes(motion, &ways)
     }
 
     /// Adjoint of [`Points::displaced`] and [`Points::vertices`] together.
@@ -79,11 +76,16 @@ impl Points {
         for (&point, gradient) in self.of_vertex.iter().zip(to_vertices) {
             to_points[point as usize] += *gradient;
         }
+        self.lanes(motion, &to_points)
+    }
+
+    /// Adjoint of [`Points::displaced`] alone.
+    pub fn lanes(&self, motion: Motion, to_points: &[Vec3]) -> Vec<Vec4> {
         let lanes = |i: usize, g: Vec3| match motion {
             Motion::Normal => Vec4::new(g.dot(self.normals[i]), 0.0, 0.0, 0.0),
             Motion::Free => g.extend(0.0),
         };
-        to_points.into_iter().enumerate().map(|(i, g)| lanes(i, g)).collect()
+        to_points.iter().enumerate().map(|(i, &g)| lanes(i, g)).collect()
     }
 
     /// Each vertex's position.

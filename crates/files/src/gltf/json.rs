@@ -249,8 +249,20 @@ pub(super) struct ParallaxSh {
     pub depth_texture: Option<TextureInfo>,
     pub depth_scale: Option<f32>,
     pub depth_offset: Option<f32>,
+    pub cutout: Option<CutoutSh>,
     pub base_color_texture: Option<TextureInfo>,
     pub normal_texture: Option<TextureInfo>,
+}
+
+/// The cutout in a parallax map.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct CutoutSh {
+    #[serde(deserialize_with = "optional_integer")]
+    pub order: Option<usize>,
+    pub coefficient_textures: Vec<TextureInfo>,
+    pub scale: Vec<f32>,
+    pub offset: Vec<f32>,
 }
 
 #[derive(Debug, Default, Deserialize)]

@@ -1,4 +1,4 @@
-//! SH parallax maps in: the material extension `PARBAKE_materials_parallax_sh`, as
+//! SH parallax maps and their cutouts in: the material extension `PARBAKE_materials_parallax_sh`, as
 //! `docs/parallax_format.md` has it.
 //!
 //! Contract: a model looks right without its parallax maps. So a map that breaks the format
@@ -6,12 +6,12 @@
 //! wrong types and pictures that cannot be decoded are errors, as everywhere in a document.
 
 use super::buffers::pointer;
-use super::json::{ParallaxSh, TextureInfo};
+use super::json::{CutoutSh, ParallaxSh, TextureInfo};
 use super::materials::Reader;
 use crate::FileError;
 use crate::context::{Context, Textures};
 use parbake_model::glam::DMat3;
-use parbake_model::{DepthMap, Image, Material, ShParallaxMap, TextureSlot, Wrap};
+use parbake_model::{CutoutMap, DepthMap, Image, Material, ShParallaxMap, TextureSlot, Wrap};
 
 /// The extension's name in a document.
 pub(super) const NAME: &str = "PARBAKE_materials_parallax_sh";
@@ -60,6 +60,7 @@ fn map(reader: &mut Reader<'_, '_>, json: &ParallaxSh, here: &str) -> Result<ShP
         offset: json.offset.clone(),
         limit: json.limit.unwrap_or(default.limit),
         depth,
+        cutout: json.cutout.as_ref().map(|json| cutout(json, refuse)).transpose()?,
         ..default
     };
     // Before any picture is asked for: there may be a million of them.
@@ -78,6 +79,11 @@ fn map(reader: &mut Reader<'_, '_>, json: &ParallaxSh, here: &str) -> Result<ShP
     if let (Some(depth), Some(info)) = (&mut map.depth, &json.depth_texture) {
         depth.image = image(reader, info, "depthTexture".into())?;
     }
+    if let (Some(cutout), Some(json)) = (&mut map.cutout, &json.cutout) {
+        for (i, info) in json.coefficient_textures.iter().enumerate() {
+            cutout.images[i] = image(reader, info, format!("cutout/coefficientTextures/{i}"))?;
+        }
+    }
     map.wrap = wrap.unwrap_or(map.wrap);
     let mut own = |info: &Option<TextureInfo>, name: &str| {
         info.as_ref().map(|info| slot(reader, info, &format!("{here}/{name}"))).transpose()
@@ -85,6 +91,16 @@ fn map(reader: &mut Reader<'_, '_>, json: &ParallaxSh, here: &str) -> Result<ShP
     map.base_color_texture = own(&json.base_color_texture, "baseColorTexture")?;
     map.normal_texture = own(&json.normal_texture, "normalTexture")?;
     Ok(map)
+}
+
+/// The cutout's numbers; its images are yet to be found.
+fn cutout(json: &CutoutSh, refuse: impl Fn(String) -> FileError) -> Result<CutoutMap, FileError> {
+    Ok(CutoutMap {
+        order: json.order.ok_or_else(|| refuse("its cutout has no order".into()))?,
+        images: vec![0; json.coefficient_textures.len()],
+        scale: json.scale.clone(),
+        offset: json.offset.clone(),
+    })
 }
 
 /// A texture that must be there.

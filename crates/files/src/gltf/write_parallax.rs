@@ -1,4 +1,4 @@
-//! SH parallax maps out: the material extension `PARBAKE_materials_parallax_sh`, as
+//! SH parallax maps and their cutouts out: the material extension `PARBAKE_materials_parallax_sh`, as
 //! `docs/parallax_format.md` has it. Numbers are written so that reading gives the same bits.
 //!
 //! Contract: the map passes its check.
@@ -31,6 +31,14 @@ impl Materials {
             json["depthTexture"] = data(depth.image);
             json["depthScale"] = f64::from(depth.scale).into();
             json["depthOffset"] = f64::from(depth.offset).into();
+        }
+        if let Some(cutout) = &map.cutout {
+            json["cutout"] = json!({
+                "order": cutout.order,
+                "coefficientTextures": cutout.images.iter().map(|&i| data(i)).collect::<Vec<_>>(),
+                "scale": exact(&cutout.scale),
+                "offset": exact(&cutout.offset),
+            });
         }
         let own = [("baseColorTexture", &map.base_color_texture), ("normalTexture", &map.normal_texture)];
         for (name, slot) in own {

@@ -164,7 +164,7 @@ fn notes(report: &BakeReport, evaluated: &Evaluated) -> String {
                 .into(),
         );
     } else if !worse.is_empty() {
-        let advice = if report.options.silhouette > 0.0 {
+        let advice = if report.options.silhouette_weight() > 0.0 {
             " Where the low-poly reaches beyond the high-poly's outline it was fitted to another background; a lower \
              <code>--silhouette</code> treats all backgrounds more alike."
         } else {

@@ -2,9 +2,11 @@
 
 use super::*;
 use crate::{encode_png, write_obj};
-use parbake_model::{DepthMap, Image, Material, Mesh, ShParallaxMap, TextureSlot, UvTransform, Wrap};
+use parbake_model::{
+    CutoutMap, DepthMap, Image, Material, Mesh, ShParallaxMap, TextureSlot, UvTransform, Wrap,
+};
 
-/// A triangle with a map of order 1: images 2 to 4, depth 5, own textures 6 and 1.
+/// A triangle with a map of order 1: images 2 to 4, depth 5, cutout 6 to 8, own textures 9 and 1.
 fn model() -> Model {
     let mesh = Mesh {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
@@ -24,8 +26,14 @@ fn model() -> Model {
         offset: (0..8).map(|i| -0.07 * (i + 1) as f32).collect(),
         limit: 0.1,
         depth: Some(DepthMap { image: 5, scale: 1.3, offset: -0.3 }),
+        cutout: Some(CutoutMap {
+            order: 2,
+            images: vec![6, 7, 8],
+            scale: (0..9).map(|i| 0.3 * (i + 1) as f32).collect(),
+            offset: (0..9).map(|i| -0.7 / (i + 1) as f32).collect(),
+        }),
         wrap: [Wrap::Clamp, Wrap::Mirror],
-        base_color_texture: slot(6).map(|s| TextureSlot { uv_set: 1, transform, ..s }),
+        base_color_texture: slot(9).map(|s| TextureSlot { uv_set: 1, transform, ..s }),
         normal_texture: slot(1),
     };
     let material = Material {
@@ -35,7 +43,7 @@ fn model() -> Model {
         parallax: Some(map),
         ..Material::default()
     };
-    let sizes = [(2, 3), (3, 2), (4, 4), (4, 4), (4, 4), (2, 2), (5, 1)];
+    let sizes = [(2, 3), (3, 2), (4, 4), (4, 4), (4, 4), (2, 2), (3, 3), (3, 3), (3, 3), (5, 1)];
     let image = |(i, (w, h))| Image::solid(&format!("i{i}"), w, h, [i as u8, 2, 3, 255]);
     let images = sizes.into_iter().enumerate().map(image).collect();
     Model { name: "x".into(), mesh, materials: vec![material], images }
@@ -60,7 +68,7 @@ fn maps_come_back_the_same() {
     let full = model();
     let mut bare = model();
     let map = bare.materials[0].parallax.as_mut().unwrap();
-    (map.depth, map.base_color_texture, map.normal_texture) = (None, None, None);
+    (map.depth, map.cutout, map.base_color_texture, map.normal_texture) = (None, None, None, None);
     bare.images.truncate(5);
     for model in [full, bare] {
         let loaded = read_glb(&model);
@@ -77,10 +85,11 @@ fn the_extension_is_used_but_not_required() {
     assert_eq!(document["extensionsUsed"], json!(["KHR_texture_transform", "PARBAKE_materials_parallax_sh"]));
     assert!(document.get("extensionsRequired").is_none());
     let extension = &document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"];
-    let texture =
-        &document["textures"][extension["coefficientTextures"][0]["index"].as_u64().unwrap() as usize];
-    let sampler = &document["samplers"][texture["sampler"].as_u64().unwrap() as usize];
-    assert_eq!(*sampler, json!({ "magFilter": 9729, "minFilter": 9729, "wrapS": 33071, "wrapT": 33648 }));
+    for textures in [&extension["coefficientTextures"], &extension["cutout"]["coefficientTextures"]] {
+        let texture = &document["textures"][textures[0]["index"].as_u64().unwrap() as usize];
+        let sampler = &document["samplers"][texture["sampler"].as_u64().unwrap() as usize];
+        assert_eq!(*sampler, json!({ "magFilter": 9729, "minFilter": 9729, "wrapS": 33071, "wrapT": 33648 }));
+    }
     assert!(
         written(&Model { materials: vec![Material::default()], ..model() }).get("extensionsUsed").is_none()
     );
@@ -100,6 +109,11 @@ fn small() -> Value {
     document
 }
 
+/// A cutout of order 0 with the same image.
+fn small_cutout() -> Value {
+    json!({ "order": 0, "coefficientTextures": [{ "index": 0 }], "scale": [2], "offset": [-0.5] })
+}
+
 /// Protects readers of other writers' files: what may be left out has the page's defaults.
 #[test]
 fn defaults_are_those_of_the_page() {
@@ -116,7 +130,9 @@ fn defaults_are_those_of_the_page() {
     document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"]["depthTexture"] =
         json!({ "index": 0 });
     let depth = Some(DepthMap { image: 0, scale: 1.0, offset: 0.0 });
-    assert_eq!(map(&document), ShParallaxMap { depth, ..expected });
+    document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"]["cutout"] = small_cutout();
+    let cutout = CutoutMap { order: 0, images: vec![0], scale: vec![2.0], offset: vec![-0.5] };
+    assert_eq!(map(&document), ShParallaxMap { depth, cutout: Some(cutout), ..expected });
 }
 
 /// Protects models from broken maps: they are read without them, and the warning says why.
@@ -164,6 +180,68 @@ fn broken_maps_are_left_out() {
     let mut document = small();
     document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"]["order"] = "two".into();
     assert!(read_value(&document).unwrap_err().contains("/extensions/PARBAKE_materials_parallax_sh/order"));
+}
+
+/// Protects models from broken cutouts: a surface with half of its holes would be worse than
+/// one without parallax, so the whole map is left out, and the warning says why.
+#[test]
+fn broken_cutouts_take_the_map_along() {
+    type Change = fn(&mut Value, &mut Value);
+    let cases: [(Change, &str); 12] = [
+        (|_, c| c["order"] = 8.into(), "its cutout is broken: its order is 8, and the highest is 7"),
+        (|_, c| drop(c.as_object_mut().unwrap().remove("order")), "its cutout has no order"),
+        (|_, c| *c = json!({}), "its cutout has no order"),
+        (|_, c| c["order"] = 1.into(), "1 images of coefficients, and its order asks for 2"),
+        (|_, c| c["scale"] = json!([1, 2]), "its cutout is broken: it has 2 scales"),
+        (|_, c| drop(c.as_object_mut().unwrap().remove("offset")), "its cutout is broken: it has 0 offsets"),
+        (|_, c| c["offset"] = json!([-1e39]), "its cutout is broken: a scale or an offset is not finite"),
+        (|_, c| c["coefficientTextures"] = json!([]), "it has 0 images"),
+        (|_, c| c["coefficientTextures"][0]["index"] = 7.into(), "/cutout/coefficientTextures/0/index"),
+        (|_, c| c["coefficientTextures"][0]["index"] = 1.into(), "differ in their wrap modes"),
+        (|_, c| c["coefficientTextures"][0]["index"] = 2.into(), "its picture is not there"),
+        (
+            |d, c| {
+                let png = encode_png(&Image::solid("", 2, 1, [1, 2, 0, 255])).unwrap();
+                d["images"] = json!([d["images"][0], { "uri": hex_uri(&png) }]);
+                d["textures"][1] = json!({ "source": 1, "sampler": 0 });
+                *c = json!({ "order": 1, "coefficientTextures": [{ "index": 0 }, { "index": 1 }],
+                    "scale": [1, 1, 1, 1], "offset": [0, 0, 0, 0] });
+            },
+            "its cutout is broken: its images differ in size",
+        ),
+    ];
+    for (change, expected) in cases {
+        let mut document = small();
+        document["textures"] = json!([{ "source": 0, "sampler": 0 }, { "source": 0 }, { "sampler": 0 }]);
+        let mut cutout = small_cutout();
+        change(&mut document, &mut cutout);
+        document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"]["cutout"] = cutout;
+        let loaded = read_value(&document).unwrap();
+        assert_eq!(loaded.model.materials[0].parallax, None, "{expected}");
+        let said = loaded.warnings.join("\n");
+        assert!(
+            said.contains("map of material \"m\" was left out") && said.contains(expected),
+            "{expected}: {said}"
+        );
+    }
+    for wrong in [json!(3), json!({ "order": 0.5 }), json!({ "order": 0, "scale": "1" })] {
+        let mut document = small();
+        document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"]["cutout"] = wrong;
+        let error = read_value(&document).unwrap_err();
+        assert!(error.contains("/extensions/PARBAKE_materials_parallax_sh/cutout"), "{error}");
+    }
+}
+
+/// Protects memory: cutouts count as the maps that they are part of.
+#[test]
+fn cutouts_count_as_texels() {
+    let mut document = small();
+    document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"]["cutout"] = small_cutout();
+    let read = |most| {
+        let limits = Limits { max_total_pixels: most, ..Limits::default() };
+        read_limited(&document, &limits).unwrap().model.materials[0].parallax.is_some()
+    };
+    assert_eq!([read(8), read(7)], [true, false]);
 }
 
 /// Protects against images of different sizes, and memory against one image that serves

@@ -1,0 +1,80 @@
+//! The paper's Algorithm 1 after its steps of texture coordinates (`unfold/paper.rs`): the
+//! parallax map with its depth and the displacement along the normals, by Adam from nothing
+//! (`parbake_shape::paper`). Its textures are thrown away, as the ones that are written are
+//! solved for afterwards with all else held, which leaves less error than its last k₂ steps.
+//!
+//! Contract: as of `shape.rs`.
+
+use crate::error::BakeError;
+use crate::low::LowPoly;
+use crate::shape::{ShapeReport, Target, move_vertices, smooth_references};
+use parbake_fit::watch::Watch;
+use parbake_model::{Model, Placement};
+use parbake_render::background::Background;
+use parbake_render::loss::{Comparison, ImageLoss};
+use parbake_render::parallax::ShParallax;
+use parbake_shape::paper::{PaperOptions, paper_fit};
+use parbake_shape::views::Views;
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AlgorithmPlan {
+    /// Views in the pool.
+    pub views: usize,
+    /// Side of a view in pixels.
+    pub view_size: usize,
+    /// The optimiser's own.
+    pub fit: PaperOptions,
+}
+
+/// Samples along a side of each pixel of the high-poly's views.
+const SAMPLES: usize = 3;
+
+/// Steps at either end whose mean the report gives.
+const REPORTED: usize = 50;
+
+/// What came out: how vertices moved, where they did, and the map, where there is one.
+pub struct Outcome {
+    /// Its errors are those of pictures (L_diff), not of coverage.
+    pub report: ShapeReport,
+    /// The parallax map, as a reader sees it.
+    pub map: Option<ShParallax>,
+}
+
+/// Runs it on a low-poly that `frame` places; its vertices are moved.
+///
+/// # Errors
+/// Where its texture coordinates have no area.
+pub fn algorithm_one(
+    low: &mut Model,
+    frame: &Placement,
+    target: &Target,
+    plan: &AlgorithmPlan,
+    seed: u64,
+    watch: &impl Watch,
+) -> Result<Outcome, BakeError> {
+    let LowPoly { placed, .. } = LowPoly::new(low, frame, plan.fit.texture_size)?;
+    let references = smooth_references(target, plan.views, plan.view_size, SAMPLES, seed, watch);
+    let views = Views {
+        references: &references,
+        size: plan.view_size,
+        display: target.display,
+        comparison: Comparison { image: ImageLoss::L1, ..Comparison::default() },
+        background: Background::Black,
+    };
+    let found = paper_fit(&placed, &views, seed, &plan.fit, watch);
+    move_vertices(&mut low.mesh, &placed, &found.positions, frame);
+    let mean = |losses: &[f64]| losses.iter().sum::<f64>() / losses.len().max(1) as f64;
+    let few = REPORTED.min(found.losses.len());
+    let map = found.map.map(|map| {
+        let mut images = Vec::new();
+        let packed = map.pack(&mut images);
+        ShParallax::unpack(&packed, &images).unwrap_or(map)
+    });
+    let report = ShapeReport {
+        steps: found.losses.len(),
+        moved: found.moved.map(|way| 0.5 * way),
+        error: [mean(&found.losses[..few]), mean(&found.losses[found.losses.len() - few..])],
+    };
+    Ok(Outcome { report, map })
+}

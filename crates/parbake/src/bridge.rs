@@ -1,0 +1,80 @@
+//! Between a bake and its stages: messages go out, the question whether to stop comes in, and
+//! each stage's time is noted.
+
+use crate::message::{Message, Stage, Watcher};
+use crate::report::StageTime;
+use parbake_fit::watch;
+use std::time::{Duration, Instant};
+
+/// Passes the stages' messages on, and their question whether to stop.
+pub(crate) struct Bridge<'a, W> {
+    watcher: &'a W,
+    /// When a budget is spent, besides what the watcher says.
+    until: Option<Instant>,
+}
+
+impl<'a, W: Watcher> Bridge<'a, W> {
+    /// For a run that may take so many seconds from `begin` on.
+    pub fn new(watcher: &'a W, begin: Instant, budget: Option<f64>) -> Self {
+        let until = budget.map(|seconds| begin + Duration::from_secs_f64(seconds.min(1e9)));
+        Self { watcher, until }
+    }
+
+    /// The same for a stage that may take this share of the time that is left.
+    pub fn share(&self, share: f64) -> Self {
+        let own = self.until.map(|until| until.saturating_duration_since(Instant::now()).as_secs_f64());
+        let left = own.into_iter().chain(self.watcher.seconds_left()).reduce(f64::min);
+        let until = left.map(|left| Instant::now() + Duration::from_secs_f64((left * share).clamp(0.0, 1e9)));
+        Self { watcher: self.watcher, until }
+    }
+}
+
+impl<W: Watcher> Watcher for Bridge<'_, W> {
+    fn message(&self, message: Message) {
+        self.watcher.message(message);
+    }
+
+    fn stopped(&self) -> bool {
+        watch::Watch::should_stop(self)
+    }
+}
+
+impl<W: Watcher> watch::Watch for Bridge<'_, W> {
+    fn progress(&self, stage: watch::Stage, done: usize, total: usize) {
+        let stage = match stage {
+            watch::Stage::Shape => Stage::Shape,
+            watch::Stage::Reference => Stage::Reference,
+            watch::Stage::Start => Stage::Start,
+            watch::Stage::Sampling => Stage::Sampling,
+            watch::Stage::Cutout => Stage::Cutout,
+            watch::Stage::Parallax => Stage::Parallax,
+            watch::Stage::Solve => Stage::Solve,
+        };
+        self.watcher.message(Message::Progress { stage, done, total });
+    }
+
+    fn should_stop(&self) -> bool {
+        self.watcher.stopped() || self.until.is_some_and(|until| Instant::now() >= until)
+    }
+}
+
+/// Notes how long stages take.
+pub(crate) struct Clock {
+    since: Instant,
+    /// In the order in which they ended.
+    pub stages: Vec<StageTime>,
+}
+
+impl Clock {
+    /// The first stage begins.
+    pub fn new(since: Instant) -> Self {
+        Self { since, stages: Vec::new() }
+    }
+
+    /// A stage ends and the next begins.
+    pub fn lap(&mut self, stage: Stage) {
+        let seconds = self.since.elapsed().as_secs_f64();
+        self.since = Instant::now();
+        self.stages.push(StageTime { stage, seconds });
+    }
+}
