@@ -1,7 +1,7 @@
 //! What can be typed.
 
-use clap::{Args, Parser, Subcommand};
-use parbake::{BakeOptions, EvaluateOptions, ImageOptions};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use parbake::{BakeOptions, EvaluateOptions, ImageOptions, VariantsOptions};
 use std::path::PathBuf;
 
 /// Makes a small 3D model look like a big one
@@ -28,6 +28,8 @@ pub enum Command {
     Demo(DemoCommand),
     /// Compare two models picture by picture: PSNR, MS-SSIM, FLIP
     Eval(EvalCommand),
+    /// Fit each kind of parallax map to a pair of models and show them side by side
+    Variants(VariantsCommand),
     /// Prove that a model's texture coordinates are sound, or say what is wrong with them
     Check(CheckCommand),
     /// Write a coarser copy of a model, which keeps its texture coordinates
@@ -147,9 +149,51 @@ pub struct DemoCommand {
     #[arg(short, long, value_name = "FOLDER", default_value = "out")]
     pub output: PathBuf,
 
+    /// Which models to make
+    #[arg(long, value_enum, default_value_t = DemoScene::Jar)]
+    pub scene: DemoScene,
+
     /// How to bake
     #[command(flatten, next_help_heading = "Baking")]
     pub bake: BakeOptions,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = "Messages")]
+    pub talk: Talk,
+}
+
+/// The built-in pairs.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DemoScene {
+    /// An ornate jar
+    Jar,
+    /// A cube of brick walls, and the plain cube
+    Wall,
+}
+
+/// Arguments of `variants`.
+#[derive(Args, Debug)]
+#[command(after_help = "Vertices and texture coordinates stay as they are, so that only the maps differ. \
+Only maps of spherical harmonics can be written to files, by bake --parallax sh. \
+For the brick wall: parbake demo --scene wall, then its demo_high.glb and demo_low.glb.")]
+pub struct VariantsCommand {
+    /// The detailed model
+    pub high: PathBuf,
+
+    /// The coarse model with texture coordinates
+    pub low: PathBuf,
+
+    /// Where the page with pictures goes
+    #[arg(short, long, value_name = "FILE", default_value = "variants.html")]
+    pub output: PathBuf,
+
+    /// Write the figures as JSON to this file, or to standard output for "-"
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+
+    /// How to fit
+    #[command(flatten, next_help_heading = "Comparison")]
+    pub variants: VariantsOptions,
 
     /// What to tell
     #[command(flatten, next_help_heading = "Messages")]

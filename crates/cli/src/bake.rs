@@ -6,8 +6,8 @@ use crate::options_file::merged;
 use crate::progress::{Console, interrupted};
 use clap::ArgMatches;
 use parbake::{
-    BakeOptions, BakeReport, Baked, Limits, Loaded, Message, Model, Stage, StageTime, Watcher, bake,
-    html_report, read_model, with_threads, write_file, write_glb, write_obj,
+    BakeOptions, BakeReport, Baked, Limits, Loaded, Message, Model, Parallax, Stage, StageTime, Watcher,
+    bake, html_report, read_model, with_threads, write_file, write_glb, write_obj,
 };
 use std::io::Write;
 use std::path::Path;
@@ -18,6 +18,7 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
     options.check()?;
     check_output(&command.output)?;
     check_outputs(command)?;
+    check_maps(&command.output, &options)?;
     let console = Console::for_bake(command.talk, options.time_budget);
     with_threads(options.threads, || {
         let pair = read_pair(&command.high, &command.low, &console)?;
@@ -48,8 +49,23 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
     check_place(path)
 }
 
+/// Refuses maps that the output's format has no place for.
+pub fn check_maps(output: &Path, options: &BakeOptions) -> Result<(), Failure> {
+    if options.parallax == Parallax::None || !is_obj(output) {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!(
+        "{}: an OBJ cannot hold a parallax map; write a .glb, or leave --parallax out",
+        output.display()
+    )))
+}
+
+fn is_obj(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"))
+}
+
 /// Refuses a file that has no folder to lie in, or would take a folder's place.
-fn check_place(path: &Path) -> Result<(), Failure> {
+pub fn check_place(path: &Path) -> Result<(), Failure> {
     if path.is_dir() {
         return Err(Failure::Usage(format!("{}: this is a folder; give it a file's name", path.display())));
     }
@@ -102,8 +118,7 @@ fn check_outputs(command: &BakeCommand) -> Result<(), Failure> {
 
 /// Writes a model as its extension says.
 pub fn write_model(path: &Path, model: &Model) -> Result<(), Failure> {
-    let is_obj = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"));
-    Ok(if is_obj { write_obj(path, model) } else { write_glb(path, model) }?)
+    Ok(if is_obj(path) { write_obj(path, model) } else { write_glb(path, model) }?)
 }
 
 /// Reads one model and passes its warnings on.
@@ -198,6 +213,7 @@ pub fn tell(console: &Console, talk: Talk, report: &BakeReport, output: &Path) {
         ));
     }
     if talk.verbose {
+        tell_of_shape(console, report);
         let share = 100.0 * report.unseen_texels as f64 / report.covered_texels.max(1) as f64;
         console.say(&format!(
             "{} texels on the surface, {} ({share:.1} %) seen by no view; {} samples",
@@ -214,5 +230,31 @@ pub fn tell(console: &Console, talk: Talk, report: &BakeReport, output: &Path) {
         if let Some(bytes) = report.peak_memory {
             console.say(&format!("peak memory {:.0} MB", bytes as f64 / 1e6));
         }
+    }
+}
+
+/// What became of vertices and silhouettes.
+fn tell_of_shape(console: &Console, report: &BakeReport) {
+    if let Some(shape) = &report.shape {
+        let [mean, most] = shape.moved.map(|share| 100.0 * share);
+        console.say(&format!(
+            "vertices moved by {mean:.2} % of the model's length in the mean, {most:.2} % at most, in {} steps; \
+             outlines were {:.3} % apart and are {:.3} %",
+            shape.steps,
+            100.0 * shape.gap[0],
+            100.0 * shape.gap[1]
+        ));
+    }
+    if let Some(depth) = &report.depth {
+        if let Some([before, after]) = depth.misplaced.map(|shares| shares.map(|share| 100.0 * share)) {
+            console.say(&format!(
+                "cutout: {before:.1} % of the pixels near outlines were wrong, {after:.1} % are"
+            ));
+        }
+        let [before, after] = depth.strayed.map(|share| 100.0 * share);
+        console.say(&format!(
+            "parallax: {} steps; {before:.3} % of the pixels strayed into another chart, {after:.3} % do",
+            depth.steps
+        ));
     }
 }

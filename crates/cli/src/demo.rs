@@ -1,11 +1,11 @@
 //! `parbake demo`: everything from nothing.
 
-use crate::arguments::DemoCommand;
+use crate::arguments::{DemoCommand, DemoScene};
 use crate::bake::{Pair, bake_and_write, ending, tell, write_json, write_report};
 use crate::failure::{Ending, Failure};
 use crate::progress::Console;
 use clap::ArgMatches;
-use parbake::{demo_pair, with_threads, write_glb};
+use parbake::{demo_pair, wall_pair, with_threads, write_glb};
 
 /// Runs the command.
 pub fn run(command: &DemoCommand, _: &ArgMatches) -> Result<Ending, Failure> {
@@ -15,7 +15,10 @@ pub fn run(command: &DemoCommand, _: &ArgMatches) -> Result<Ending, Failure> {
         .map_err(|e| Failure::Output(format!("{}: cannot make the folder: {e}", folder.display())))?;
     let console = Console::for_bake(command.talk, command.bake.time_budget);
     with_threads(command.bake.threads, || {
-        let (high, low) = demo_pair();
+        let (high, low) = match command.scene {
+            DemoScene::Jar => demo_pair(),
+            DemoScene::Wall => wall_pair(),
+        };
         write_glb(&folder.join("demo_high.glb"), &high)?;
         write_glb(&folder.join("demo_low.glb"), &low)?;
         let output = folder.join("demo.glb");

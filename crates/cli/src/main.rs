@@ -12,6 +12,7 @@ mod image;
 mod options_file;
 mod progress;
 mod simplify;
+mod variants;
 
 use arguments::{Arguments, Command};
 use clap::{CommandFactory, FromArgMatches};
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
         (Command::Eval(command), _) => evaluate::run(command),
         (Command::Compress(command), Some(given)) => compress::run(command, given),
         (Command::Image(command), _) => image::run(command),
+        (Command::Variants(command), _) => variants::run(command),
         (Command::Check(command), _) => check::run(command),
         (Command::Simplify(command), _) => simplify::run(command),
         _ => Ok(failure::Ending::Finished),

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{demo_pair, parbake, run, text};
+use common::{SMALL, demo_pair, parbake, run, text};
 use parbake::{Limits, Model, read_model, write_glb};
 use serde_json::Value;
 use std::path::Path;
@@ -112,4 +112,40 @@ fn a_broken_map_is_mentioned() {
     let said = text(&output.stderr);
     assert!(said.contains("was left out: its order is 9"), "{said}");
     assert!(text(&output.stdout).contains("100.000"), "{}", text(&output.stdout));
+}
+
+/// Protects `bake --parallax sh`: the file holds the map and its cutout, and shows them.
+#[test]
+fn a_bake_writes_maps_that_are_read_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    let arguments = ["bake", "demo_high.glb", "demo_low.glb", "-o", "deep.glb", "-q", "--preset", "fast"];
+    let maps = ["--parallax", "sh", "--parallax-size", "16", "--cutout-size", "32", "--json", "deep.json"];
+    run(folder, &[&arguments[..], &maps, &SMALL].concat());
+    let model = read_model(&folder.join("deep.glb"), &Limits::default()).unwrap().model;
+    let map = model.materials[0].parallax.as_ref().unwrap();
+    assert_eq!((map.order, map.cutout.as_ref().unwrap().order), (2, 2));
+    let report = common::json(&folder.join("deep.json"));
+    assert!(report["depth"]["steps"].as_u64().unwrap() > 0);
+    assert!(report["shape"]["moved"][1].as_f64().unwrap() > 0.0);
+    let shown = psnr(folder, "demo_high.glb", "deep.glb", &[]);
+    assert!(shown != psnr(folder, "demo_high.glb", "deep.glb", &["--no-parallax"]));
+}
+
+/// Protects an hour's work: what an OBJ cannot hold is refused before it is made, and so is a
+/// map for a surface that stays.
+#[test]
+fn maps_are_refused_where_there_is_no_place_for_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    for arguments in [
+        ["bake", "demo_high.glb", "demo_low.glb", "-o", "deep.obj", "--parallax", "sh"].as_slice(),
+        ["compress", "demo_high.glb", "-o", "small.glb", "--parallax", "sh"].as_slice(),
+    ] {
+        let output = parbake(folder).args(arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
+        assert!(text(&output.stderr).contains("parallax"), "{}", text(&output.stderr));
+    }
 }

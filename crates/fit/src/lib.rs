@@ -28,6 +28,7 @@ pub mod samples;
 pub mod schedule;
 pub mod start;
 pub mod stencil;
+pub mod territory;
 pub mod view_walk;
 pub mod views;
 pub mod watch;

@@ -1,5 +1,6 @@
-//! The fit of an SH parallax map (Knodt et al. 2023, section 4.2), shape and texture
-//! coordinates held: coefficients, colours and normals follow the gradient together.
+//! The fit of a parallax map (Knodt et al. 2023, section 4.2), shape and texture
+//! coordinates held: the map's parameters, colours and normals follow the gradient together.
+//! Which formula the map follows does not matter here (`parallax_variants`).
 //!
 //! A texture that was solved for without parallax is blurred where views disagree, and one
 //! that is solved again after every small shift would be exact but slow; so all three move
@@ -22,6 +23,7 @@ use parbake_model::Wrap;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_render::display_table::DisplayTable;
 use parbake_render::parallax::{ShParallax, Sight};
+use parbake_render::parallax_variants::shift_map::{ShiftMap, Vantage};
 use parbake_render::shade::cosine_with_derivative;
 use parbake_render::texture::{Taps, taps};
 use rayon::prelude::*;
@@ -37,15 +39,26 @@ pub struct ParallaxOptions {
     pub steps: usize,
     /// Views that a step looks at.
     pub views_per_step: usize,
-    /// About how far a coefficient moves in a step, in texture widths.
+    /// About how far a shift moves in a step, in texture widths.
     pub rate: f32,
-    /// The same for textures, whose values go from 0 to 1.
+    /// Adam's ε for coefficients, as a gradient a pixel: where a shift would better so little,
+    /// nothing moves. Without it a map that nobody needs would wander about as far as any.
+    pub indifference: f32,
+    /// About how far texels move in a step, whose values go from 0 to 1.
     pub texture_rate: f32,
 }
 
 impl Default for ParallaxOptions {
     fn default() -> Self {
-        Self { order: 2, size: 64, steps: 240, views_per_step: 12, rate: 3e-4, texture_rate: 0.01 }
+        Self {
+            order: 2,
+            size: 64,
+            steps: 240,
+            views_per_step: 12,
+            rate: 5e-4,
+            indifference: 3e-4,
+            texture_rate: 0.01,
+        }
     }
 }
 
@@ -93,9 +106,9 @@ pub fn sighted_views(walker: &Walker, references: &[Reference]) -> Vec<Vec<Sight
 
 /// What moves together.
 #[derive(Clone, Debug)]
-pub struct State {
+pub struct State<M = ShParallax> {
     /// The map.
-    pub map: ShParallax,
+    pub map: M,
     /// Albedo, 0 … 1.
     pub color: Canvas,
     /// Unit tangent-space normals.
@@ -103,9 +116,9 @@ pub struct State {
 }
 
 /// Loss and gradients of one view.
-struct Part {
+struct Part<M> {
     loss: f64,
-    map: ShParallax,
+    map: M,
     color: Vec<Vec4>,
     normal: Vec<Vec4>,
 }
@@ -119,23 +132,23 @@ fn by_coordinate(canvas: &Canvas, at: &Taps, gradient: Vec4) -> Vec2 {
 }
 
 /// Half the gradient of the squared differences of one view.
-fn view_gradient(samples: &[Sighted], state: &State, display: &DisplayTable) -> Part {
+fn view_gradient<M: ShiftMap>(samples: &[Sighted], state: &State<M>, display: &DisplayTable) -> Part<M> {
     let State { map, color, normal } = state;
     let size = color.size;
     let mut part = Part {
         loss: 0.0,
-        map: ShParallax { coefficients: vec![Vec2::ZERO; map.coefficients.len()], ..map.clone() },
+        map: map.zeros_like(),
         color: vec![Vec4::ZERO; size * size],
         normal: vec![Vec4::ZERO; size * size],
     };
     for sample in samples {
-        let sight = sample.sight();
-        let uv = sample.uv + map.shift(sample.uv, &sight);
+        let light = unpacked(sample.light);
+        let from = Vantage::under_headlight(sample.sight(), &light);
+        let uv = sample.uv + map.shift(sample.uv, &from);
         let at = taps(uv, size, size, [Wrap::Repeat; 2]);
         let (places, weights) = (at.index.map(|i| i as usize), at.weights());
         let albedo = color.fetch(places, weights);
-        let (k, per_normal) =
-            cosine_with_derivative(&unpacked(sample.light), normal.fetch(places, weights).truncate());
+        let (k, per_normal) = cosine_with_derivative(&light, normal.fetch(places, weights).truncate());
         let [r, g, b] = sample.target.map(|t| f32::from(t) * (1.0 / 65535.0));
         let response = respond(display, albedo * k.max(0.0), Vec4::new(r, g, b, 0.0));
         let weight = f32::from(sample.weight) * (1.0 / 65535.0);
@@ -144,25 +157,15 @@ fn view_gradient(samples: &[Sighted], state: &State, display: &DisplayTable) -> 
         let to_k = to_light.dot(albedo);
         // Turned away from the light: only asked to turn back, see `normal.rs`.
         let to_color = if k > 0.0 { to_light * k } else { Vec4::ZERO };
-        let to_normal =
-            if k > 0.0 || to_k < 0.0 { (per_normal * to_k).extend(0.0) } else { Vec4::ZERO };
+        let to_normal = if k > 0.0 || to_k < 0.0 { (per_normal * to_k).extend(0.0) } else { Vec4::ZERO };
         for (place, weight) in places.into_iter().zip(weights) {
             part.color[place] += to_color * weight;
             part.normal[place] += to_normal * weight;
         }
         let to_shift = by_coordinate(color, &at, to_color) + by_coordinate(normal, &at, to_normal);
-        map.adjoint_of_maps(sample.uv, &sight, to_shift, &mut part.map);
+        map.adjoint_of_maps(sample.uv, &from, to_shift, &mut part.map);
     }
     part
-}
-
-/// Pairs of coefficients in lanes of four.
-fn lanes(coefficients: &[Vec2]) -> Vec<Vec4> {
-    let four = |c: &[Vec2]| {
-        let second = c.get(1).copied().unwrap_or_default();
-        Vec4::new(c[0].x, c[0].y, second.x, second.y)
-    };
-    coefficients.chunks(2).map(four).collect()
 }
 
 /// Share of the steps that go at the full rate; then it falls as a cosine does.
@@ -174,17 +177,22 @@ fn rate_at(step: usize, steps: usize) -> f32 {
 }
 
 /// Moves all three; returns the mean squared difference of each step's views.
-pub fn fit_parallax(
+pub fn fit_parallax<M: ShiftMap>(
     views: &[Vec<Sighted>],
-    state: &mut State,
+    state: &mut State<M>,
     display: &DisplayTable,
     options: &ParallaxOptions,
     watch: &impl Watch,
 ) -> Vec<f64> {
     let texels = state.color.texels.len();
     let at_rate = |rate| AdamOptions { rate, ..AdamOptions::default() };
-    let mut moving = lanes(&state.map.coefficients);
-    let mut adam_map = Adam::new(moving.len(), at_rate(options.rate));
+    let mut moving = state.map.parameters();
+    let mean_size = views.iter().map(Vec::len).sum::<usize>() as f32 / views.len().max(1) as f32;
+    let map_options = AdamOptions {
+        epsilon: options.indifference * mean_size * options.views_per_step as f32,
+        ..at_rate(options.rate * state.map.pace())
+    };
+    let mut adam_map = Adam::new(moving.len(), map_options);
     let mut adam_color = Adam::new(texels, at_rate(options.texture_rate));
     let mut adam_normal = Adam::new(texels, at_rate(options.texture_rate));
     let mut losses = Vec::with_capacity(options.steps);
@@ -197,12 +205,12 @@ pub fn fit_parallax(
         let chosen: Vec<&[Sighted]> = (0..options.views_per_step)
             .map(|i| views[(step * options.views_per_step + i) % views.len()].as_slice())
             .collect();
-        let parts: Vec<Part> =
+        let parts: Vec<Part<M>> =
             chosen.par_iter().map(|samples| view_gradient(samples, state, display)).collect();
         let count: usize = chosen.iter().map(|samples| samples.len()).sum();
         losses.push(parts.iter().map(|p| p.loss).sum::<f64>() / (3 * count.max(1)) as f64);
         let share = rate_at(step, options.steps);
-        let sum = |of: fn(&Part) -> &[Vec4]| -> Vec<Vec4> {
+        let sum = |of: fn(&Part<M>) -> &[Vec4]| -> Vec<Vec4> {
             (0..texels).into_par_iter().map(|i| parts.iter().map(|p| of(p)[i]).sum()).collect()
         };
         adam_color.step(&mut state.color.texels, &sum(|p| &p.color), share);
@@ -214,16 +222,13 @@ pub fn fit_parallax(
             let [x, y, z, _] = texel.to_array();
             *texel = Vec3::new(x, y, z.max(0.02)).normalize().extend(0.0);
         }
-        let to_map: Vec<Vec2> = (0..state.map.coefficients.len())
-            .into_par_iter()
-            .map(|i| parts.iter().map(|p| p.map.coefficients[i]).sum())
-            .collect();
-        adam_map.step(&mut moving, &lanes(&to_map), share);
-        for (pair, four) in state.map.coefficients.chunks_mut(2).zip(&moving) {
-            for (c, x) in pair.iter_mut().zip([Vec2::new(four.x, four.y), Vec2::new(four.z, four.w)]) {
-                *c = x;
-            }
-        }
+        let to_maps: Vec<Vec<Vec4>> = parts.iter().map(|p| p.map.parameters()).collect();
+        let to_map: Vec<Vec4> =
+            (0..moving.len()).into_par_iter().map(|i| to_maps.iter().map(|m| m[i]).sum()).collect();
+        adam_map.step(&mut moving, &to_map, share);
+        state.map.set_parameters(&moving);
+        // Those that were held in their range must not wander on beyond it.
+        moving = state.map.parameters();
     }
     watch.progress(Stage::Parallax, options.steps, options.steps);
     losses

@@ -12,11 +12,12 @@
 
 use crate::canvas::{BAND, bands};
 use crate::reference::Reference;
+use crate::view_walk::{Seen, Walker};
 use crate::watch::{Stage, Watch};
-use crate::view_walk::Walker;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_render::frame::TangentLight;
 use parbake_render::parallax::ShParallax;
+use parbake_render::parallax_variants::shift_map::{ShiftMap, Vantage};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -118,12 +119,35 @@ pub fn collect_samples(
     parallax: Option<&ShParallax>,
     watch: &impl Watch,
 ) -> SampleSet {
+    let shift = |seen: &Seen| parallax.map_or(Vec2::ZERO, |map| map.shift(seen.uv, &seen.sight));
+    collect(walker, references, texture_size, shift, watch)
+}
+
+/// The same with any map that shifts coordinates.
+pub fn collect_shifted_samples(
+    walker: &Walker,
+    references: &[Reference],
+    texture_size: usize,
+    map: &impl ShiftMap,
+    watch: &impl Watch,
+) -> SampleSet {
+    let shift = |seen: &Seen| map.shift(seen.uv, &Vantage::under_headlight(seen.sight, &seen.light));
+    collect(walker, references, texture_size, shift, watch)
+}
+
+fn collect(
+    walker: &Walker,
+    references: &[Reference],
+    texture_size: usize,
+    shift: impl Fn(&Seen) -> Vec2 + Sync,
+    watch: &impl Watch,
+) -> SampleSet {
     let layout = Layout { size: texture_size, tiles_across: texture_size.div_ceil(TILE) };
     let done = AtomicUsize::new(0);
     let views: Vec<Sorted> = references
         .par_iter()
         .map(|reference| {
-            let samples = view_samples(walker, reference, texture_size, parallax);
+            let samples = view_samples(walker, reference, texture_size, &shift);
             watch.progress(Stage::Sampling, done.fetch_add(1, Ordering::Relaxed) + 1, references.len());
             sort(samples, &layout)
         })
@@ -169,12 +193,11 @@ fn view_samples(
     walker: &Walker,
     reference: &Reference,
     texture_size: usize,
-    parallax: Option<&ShParallax>,
+    shift: impl Fn(&Seen) -> Vec2,
 ) -> Vec<Sample> {
     let mut out = Vec::with_capacity(reference.pixels.len() / 3);
     walker.walk(reference, |seen| {
-        let uv = seen.uv + parallax.map_or(Vec2::ZERO, |map| map.shift(seen.uv, &seen.sight));
-        let (texel, fraction) = place(uv, texture_size);
+        let (texel, fraction) = place(seen.uv + shift(&seen), texture_size);
         out.push(Sample {
             texel,
             fraction,

@@ -1,5 +1,5 @@
-//! The built-in pair of models: an ornate jar, made by formula, and a coarse
-//! counterpart of the same form with a texture layout of its own.
+//! The built-in pairs of models. The first is an ornate jar, made by formula, and a coarse
+//! counterpart of the same form with a texture layout of its own; the second is in `wall.rs`.
 //!
 //! ```text
 //! shape (form, relief) ──┬→ layout (charts, triangles) → the two meshes
@@ -9,9 +9,13 @@
 //! Contract: about 58 000 and 880 triangles within [−1, 1]³, normals outwards;
 //! charts do not overlap and keep gutters; the same numbers on every run.
 
+mod bricks;
 mod layout;
 mod paint;
 mod shape;
+mod wall;
+
+pub use wall::{wall_low, wall_model};
 
 use layout::Layout;
 use parbake_model::{Bounds, Material, Mesh, Model, TextureSlot};

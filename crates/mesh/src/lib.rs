@@ -6,7 +6,7 @@
 //! projection                    where that point lies on the detailed model
 //! simplify, subdivide           coarser and finer copies of a mesh
 //! weld, vertices, union_find    what these share
-//! demo                          the built-in pair of models
+//! demo                          the built-in pairs of models
 //! ```
 //!
 //! Contract, for every file: any mesh that keeps [`parbake_model::Mesh`]'s
@@ -27,7 +27,7 @@ pub mod vertices;
 pub mod weld;
 
 pub use charts::{charts, texel_charts};
-pub use demo::{demo_low, demo_model};
+pub use demo::{demo_low, demo_model, wall_low, wall_model};
 pub use normals::{ensure_normals, smooth_normals};
 pub use projection::{HighSurface, SurfacePoint};
 pub use simplify::{SimplifyOptions, simplify};

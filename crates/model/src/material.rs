@@ -83,7 +83,7 @@ pub struct Material {
     pub normal_scale: f32,
     /// How alpha is to be understood.
     pub alpha_mode: AlphaMode,
-    /// Shifts of the texture coordinates with the direction of view.
+    /// Shifts of the texture coordinates with the direction of view, and what is cut out.
     pub parallax: Option<ShParallaxMap>,
 }
 

@@ -30,12 +30,9 @@ pub struct AlgorithmPlan {
 /// Samples along a side of each pixel of the high-poly's views.
 const SAMPLES: usize = 3;
 
-/// Steps at either end whose mean the report gives.
-const REPORTED: usize = 50;
-
 /// What came out: how vertices moved, where they did, and the map, where there is one.
 pub struct Outcome {
-    /// Its errors are those of pictures (L_diff), not of coverage.
+    /// How vertices moved.
     pub report: ShapeReport,
     /// The parallax map, as a reader sees it.
     pub map: Option<ShParallax>,
@@ -64,8 +61,6 @@ pub fn algorithm_one(
     };
     let found = paper_fit(&placed, &views, seed, &plan.fit, watch);
     move_vertices(&mut low.mesh, &placed, &found.positions, frame);
-    let mean = |losses: &[f64]| losses.iter().sum::<f64>() / losses.len().max(1) as f64;
-    let few = REPORTED.min(found.losses.len());
     let map = found.map.map(|map| {
         let mut images = Vec::new();
         let packed = map.pack(&mut images);
@@ -74,7 +69,7 @@ pub fn algorithm_one(
     let report = ShapeReport {
         steps: found.losses.len(),
         moved: found.moved.map(|way| 0.5 * way),
-        error: [mean(&found.losses[..few]), mean(&found.losses[found.losses.len() - few..])],
+        ..ShapeReport::default()
     };
     Ok(Outcome { report, map })
 }

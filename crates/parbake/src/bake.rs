@@ -9,12 +9,12 @@
 use crate::algorithm_one::algorithm_one;
 use crate::bridge::{Bridge, Clock};
 use crate::check::{check_mesh, warning};
+use crate::depth::{DepthMaps, fit_depth};
 use crate::error::BakeError;
 use crate::low::LowPoly;
 use crate::message::{Message, Stage, Watcher};
 use crate::options::{BakeOptions, UvMode};
 use crate::pair::{common_frame, placed};
-use crate::depth::{DepthMaps, fit_depth};
 use crate::report::BakeReport;
 use crate::shape::{Target, shape};
 use crate::unfold::{Source, mend, unfold};
@@ -151,7 +151,7 @@ pub(crate) fn bake_pair(
     let srgb = convention.decodes_srgb();
     let mut walker = Walker::new(&placed, plan.reference.size, &display, beyond);
     let mut depth = None;
-    if let Some(plan) = options.depth_plan() {
+    if let Some(plan) = options.depth_plan().filter(|_| !same) {
         let share = bridge.share(DEPTH_SHARE);
         depth = Some(fit_depth(low, &frame, &target, &references, &walker, srgb, &plan, &share)?);
         clock.lap(Stage::Parallax);

@@ -8,7 +8,7 @@
 use crate::bake::{Baked, bake_pair};
 use crate::error::BakeError;
 use crate::message::{Message, Stage, Watcher};
-use crate::options::{BakeOptions, Convention, UvMode};
+use crate::options::{BakeOptions, Convention, Parallax, UvMode};
 use crate::pair::{common_frame, placed};
 use crate::report::{BakeReport, LossStep, StageTime};
 use crate::unfold::{Source, SurfaceTexture, UnfoldOptions, mend, solve_on_surface, unfold};
@@ -27,6 +27,10 @@ const STEPS_FACTOR: usize = 3;
 /// # Errors
 /// As of [`crate::bake`].
 pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) -> Result<Baked, BakeError> {
+    if options.parallax != Parallax::None {
+        let (option, range) = ("parallax", "none where a model is compressed: its surface stays".into());
+        return Err(BakeError::Option { option, value: "sh".into(), range });
+    }
     if model.materials.iter().any(|m| m.normal_texture.is_some()) {
         return bake_pair(model, model, true, options, watcher);
     }

@@ -16,6 +16,7 @@
 use crate::error::BakeError;
 use crate::low::LowPoly;
 use crate::shape::Target;
+use parbake_fit::atlas::Atlas;
 use parbake_fit::cutout::{CutoutOptions, examples, fit_cutout};
 use parbake_fit::parallax::{ParallaxOptions, State, fit_parallax, sighted_views};
 use parbake_fit::quantise::{color_canvas, normal_canvas};
@@ -23,8 +24,10 @@ use parbake_fit::reference::Reference;
 use parbake_fit::samples::collect_samples;
 use parbake_fit::schedule::{Schedule, fit_textures};
 use parbake_fit::start::project;
+use parbake_fit::territory::{Territory, keep_at_home};
 use parbake_fit::view_walk::Walker;
 use parbake_fit::watch::Watch;
+use parbake_mesh::charts;
 use parbake_model::{Image, Model, Placement, ShParallaxMap, Wrap};
 use parbake_render::cutout::ShCutout;
 use parbake_render::display_table::DisplayTable;
@@ -36,12 +39,24 @@ use serde::{Deserialize, Serialize};
 pub struct DepthPlan {
     /// Views of the pool that the maps are fitted to.
     pub views: usize,
-    /// Texels along a side of the textures that are fitted along.
-    pub texture_size: usize,
     /// How the cutout is fitted; none for a low-poly that is all there.
     pub cutout: Option<CutoutOptions>,
-    /// How the parallax map is fitted.
+    /// How the parallax map is fitted, but for what passes say.
     pub parallax: ParallaxOptions,
+    /// With which textures, from coarse to fine.
+    pub passes: [ParallaxPass; 2],
+}
+
+/// One pass of the parallax map's fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParallaxPass {
+    /// Texels along a side of the textures that are fitted along. Coarse ones let shifts find
+    /// far ways, fine ones show what they blur.
+    pub texture_size: usize,
+    /// Steps of Adam.
+    pub steps: usize,
+    /// Its rate for coefficients.
+    pub rate: f32,
 }
 
 /// The maps, as a reader of the file sees them.
@@ -68,10 +83,14 @@ pub struct DepthReport {
     /// Share of the pixels near silhouettes that show the low-poly where the high-poly is
     /// not, or the other way round, without the cutout and with it.
     pub misplaced: Option<[f64; 2]>,
+    /// Share of pixels whose shift led into another chart, before such shifts were made smaller
+    /// and after.
+    pub strayed: [f64; 2],
     /// Steps that the parallax map took.
     pub steps: usize,
-    /// Mean squared display difference of its first steps' views and of its last ones'.
-    pub mean_square: [f64; 2],
+    /// For each pass over the textures' sizes, the mean squared display difference of its first
+    /// steps' views and of its last ones'.
+    pub mean_square: Vec<[f64; 2]>,
 }
 
 /// Maps, and how they came about.
@@ -81,6 +100,9 @@ pub struct Depth {
     /// What was done.
     pub report: DepthReport,
 }
+
+/// Texels along a side of the map that says which chart is nearest.
+const TERRITORY: usize = 256;
 
 /// Rounds of the solve for the small textures: they only have to begin well.
 const ROUNDS: usize = 2;
@@ -114,26 +136,89 @@ pub fn fit_depth(
     });
     let walker = walker.clone().with_cutout(cutout.as_ref());
 
-    let LowPoly { placed, map, atlas, .. } = LowPoly::new(low, frame, plan.texture_size)?;
-    let start = project(&placed, &map, &atlas, target.scene, target.surface, target.reach);
-    let samples = collect_samples(&walker, references, plan.texture_size, None, watch);
-    let schedule = Schedule { rounds: ROUNDS, final_steps: 0, ..Schedule::default() };
-    let begin = fit_textures(&samples, &atlas, &start, target.display, srgb, &schedule, watch);
-    drop(samples);
-    let mut state = State {
-        map: ShParallax::zeros(plan.parallax.order, plan.parallax.size),
-        color: color_canvas(&begin.color, srgb),
-        normal: normal_canvas(&begin.normal),
-    };
     let views = sighted_views(&walker, references);
     let display = DisplayTable::new(&target.display);
-    let losses = fit_parallax(&views, &mut state, &display, &plan.parallax, watch);
+    let mut map = ShParallax::zeros(plan.parallax.order, plan.parallax.size);
+    let mut losses = Vec::new();
+    for pass in &plan.passes {
+        let LowPoly { placed, map: texels, atlas, .. } = LowPoly::new(low, frame, pass.texture_size)?;
+        let start = project(&placed, &texels, &atlas, target.scene, target.surface, target.reach);
+        let samples = collect_samples(&walker, references, pass.texture_size, Some(&map), watch);
+        let schedule = Schedule { rounds: ROUNDS, final_steps: 0, ..Schedule::default() };
+        let begin = fit_textures(&samples, &atlas, &start, target.display, srgb, &schedule, watch);
+        drop(samples);
+        let (color, normal) = (color_canvas(&begin.color, srgb), normal_canvas(&begin.normal));
+        let mut state = State { map, color, normal };
+        let options = ParallaxOptions { steps: pass.steps, rate: pass.rate, ..plan.parallax };
+        losses.push(fit_parallax(&views, &mut state, &display, &options, watch));
+        map = state.map;
+    }
     let mean = |losses: &[f64]| losses.iter().sum::<f64>() / losses.len().max(1) as f64;
-    let few = REPORTED.min(losses.len());
-    report.steps = losses.len();
-    report.mean_square = [mean(&losses[..few]), mean(&losses[losses.len() - few..])];
+    let ends = |losses: &Vec<f64>| {
+        let few = REPORTED.min(losses.len());
+        [mean(&losses[..few]), mean(&losses[losses.len() - few..])]
+    };
+    report.steps = losses.iter().map(Vec::len).sum();
+    report.mean_square = losses.iter().map(ends).collect();
+    let LowPoly { placed, map: texels, .. } = LowPoly::new(low, frame, TERRITORY)?;
+    let territory = Territory::new(&Atlas::new(&texels, &charts(&placed), TERRITORY));
+    report.strayed = keep_at_home(&walker, references, &territory, &mut map);
     let mut images = Vec::new();
-    let packed = state.map.pack(&mut images);
-    let parallax = ShParallax::unpack(&packed, &images).unwrap_or(state.map);
+    let packed = map.pack(&mut images);
+    let parallax = ShParallax::unpack(&packed, &images).unwrap_or(map);
     Ok(Depth { maps: DepthMaps { parallax, cutout }, report })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::options::{BakeOptions, Parallax, Preset};
+    use crate::{Baked, EvaluateOptions, bake, demo_pair, evaluate, with_threads};
+    use parbake_model::Model;
+
+    fn quick(parallax: Parallax) -> BakeOptions {
+        BakeOptions {
+            texture_size: 32,
+            preset: Preset::Fast,
+            parallax,
+            parallax_size: 16,
+            cutout_size: 32,
+            views: Some(48),
+            view_size: Some(64),
+            rounds: Some(1),
+            ..BakeOptions::default()
+        }
+    }
+
+    fn baked(high: &Model, low: &Model, parallax: Parallax, threads: usize) -> Baked {
+        with_threads(threads, || bake(high, low, &quick(parallax), &())).unwrap().unwrap()
+    }
+
+    /// Protects what maps are for: on any background the model looks better with them; and
+    /// the bytes, which must not depend on the number of threads.
+    #[test]
+    fn maps_improve_the_look_whatever_the_number_of_threads() {
+        let (high, low) = demo_pair();
+        let with = baked(&high, &low, Parallax::Sh, 1);
+        assert!(with.model == baked(&high, &low, Parallax::Sh, 3).model, "threads change the result");
+        let without = baked(&high, &low, Parallax::None, 2);
+        assert!(without.model.materials[0].parallax.is_none());
+        for background in ["white", "0.9,0.1,0.2"] {
+            let options = EvaluateOptions {
+                views: 6,
+                resolution: 96,
+                background: background.into(),
+                no_flip: true,
+                decode_srgb: true,
+                gain: 1.0,
+                ..EvaluateOptions::default()
+            };
+            let psnr = |low: &Model| evaluate(&high, low, &options, &()).unwrap().mean.psnr;
+            let (better, worse) = (psnr(&with.model), psnr(&without.model));
+            assert!(better > worse, "{background}: {better} {worse}");
+        }
+        let report = with.report.depth.unwrap();
+        let [before, after] = report.misplaced.unwrap();
+        assert!(after < before && report.strayed[1] <= report.strayed[0]);
+        assert!(report.mean_square.iter().all(|[first, last]| last < first));
+    }
 }

@@ -1,9 +1,9 @@
 //! Models made from models, and from nothing.
 
-use parbake_mesh::demo::{demo_low, demo_model};
+use parbake_mesh::demo::{demo_low, demo_model, wall_low, wall_model};
 use parbake_mesh::simplify::{SimplifyOptions, simplify};
 use parbake_mesh::subdivide::subdivide;
-use parbake_model::{Material, Model};
+use parbake_model::{Material, Mesh, Model};
 
 /// A coarser copy of about this many triangles, with the same materials.
 pub fn simplified(model: &Model, triangles: usize) -> Model {
@@ -16,14 +16,19 @@ pub fn subdivided(model: &Model) -> Model {
     Model { mesh: subdivide(&model.mesh), ..model.clone() }
 }
 
-/// The built-in detailed model and its coarse counterpart.
+/// The built-in detailed model, an ornate jar, and its coarse counterpart.
 pub fn demo_pair() -> (Model, Model) {
     let high = demo_model();
-    let low = Model {
-        name: "demo jar".into(),
-        mesh: demo_low(&high),
-        materials: vec![Material::default()],
-        images: Vec::new(),
-    };
+    let low = plain("demo jar", demo_low(&high));
     (high, low)
+}
+
+/// The other built-in pair: a cube of brick walls, and the plain cube.
+pub fn wall_pair() -> (Model, Model) {
+    (wall_model(), plain("demo wall", wall_low()))
+}
+
+/// A model without textures.
+fn plain(name: &str, mesh: Mesh) -> Model {
+    Model { name: name.into(), mesh, materials: vec![Material::default()], images: Vec::new() }
 }

@@ -3,19 +3,9 @@
 //! quality field means "as the preset says".
 
 use crate::error::BakeError;
-use crate::algorithm_one::AlgorithmPlan;
-use crate::depth::DepthPlan;
-use crate::shape::ShapePlan;
-use crate::unfold::UnfoldOptions;
-use parbake_fit::cutout::CutoutOptions;
-use parbake_fit::parallax::ParallaxOptions;
-use parbake_fit::reference::Sampling;
-use parbake_fit::schedule::Schedule;
 use parbake_render::display::{Curve, Display};
 use parbake_render::scene::Interpretation;
-use parbake_shape::paper::PaperOptions as AlgorithmOptions;
-use parbake_shape::{Motion, ShapeOptions};
-use parbake_uv::paper::{Guide, PaperOptions};
+use parbake_uv::paper::Guide;
 use serde::{Deserialize, Serialize};
 
 /// How much time a bake may take for how much quality.
@@ -309,143 +299,10 @@ impl Default for BakeOptions {
     }
 }
 
-/// Options with every number settled.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plan {
-    /// Training views.
-    pub views: usize,
-    /// How the high-poly is sampled in them.
-    pub reference: Sampling,
-    /// The order of the fit.
-    pub schedule: Schedule,
-}
-
-/// Seconds below which a time budget is better spent on textures alone.
-const LEAST_BUDGET: f64 = 8.0;
-
 impl BakeOptions {
     /// The distance between charts in texels: as asked, or by the texture's size.
     pub fn gutter_texels(&self) -> f64 {
         self.gutter.unwrap_or((self.texture_size as f64 / 256.0).clamp(1.0, 8.0))
-    }
-
-    /// Whether there is only time for textures.
-    fn hurried(&self) -> bool {
-        self.time_budget.is_some_and(|seconds| seconds < LEAST_BUDGET)
-    }
-
-    /// What to do with vertices; none where they stay.
-    pub(crate) fn shape_plan(&self) -> Option<ShapePlan> {
-        let motion = match self.shape {
-            ShapeMode::Keep => return None,
-            ShapeMode::Normal => Motion::Normal,
-            ShapeMode::Free => Motion::Free,
-        };
-        let (views, steps) = match self.preset {
-            Preset::Fast => (96, 60),
-            Preset::Balanced => (192, 160),
-            Preset::Best => (384, 400),
-        };
-        let env = |name: &str, default: f32| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
-        let fit = ShapeOptions {
-            motion,
-            steps: env("S_STEPS", steps as f32) as usize,
-            rate: env("S_RATE", 4e-3),
-            texture_rate: env("S_TRATE", 0.02),
-            coverage: env("S_COV", 1.0),
-            overhang_discount: env("S_OVER", if self.cuts() { 0.9 } else { 0.0 }),
-            displacement: env("S_DISP", 0.0),
-            views_per_step: env("S_VPS", 12.0) as usize,
-            ..ShapeOptions::default()
-        };
-        (self.method == Method::Fit && !self.hurried()).then_some(ShapePlan {
-            views: env("S_VIEWS", views as f32) as usize,
-            view_size: env("S_SIZE", 160.0) as usize,
-            texture_size: env("S_TEX", 128.0) as usize,
-            samples: 3,
-            fit,
-        })
-    }
-
-    /// How cutout and parallax map are fitted; none where there are none.
-    pub(crate) fn depth_plan(&self) -> Option<DepthPlan> {
-        let (views, cutout_steps, steps) = match self.preset {
-            Preset::Fast => (240, 200, 150),
-            Preset::Balanced => (480, 300, 400),
-            Preset::Best => (960, 500, 900),
-        };
-        let env = |name: &str, default: f32| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
-        (self.parallax == Parallax::Sh && self.method == Method::Fit).then_some(DepthPlan {
-            views: env("P_VIEWS", views as f32) as usize,
-            texture_size: self.texture_size.min(env("P_TEX", 128.0) as usize),
-            cutout: (!self.no_cutout).then_some(CutoutOptions {
-                order: self.cutout_order,
-                size: self.cutout_size,
-                steps: env("C_STEPS", cutout_steps as f32) as usize,
-                ..CutoutOptions::default()
-            }),
-            parallax: ParallaxOptions {
-                order: self.parallax_order,
-                size: self.parallax_size,
-                steps: env("P_STEPS", steps as f32) as usize,
-                rate: env("P_RATE", 3e-4),
-                texture_rate: env("P_TRATE", 1e-2),
-                ..ParallaxOptions::default()
-            },
-        })
-    }
-
-    /// Whether the low-poly is cut at the high-poly's silhouettes.
-    fn cuts(&self) -> bool {
-        self.parallax == Parallax::Sh && self.method == Method::Fit && !self.no_cutout
-    }
-
-    /// The paper's optimiser for vertices and parallax; none where neither is asked for.
-    pub(crate) fn algorithm_plan(&self) -> Option<AlgorithmPlan> {
-        let paper = AlgorithmOptions::default();
-        let env = |name: &str, default: f32| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
-        let fit = AlgorithmOptions {
-            motion: (self.shape != ShapeMode::Keep).then_some(Motion::Normal),
-            parallax: (self.parallax == Parallax::Sh).then_some((self.parallax_order, self.parallax_size)),
-            texture_size: self.texture_size.min(256),
-            displacement: env("A_DISP", paper.displacement),
-            steps: env("A_STEPS", paper.steps as f32) as usize,
-            vertex_rate: env("A_VRATE", paper.vertex_rate),
-            coefficient_rate: env("A_CRATE", paper.coefficient_rate),
-            views_per_step: env("A_VPS", paper.views_per_step as f32) as usize,
-            ..paper
-        };
-        let moves = fit.motion.is_some() || fit.parallax.is_some();
-        (self.method == Method::Paper && moves).then_some(AlgorithmPlan { views: 192, view_size: 160, fit })
-    }
-
-    /// How much pixels count beyond the high-poly's silhouette: none where they are cut out.
-    pub(crate) fn silhouette_weight(&self) -> f32 {
-        self.silhouette.unwrap_or(if self.cuts() { 0.0 } else { 0.5 })
-    }
-
-    /// What to do with texture coordinates in another mode.
-    pub(crate) fn unfold_as(&self, mode: UvMode) -> UnfoldOptions {
-        UnfoldOptions { mode, ..self.unfold() }
-    }
-
-    /// What to do with texture coordinates.
-    pub(crate) fn unfold(&self) -> UnfoldOptions {
-        let steps = match (self.method, self.preset) {
-            (Method::Paper, _) => PaperOptions::default().rounds,
-            (Method::Fit, Preset::Fast) => 10,
-            (Method::Fit, Preset::Balanced) => 30,
-            (Method::Fit, Preset::Best) => 60,
-        };
-        UnfoldOptions {
-            mode: if self.hurried() && self.uv == UvMode::Optimize { UvMode::Repair } else { self.uv },
-            method: self.method,
-            guide: Method::guide(self.no_content_aware),
-            texture_size: self.texture_size,
-            gutter: self.gutter_texels(),
-            gutter_asked: self.gutter.is_some(),
-            steps: self.uv_steps.unwrap_or(steps),
-        }
     }
 
     /// Checks every range; the error names the option and what it may be.
@@ -472,40 +329,6 @@ impl BakeOptions {
         within("threads", self.threads as f64, 0.0, crate::threads::MOST_THREADS as f64)?;
         within("time-budget", self.time_budget.unwrap_or(0.0), 0.0, 1e9)?;
         self.method.check(self.no_content_aware)
-    }
-
-    /// Settles what the preset leaves open.
-    pub fn plan(&self) -> Plan {
-        // Views matter more than their pixels: what a texel looks like depends on the
-        // side it is seen from, and few sides are learnt by heart.
-        let (views, view_size, rounds, final_steps) = match self.preset {
-            Preset::Fast => (240, 192, 3, 1),
-            Preset::Balanced => (640, 192, 5, 2),
-            Preset::Best => (1280, 256, 8, 3),
-        };
-        // A texel that hardly a sample reads is noise: beyond 1024 texels views grow, though
-        // by less than the texture, or bakes would take for ever.
-        let finer = (self.texture_size as f32 / 1024.0).max(1.0).sqrt();
-        let view_size = self.view_size.unwrap_or((view_size as f32 * finer) as usize);
-        let rounds = self.rounds.unwrap_or(rounds);
-        // A projection is only looked at, to report its loss.
-        let views = if rounds == 0 { 16 } else { views };
-        Plan {
-            views: self.views.unwrap_or(views),
-            reference: Sampling {
-                size: view_size,
-                // Half a texel wide where the texture fills the picture: averaging is the
-                // solver's work, over all the samples that meet in a texel.
-                filter: (0.5 * view_size as f32 / self.texture_size as f32).clamp(1.0 / 16.0, 1.0),
-                samples: 1,
-            },
-            schedule: Schedule {
-                rounds,
-                normal_steps: if self.keep_normals { 0 } else { Schedule::default().normal_steps },
-                final_steps: if rounds == 0 { 0 } else { final_steps },
-                ..Schedule::default()
-            },
-        }
     }
 }
 

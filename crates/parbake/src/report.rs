@@ -1,8 +1,8 @@
 //! What a bake saw, as plain data: the JSON report, and what the HTML report shows.
 
+use crate::depth::DepthReport;
 use crate::message::Stage;
 use crate::options::BakeOptions;
-use crate::depth::DepthReport;
 use crate::shape::ShapeReport;
 use crate::unfold::UnfoldReport;
 use parbake_atlas::UvCheck;

@@ -26,6 +26,7 @@ use parbake_render::scene::Scene;
 use parbake_render::shade::Lambert;
 use parbake_shape::joint::Provisional;
 use parbake_shape::normals::turned_normals;
+use parbake_shape::views::Outline;
 use parbake_shape::{ShapeOptions, fit_shape};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -52,9 +53,13 @@ pub struct ShapeReport {
     pub steps: usize,
     /// Mean and longest way of a vertex, as shares of the high-poly's longest side.
     pub moved: [f32; 2],
-    /// Mean error over the views of the first steps and of the last: squared, of coverage; by the
-    /// paper's method absolute, of display values.
-    pub error: [f64; 2],
+    /// How far outlines were apart in the mean before and after, as shares of the high-poly's
+    /// longest side; zeros by the paper's method, which does not look.
+    pub gap: [f32; 2],
+    /// Shares of a picture's area that only the low-poly covers, and only the high-poly, before.
+    pub before: [f64; 2],
+    /// The same after.
+    pub after: [f64; 2],
 }
 
 /// The high-poly, as vertices are fitted to it.
@@ -71,9 +76,6 @@ pub struct Target<'a> {
     /// Where cameras stand.
     pub rig: Rig,
 }
-
-/// Steps at either end whose mean the report gives.
-const REPORTED: usize = 10;
 
 /// Moves the vertices of a low-poly that `frame` places.
 ///
@@ -101,14 +103,13 @@ pub fn shape(
     let shaped = fit_shape(&placed, start, &references, plan.view_size, target.display, &options, watch);
 
     move_vertices(&mut low.mesh, &placed, &shaped.positions, frame);
-    let mean = |losses: &[parbake_render::loss::LossValue]| {
-        losses.iter().map(|l| l.coverage).sum::<f64>() / losses.len().max(1) as f64
-    };
-    let few = REPORTED.min(shaped.losses.len());
+    let outlines = |o: &Outline| [o.overhang, o.underhang];
     Ok(ShapeReport {
         steps: shaped.losses.len(),
         moved: shaped.moved.map(|way| 0.5 * way),
-        error: [mean(&shaped.losses[..few]), mean(&shaped.losses[shaped.losses.len() - few..])],
+        gap: shaped.gap.map(|gap| 0.5 * gap),
+        before: outlines(&shaped.outline[0]),
+        after: outlines(&shaped.outline[1]),
     })
 }
 
@@ -155,4 +156,62 @@ fn in_world(mesh: &Mesh, map: &TexelMap, normals: &Canvas) -> Canvas {
         })
         .collect();
     Canvas { size: normals.size, texels }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::options::{BakeOptions, Method, Preset, ShapeMode, UvMode};
+    use crate::{bake, demo_pair};
+    use parbake_model::Mesh;
+
+    fn quick(shape: ShapeMode) -> BakeOptions {
+        BakeOptions {
+            texture_size: 32,
+            preset: Preset::Fast,
+            uv: UvMode::Keep,
+            shape,
+            views: Some(12),
+            view_size: Some(48),
+            rounds: Some(0),
+            ..BakeOptions::default()
+        }
+    }
+
+    /// Seams are closed and no triangle has turned over.
+    fn is_sane(before: &Mesh, after: &Mesh) -> bool {
+        let closed = (0..before.positions.len()).all(|i| {
+            (0..i).all(|j| {
+                before.positions[i] != before.positions[j] || after.positions[i] == after.positions[j]
+            })
+        });
+        let facing = |t| before.area_normal(t).dot(after.area_normal(t)) > 0.0;
+        closed && (0..before.triangles.len()).all(facing)
+    }
+
+    /// Protects the mesh: vertices move, and it stays what it was.
+    #[test]
+    fn vertices_move_and_the_mesh_stays_sane() {
+        let (high, low) = demo_pair();
+        for (method, shape) in [
+            (Method::Fit, ShapeMode::Free),
+            (Method::Fit, ShapeMode::Normal),
+            (Method::Paper, ShapeMode::Normal),
+        ] {
+            let options = BakeOptions { method, uv_steps: Some(0), ..quick(shape) };
+            let baked = bake(&high, &low, &options, &()).unwrap();
+            assert_ne!(baked.model.mesh.positions, low.mesh.positions);
+            assert!(is_sane(&low.mesh, &baked.model.mesh), "{shape:?}");
+            let report = baked.report.shape.unwrap();
+            assert!(report.steps > 0 && report.moved[1] > report.moved[0] && report.moved[0] > 0.0);
+        }
+    }
+
+    /// Protects who wants their vertices as they are.
+    #[test]
+    fn kept_vertices_are_kept_to_the_bit() {
+        let (high, low) = demo_pair();
+        let baked = bake(&high, &low, &quick(ShapeMode::Keep), &()).unwrap();
+        assert_eq!(baked.model.mesh.positions, low.mesh.positions);
+        assert!(baked.report.shape.is_none());
+    }
 }

@@ -13,6 +13,7 @@
 //! texture's adjoint: towards the coordinates and towards the texels. `surface.rs` is
 //! what goes in. `scene.rs` renders whole models, forward only, with the textures of
 //! `scene_textures.rs`. `cutout.rs` is where a surface is not there, seen from the wrong side.
+//! `parallax_variants` puts other ways to shift coordinates behind one interface.
 //! `parallax_images.rs` and `cutout_images.rs` take maps to 8-bit images and back, by
 //! `channels.rs`.
 //!
@@ -34,6 +35,7 @@ pub mod loss;
 pub mod mip;
 pub mod parallax;
 mod parallax_images;
+pub mod parallax_variants;
 pub mod patch;
 pub mod pipeline;
 pub mod raster;

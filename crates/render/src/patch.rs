@@ -11,8 +11,8 @@
 
 use crate::camera::{Camera, Projection};
 use crate::frame::{TangentLight, tangent_light, tangent_light_adjoint};
-use crate::parallax::{ShParallax, Sight};
 use crate::interpolate::{Barycentrics, barycentrics, footprint_adjoint, interpolate, planes_adjoint};
+use crate::parallax::{ShParallax, Sight};
 use crate::raster::ScreenTriangle;
 use crate::scatter::Fetch;
 use crate::shade::{ShadeGradient, Shading};
@@ -271,9 +271,10 @@ impl<'a> Patch<'a> {
     /// The gradient of the coordinate that is fetched at, levels of detail held.
     fn to_coordinate(&self, s: &Sample, shade: &ShadeGradient) -> Vec2 {
         let of_color = self.textures.color.slopes_at(&s.reaches[0]).adjoint(&shade.color.to_array()).0;
-        let of_normal = self.textures.normal.map_or(Vec2::ZERO, |map| {
-            map.slopes_at(&s.reaches[1]).adjoint(&shade.map_normal.to_array()).0
-        });
+        let of_normal = self
+            .textures
+            .normal
+            .map_or(Vec2::ZERO, |map| map.slopes_at(&s.reaches[1]).adjoint(&shade.map_normal.to_array()).0);
         of_color + of_normal
     }
 

@@ -165,7 +165,8 @@ impl Scene {
             triangles: &self.triangles,
             edges: &self.edges,
         };
-        let textures = Textures::new(&color, self.lit.then_some(&normal)).with_parallax(self.parallax.as_ref());
+        let textures =
+            Textures::new(&color, self.lit.then_some(&normal)).with_parallax(self.parallax.as_ref());
         let display = Display { gain: 0.95, curve: Curve::Srgb };
         let composer = Composer::new(self.background.for_view(3), display, self.size);
         let reference = Reference::new(&self.reference, self.size, &composer);

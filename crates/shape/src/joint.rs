@@ -11,6 +11,10 @@
 //! ([`Background::Random`]), and coverage has its own loss: a vertex that overshoots behind
 //! a black background, where nobody would see it, is seen here.
 //!
+//! How far vertices go depends on how far outlines are apart at first: the step, what holds a
+//! vertex near its home, and the discount on overhang all follow that one length. A mesh whose
+//! outlines fit already stays as it is, and so does one whose outlines did not come closer.
+//!
 //! Contract: the mesh has texture coordinates and lies in the common frame; triangles stay
 //! sane (`guard.rs`), vertices at one position stay together. The result does not depend on
 //! the number of threads.
@@ -18,7 +22,7 @@
 use crate::guard::Guard;
 use crate::laplacian::Laplacian;
 use crate::points::{Motion, Points};
-use crate::views::Views;
+use crate::views::{Judgement, Outline, Views};
 use glam::{Vec3, Vec4};
 use parbake_adam::{Adam, AdamOptions};
 use parbake_fit::canvas::Canvas;
@@ -27,9 +31,10 @@ use parbake_fit::views::mixed;
 use parbake_fit::watch::{Stage, Watch};
 use parbake_model::Mesh;
 use parbake_render::background::Background;
+use parbake_render::camera::{Camera, Projection};
 use parbake_render::display::Display;
 use parbake_render::edges::EdgeAdjacency;
-use parbake_render::loss::{Comparison, ImageLoss, LossValue};
+use parbake_render::loss::{Comparison, LossValue};
 use parbake_render::surface::{Surface, Textures};
 use parbake_render::texture::{Level, Pyramid};
 
@@ -42,18 +47,22 @@ pub struct ShapeOptions {
     pub steps: usize,
     /// Views that a step looks at.
     pub views_per_step: usize,
-    /// How far a vertex moves in a step at first, in the common frame, in which a model is
-    /// 2 long.
+    /// How far a vertex moves in a step at first, at most, in the common frame, in which a
+    /// model is 2 long.
     pub rate: f32,
+    /// Steps of that length in which a vertex goes as far as outlines are apart: where they are
+    /// close, steps are smaller.
+    pub steps_in_gap: f32,
     /// The same for the texture, whose values go from 0 to 1.
     pub texture_rate: f32,
     /// Weight of the coverage loss beside the picture's.
     pub coverage: f32,
-    /// How much less overhang counts, 0 … 1: what stands out can be cut out, what is missing
-    /// cannot be put there.
+    /// How much less overhang counts, 0 … 1, where outlines are a pixel apart or more: what
+    /// stands out can be cut out, what is missing cannot be put there.
     pub overhang_discount: f32,
-    /// Weight of the squared displacement (λ_ΔV), a mean over points.
-    pub displacement: f32,
+    /// How many gaps between outlines a vertex may move before that costs as much as the
+    /// picture's loss at first.
+    pub reach: f32,
     /// Weight of the Laplacian term (`laplacian.rs`); 0 leaves it out.
     pub laplacian: f32,
     /// What is behind the model.
@@ -69,10 +78,11 @@ impl Default for ShapeOptions {
             steps: 160,
             views_per_step: 12,
             rate: 4e-3,
+            steps_in_gap: 7.0,
             texture_rate: 0.02,
             coverage: 1.0,
             overhang_discount: 0.0,
-            displacement: 0.0,
+            reach: 8.0,
             laplacian: 0.0,
             background: Background::Random,
             seed: 0,
@@ -98,8 +108,10 @@ pub struct Shaped {
     pub losses: Vec<LossValue>,
     /// How far points moved: mean and most, in the common frame.
     pub moved: [f32; 2],
-    /// The texture as the fit left it.
-    pub texture: Provisional,
+    /// How outlines differed before and after.
+    pub outline: [Outline; 2],
+    /// How far they were apart in the mean before and after, in the common frame.
+    pub gap: [f32; 2],
     /// True when it was asked to stop early.
     pub stopped: bool,
 }
@@ -125,6 +137,39 @@ pub(crate) fn lanes(level: Option<&Level<3>>) -> Vec<Vec4> {
     level.map(|l| l.texels.iter().map(|&[x, y, z]| Vec4::new(x, y, z, 0.0)).collect()).unwrap_or_default()
 }
 
+/// What stays through a fit.
+struct Fit<'a> {
+    mesh: &'a Mesh,
+    edges: EdgeAdjacency,
+    points: Points,
+    /// The identity's columns, for every vertex.
+    frames: (Vec<Vec3>, Vec<Vec4>),
+    views: Views<'a>,
+}
+
+impl Fit<'_> {
+    fn look(&self, at: &[Vec3], texture: &Provisional, views: &[(usize, u64)]) -> Judgement {
+        let positions = self.points.vertices(at);
+        let surface = Surface {
+            positions: &positions,
+            normals: &self.frames.0,
+            tangents: &self.frames.1,
+            uvs: &self.mesh.uvs,
+            triangles: &self.mesh.triangles,
+            edges: &self.edges,
+        };
+        let (color, normal) = (pyramid(&texture.color), pyramid(&texture.normal));
+        self.views.look(&surface, &Textures::new(&color, Some(&normal)), views)
+    }
+}
+
+/// Views at most whose outlines are measured before and after.
+const MEASURED: usize = 48;
+/// Distance between outlines in pixels from which on overhang has the full discount.
+const WIDE_GAP: f64 = 1.0;
+/// The shortest distance that is told from rounding, in pixels.
+const LEAST_GAP: f64 = 0.02;
+
 /// Fits the positions of a mesh to `references`, pictures of `size`² pixels that were
 /// rendered without jitter.
 pub fn fit_shape(
@@ -139,29 +184,33 @@ pub fn fit_shape(
     let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
     let guard = Guard::new(&points.home, &points.triangles);
     let laplacian = Laplacian::new(points.home.len(), &points.triangles);
-    let edges = EdgeAdjacency::new(&mesh.positions, &mesh.triangles);
-    // The identity's columns, for every vertex.
-    let normals = vec![Vec3::Z; mesh.positions.len()];
-    let tangents = vec![Vec4::new(1.0, 0.0, 0.0, 1.0); mesh.positions.len()];
-    let looker = Views {
-        references,
-        size,
-        display,
-        comparison: Comparison {
-            image: ImageLoss::L2,
-            coverage: options.coverage,
-            overhang_discount: options.overhang_discount,
-        },
-        background: options.background,
+    let comparison = Comparison { coverage: options.coverage, ..Comparison::default() };
+    let count = mesh.positions.len();
+    let mut fit = Fit {
+        mesh,
+        edges: EdgeAdjacency::new(&mesh.positions, &mesh.triangles),
+        points,
+        frames: (vec![Vec3::Z; count], vec![Vec4::new(1.0, 0.0, 0.0, 1.0); count]),
+        views: Views { references, size, display, comparison, background: options.background },
     };
+    let home = fit.points.home.clone();
     let mut texture = start;
-    let texels = texture.color.texels.len();
+    let measured: Vec<(usize, u64)> = (0..references.len().min(MEASURED)).map(|i| (i, i as u64)).collect();
+    let before = fit.look(&home, &texture, &measured);
+    let gap = before.outline.gap().max(LEAST_GAP);
+    let discount = options.overhang_discount * (gap / WIDE_GAP).min(1.0) as f32;
+    fit.views.comparison.overhang_discount = discount;
+    let pixel = references.first().map_or(0.0, |r| pixel_width(&r.view.camera, size));
+    let gap = gap as f32 * pixel;
+    let held = before.loss.image as f32 / (options.reach * gap).powi(2).max(1e-12);
+
     let at_rate = |rate| AdamOptions { rate, ..AdamOptions::default() };
-    let mut adam_points = Adam::new(points.home.len(), at_rate(options.rate));
+    let texels = texture.color.texels.len();
+    let mut adam_points = Adam::new(home.len(), at_rate(options.rate.min(gap / options.steps_in_gap)));
     let mut adam_color = Adam::new(texels, at_rate(options.texture_rate));
     let mut adam_normal = Adam::new(texels, at_rate(options.texture_rate));
-    let mut values = vec![Vec4::ZERO; points.home.len()];
-    let mut at = points.home.clone();
+    let mut values = vec![Vec4::ZERO; home.len()];
+    let mut at = home.clone();
     let (mut losses, mut stopped) = (Vec::new(), false);
     for step in 0..options.steps {
         watch.progress(Stage::Shape, step, options.steps);
@@ -170,44 +219,31 @@ pub fn fit_shape(
             break;
         }
         // The pool's every prefix is well spread, and so is every run of it.
-        let views: Vec<(usize, u64)> = (0..options.views_per_step)
-            .map(|i| {
-                let counter = step * options.views_per_step + i;
-                (counter % references.len(), mixed(options.seed ^ mixed(counter as u64)))
-            })
+        let first = step * options.views_per_step;
+        let views: Vec<(usize, u64)> = (first..first + options.views_per_step)
+            .map(|i| (i % references.len(), mixed(options.seed ^ mixed(i as u64))))
             .collect();
-        let positions = points.vertices(&at);
-        let surface = Surface {
-            positions: &positions,
-            normals: &normals,
-            tangents: &tangents,
-            uvs: &mesh.uvs,
-            triangles: &mesh.triangles,
-            edges: &edges,
-        };
-        let (color, normal) = (pyramid(&texture.color), pyramid(&texture.normal));
-        let judged = looker.look(&surface, &Textures::new(&color, Some(&normal)), &views);
-        let (loss, gradients) = (judged.loss, judged.gradients);
+        let Judgement { loss, gradients, .. } = fit.look(&at, &texture, &views);
         losses.push(loss);
         let share = rate_at(step, options.steps);
 
-        let mut to_values = points.adjoint(options.motion, &gradients.positions);
-        let pull = 2.0 * options.displacement * views.len() as f32 / values.len().max(1) as f32;
+        let mut to_values = fit.points.adjoint(options.motion, &gradients.positions);
+        let pull = 2.0 * held * views.len() as f32 / values.len().max(1) as f32;
         for (gradient, value) in to_values.iter_mut().zip(&values) {
             *gradient += *value * pull;
         }
         if options.laplacian > 0.0 {
-            let way: Vec<Vec3> = at.iter().zip(&points.home).map(|(a, h)| *a - *h).collect();
+            let way: Vec<Vec3> = at.iter().zip(&home).map(|(a, h)| *a - *h).collect();
             let (_, smooth) = laplacian.energy(&way);
-            let share = options.laplacian * views.len() as f32;
-            for (gradient, smooth) in to_values.iter_mut().zip(points.lanes(options.motion, &smooth)) {
-                *gradient += smooth * share;
+            let weight = options.laplacian * views.len() as f32;
+            for (gradient, smooth) in to_values.iter_mut().zip(fit.points.lanes(options.motion, &smooth)) {
+                *gradient += smooth * weight;
             }
         }
         adam_points.step(&mut values, &to_values, share);
-        let mut next = points.displaced(options.motion, &values);
+        let mut next = fit.points.displaced(options.motion, &values);
         if guard.hold(&at, &mut next) > 0 {
-            values = points.values(options.motion, &next);
+            values = fit.points.values(options.motion, &next);
         }
         at = next;
 
@@ -222,7 +258,26 @@ pub fn fit_shape(
         }
     }
     watch.progress(Stage::Shape, options.steps, options.steps);
-    let way: Vec<f32> = at.iter().zip(&points.home).map(|(a, h)| a.distance(*h)).collect();
+    let mut after = fit.look(&at, &texture, &measured).outline;
+    let cost = |outline: &Outline| f64::from(1.0 - discount) * outline.overhang + outline.underhang;
+    if cost(&after) > WORTH_MOVING * cost(&before.outline) {
+        (at, after) = (home.clone(), before.outline);
+    }
+    let way: Vec<f32> = at.iter().zip(&home).map(|(a, h)| a.distance(*h)).collect();
     let moved = [way.iter().sum::<f32>() / way.len().max(1) as f32, way.iter().copied().fold(0.0, f32::max)];
-    Shaped { positions: points.vertices(&at), losses, moved, texture, stopped }
+    let outline = [before.outline, after];
+    let gap = outline.map(|o| o.gap() as f32 * pixel);
+    Shaped { positions: fit.points.vertices(&at), losses, moved, outline, gap, stopped }
+}
+
+/// Outlines that agree hardly better than before are not worth another shape.
+const WORTH_MOVING: f64 = 0.9;
+
+/// Width of a pixel in the common frame, around its origin.
+fn pixel_width(camera: &Camera, size: usize) -> f32 {
+    let half = match camera.projection {
+        Projection::Perspective(half) => half * camera.eye.length(),
+        Projection::Orthographic(half) => half,
+    };
+    2.0 * half / size as f32
 }

@@ -41,9 +41,11 @@ pub fn turned_normals(home: &[Vec3], now: &[Vec3], normals: &[Vec3], triangles: 
     let groups = groups(home, normals);
     let (before, after) = (means(home, triangles, &groups), means(now, triangles, &groups));
     (normals.iter().zip(before.iter().zip(&after)))
-        .map(|(&normal, (&before, &after))| {
-            if before == after { normal } else { (normal + (after - before)).normalize_or(normal) }
-        })
+        .map(
+            |(&normal, (&before, &after))| {
+                if before == after { normal } else { (normal + (after - before)).normalize_or(normal) }
+            },
+        )
         .collect()
 }
 

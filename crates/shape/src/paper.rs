@@ -40,7 +40,8 @@ pub struct PaperOptions {
     pub parallax: Option<(usize, usize)>,
     /// Side of the textures in texels.
     pub texture_size: usize,
-    /// λ_ΔV = 5.
+    /// λ_ΔV of the mean squared displacement. The paper's 5 is in units that it does not name;
+    /// in these it would hold vertices where they are.
     pub displacement: f32,
     /// Adam's rate for textures and depth.
     pub rate: f32,
@@ -57,14 +58,14 @@ impl Default for PaperOptions {
         Self {
             steps: 4500,
             last_steps: 500,
-            views_per_step: 2,
+            views_per_step: 3,
             motion: Some(Motion::Normal),
             parallax: Some((3, 64)),
             texture_size: 256,
-            displacement: 5.0,
+            displacement: 0.05,
             rate: 0.01,
-            coefficient_rate: 1e-3,
-            vertex_rate: 1e-3,
+            coefficient_rate: 3e-4,
+            vertex_rate: 4e-3,
             epsilon: 1e-5,
         }
     }
@@ -149,7 +150,10 @@ pub fn paper_fit(
         let textures = Textures::new(&colors, Some(&normals)).with_parallax(map.as_ref());
         let judged = views.look(&surface, &textures, &chosen);
         losses.push(judged.loss.image);
-        let share = rate_at(step.saturating_sub(options.steps), if step < options.steps { 0 } else { options.last_steps });
+        let share = rate_at(
+            step.saturating_sub(options.steps),
+            if step < options.steps { 0 } else { options.last_steps },
+        );
 
         let gradients = judged.gradients;
         adam_color.step(&mut color.texels, &lanes(gradients.color.levels.first()), share);

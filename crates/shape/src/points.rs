@@ -128,7 +128,8 @@ mod tests {
             let moved = points.vertices(&points.displaced(motion, &values));
             let home = points.vertices(&points.home);
             let left: f32 = moved.iter().zip(&home).zip(&weights).map(|((m, h), w)| (*m - *h).dot(*w)).sum();
-            let right: f32 = points.adjoint(motion, &weights).iter().zip(&values).map(|(g, v)| g.dot(*v)).sum();
+            let right: f32 =
+                points.adjoint(motion, &weights).iter().zip(&values).map(|(g, v)| g.dot(*v)).sum();
             assert!((left - right).abs() < 1e-4, "{left} {right}");
             assert_eq!(points.values(motion, &points.displaced(motion, &values)).len(), 4);
         }

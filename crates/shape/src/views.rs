@@ -1,5 +1,5 @@
-//! What rendered views say of a surface: their loss, its gradients, and where on the surface
-//! the errors lie.
+//! What rendered views say of a surface: their loss, its gradients, and how far outlines are
+//! apart.
 //!
 //! Contract: references are of one size and were rendered without jitter. Views are summed in
 //! their order, so the results do not depend on the number of threads.
@@ -8,8 +8,7 @@ use parbake_fit::reference::Reference as Rendered;
 use parbake_render::background::{Background, Composer};
 use parbake_render::display::Display;
 use parbake_render::loss::{Comparison, LossValue, Reference};
-use parbake_render::pipeline::{Gradients, Tape, View, adjoint, forward};
-use parbake_render::raster::NOTHING;
+use parbake_render::pipeline::{Gradients, View, adjoint, forward};
 use parbake_render::shade::Lambert;
 use parbake_render::surface::{Surface, Textures};
 use rayon::prelude::*;
@@ -35,9 +34,49 @@ pub struct Judgement {
     pub loss: LossValue,
     /// Sum over the views.
     pub gradients: Gradients,
-    /// F sums of the squared differences of the pixels that show each triangle, and their
-    /// numbers.
-    pub by_triangle: Vec<[f64; 2]>,
+    /// How the outlines differ.
+    pub outline: Outline,
+}
+
+/// How the outlines of two pictures differ: shares of the picture's area, means over views.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outline {
+    /// Covered by the surface alone.
+    pub overhang: f64,
+    /// Covered by the reference alone.
+    pub underhang: f64,
+    /// Pixels that the reference covers in part: as many as its outline is long.
+    pub length: f64,
+}
+
+impl Outline {
+    /// Mean distance between the outlines, in widths of a pixel of size² in a picture.
+    pub fn gap(&self) -> f64 {
+        (self.overhang + self.underhang) / self.length.max(1e-9)
+    }
+
+    fn of(view: &[[f32; 4]], reference: &Reference) -> Self {
+        let mut sum = Self::default();
+        for (view, reference) in view.iter().zip(&reference.pixels) {
+            let difference = f64::from(view[3] - reference[3]);
+            sum.overhang += difference.max(0.0);
+            sum.underhang += (-difference).max(0.0);
+            sum.length += f64::from(u8::from(reference[3] > 0.0 && reference[3] < 1.0));
+        }
+        sum.scaled(1.0 / view.len().max(1) as f64)
+    }
+
+    fn scaled(self, by: f64) -> Self {
+        Self { overhang: self.overhang * by, underhang: self.underhang * by, length: self.length * by }
+    }
+
+    fn plus(self, more: Self) -> Self {
+        Self {
+            overhang: self.overhang + more.overhang,
+            underhang: self.underhang + more.underhang,
+            length: self.length + more.length,
+        }
+    }
 }
 
 impl Views<'_> {
@@ -48,15 +87,13 @@ impl Views<'_> {
         let mut sum = Judgement {
             loss: LossValue::default(),
             gradients: Gradients::zeros(surface, textures, true),
-            by_triangle: vec![[0.0; 2]; surface.triangles.len()],
+            outline: Outline::default(),
         };
         for one in each {
             sum.loss.image += one.loss.image / views.len() as f64;
             sum.loss.coverage += one.loss.coverage / views.len() as f64;
             sum.gradients.add(&one.gradients);
-            for (sum, one) in sum.by_triangle.iter_mut().zip(one.by_triangle) {
-                *sum = [sum[0] + one[0], sum[1] + one[1]];
-            }
+            sum.outline = sum.outline.plus(one.outline.scaled(1.0 / views.len() as f64));
         }
         sum
     }
@@ -76,28 +113,6 @@ impl Views<'_> {
         let tape = forward(surface, textures, &Lambert, &view);
         let mut gradients = Gradients::zeros(surface, textures, true);
         adjoint(surface, textures, &Lambert, &view, &tape, &mut gradients);
-        let by_triangle = errors_by_triangle(&tape, &reference, &composer, surface.triangles.len());
-        Judgement { loss: tape.loss, gradients, by_triangle }
+        Judgement { loss: tape.loss, gradients, outline: Outline::of(&tape.rgba, &reference) }
     }
-}
-
-fn errors_by_triangle(
-    tape: &Tape,
-    reference: &Reference,
-    composer: &Composer,
-    triangles: usize,
-) -> Vec<[f64; 2]> {
-    let mut sums = vec![[0.0; 2]; triangles];
-    let pixels = tape.seen.triangle.iter().zip(tape.rgba.iter().zip(&reference.pixels));
-    for (pixel, (&triangle, (rgba, wanted))) in pixels.enumerate() {
-        if triangle == NOTHING {
-            continue;
-        }
-        let shown = composer.forward(rgba, pixel % reference.size, pixel / reference.size).value;
-        let square: f32 =
-            shown.iter().zip(&wanted[..3]).map(|(x, y)| (x.min(1.0) - y.min(1.0)).powi(2)).sum();
-        let sum = &mut sums[triangle as usize];
-        *sum = [sum[0] + f64::from(square / 3.0), sum[1] + 1.0];
-    }
-    sums
 }

@@ -20,12 +20,12 @@
 mod energy;
 pub mod texture_loss;
 
-use parbake_adam::{Adam, AdamOptions};
 use crate::best_texture::{Mapped, Texture};
 use crate::contact::Contact;
 use crate::descent::{Place, Region, Step};
 use crate::lbfgs::{Identity, Lbfgs};
 use crate::signal::Signal;
+use parbake_adam::{Adam, AdamOptions};
 
 use energy::Problem;
 use glam::{DMat2, DVec2, Vec4};

@@ -37,7 +37,7 @@ pub(super) fn texture(layout: &Layout, size: usize) -> Image {
     Image { name: "jar".into(), width: size, height: size, pixels }
 }
 
-fn bytes(color: Vec3) -> [u8; 4] {
+pub(super) fn bytes(color: Vec3) -> [u8; 4] {
     let [r, g, b] = (color.clamp(Vec3::ZERO, Vec3::ONE) * 255.0).round().to_array().map(|x| x as u8);
     [r, g, b, 255]
 }
@@ -151,7 +151,7 @@ fn neck(u: f32, v: f32) -> Vec3 {
 }
 
 /// A value of its own for each lattice point, 0 … 1.
-fn hash(p: IVec3) -> f32 {
+pub(super) fn hash(p: IVec3) -> f32 {
     let mut h = (p.x as u32).wrapping_mul(0x9E37_79B1)
         ^ (p.y as u32).wrapping_mul(0x85EB_CA77)
         ^ (p.z as u32).wrapping_mul(0xC2B2_AE3D);
@@ -161,7 +161,7 @@ fn hash(p: IVec3) -> f32 {
 }
 
 /// Value noise, 0 … 1.
-fn noise(p: Vec3) -> f32 {
+pub(super) fn noise(p: Vec3) -> f32 {
     let cell = p.floor();
     let f = p - cell;
     let f = f * f * (3.0 - 2.0 * f);
@@ -173,7 +173,7 @@ fn noise(p: Vec3) -> f32 {
 }
 
 /// Four octaves of noise, 0 … 1.
-fn turbulence(p: Vec3) -> f32 {
+pub(super) fn turbulence(p: Vec3) -> f32 {
     let octave = |k: i32| noise(p * 2f32.powi(k) + 17.0 * k as f32) * 0.5f32.powi(k + 1);
     (0..4).map(octave).sum::<f32>() / 0.9375
 }

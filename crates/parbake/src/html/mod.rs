@@ -7,6 +7,8 @@
 //! textures ─ uv_layout, textures, uv_check, uv_moves ─┘
 //! ```
 //!
+//! `variants.rs` is a page of its own, about a comparison of parallax variants.
+//!
 //! Contract: the page does not depend on the number of threads; all that comes from
 //! models and options is escaped; no "NaN" stands on it. `Watcher::stopped` is not
 //! asked: whoever stopped a bake wants to see what came of it, the more so, and
@@ -30,7 +32,10 @@ mod textures;
 mod uv_check;
 mod uv_layout;
 mod uv_moves;
+mod variants;
 mod view_chart;
+
+pub use variants::variants_html;
 
 use crate::bake::Baked;
 use crate::error::BakeError;

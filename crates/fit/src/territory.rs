@@ -1,0 +1,126 @@
+//! Which chart each texel belongs to, all over the texture, and shifts that stay at home.
+//!
+//! A shifted coordinate that lands in another chart shows what that chart has for its own
+//! surface: right by luck, and wrong as soon as either is minified. So every texel belongs to
+//! the chart that is nearest to it, and where a shift would cross the border, the
+//! coefficients that made it are made smaller, until no pixel of any training view crosses.
+//!
+//! Contract: coefficients only shrink; a map without strays stays to the bit. The result does
+//! not depend on the number of threads.
+
+use crate::atlas::{Atlas, NO_CHART};
+use crate::reference::Reference;
+use crate::view_walk::Walker;
+use parbake_model::glam::Vec2;
+use parbake_render::parallax::{ShParallax, Sight};
+use parbake_render::spherical_harmonics::functions;
+use rayon::prelude::*;
+
+/// The owners of a texture's texels.
+#[derive(Clone, Debug)]
+pub struct Territory {
+    size: usize,
+    owner: Vec<u32>,
+}
+
+impl Territory {
+    /// From an atlas whose charts were grown until they met.
+    pub fn new(grown: &Atlas) -> Self {
+        Self { size: grown.size, owner: grown.label.clone() }
+    }
+
+    /// The owner of a coordinate; [`NO_CHART`] outside the texture.
+    #[inline]
+    pub fn owner(&self, uv: Vec2) -> u32 {
+        let at = (uv * self.size as f32).floor();
+        let inside = |x: f32| x >= 0.0 && x < self.size as f32;
+        if !(inside(at.x) && inside(at.y)) {
+            return NO_CHART;
+        }
+        self.owner[at.y as usize * self.size + at.x as usize]
+    }
+
+    /// Whether a shift leads from one owner to another.
+    #[inline]
+    fn strays(&self, map: &ShParallax, uv: Vec2, sight: &Sight) -> bool {
+        self.owner(uv + map.shift(uv, sight)) != self.owner(uv)
+    }
+}
+
+/// By how much a texel's coefficients shrink when a shift of theirs strays.
+const SHRINK: f32 = 0.85;
+/// Rounds at most: after these a stray shift is gone.
+const ROUNDS: usize = 32;
+
+/// Shrinks coefficients until no shift crosses a border, but for pixels that lie on one.
+/// Returns the share of pixels whose shifts did at first, and at the end.
+pub fn keep_at_home(
+    walker: &Walker,
+    references: &[Reference],
+    territory: &Territory,
+    map: &mut ShParallax,
+) -> [f64; 2] {
+    let (first, mut stray) = strays(walker, references, territory, map);
+    let count = functions(map.order);
+    for _ in 0..ROUNDS {
+        stray.retain(|(uv, sight)| territory.strays(map, *uv, sight));
+        if stray.is_empty() {
+            break;
+        }
+        let mut shrink = vec![false; map.width * map.height];
+        for texel in stray.iter().flat_map(|(uv, _)| map.taps(*uv).index) {
+            shrink[texel as usize] = true;
+        }
+        for (texel, _) in shrink.into_iter().enumerate().filter(|(_, shrink)| *shrink) {
+            map.coefficients[texel * count..(texel + 1) * count].iter_mut().for_each(|c| *c *= SHRINK);
+        }
+    }
+    // A shift that became smaller ends elsewhere, and that may be another chart's bay.
+    [first, if first > 0.0 { strays(walker, references, territory, map).0 } else { 0.0 }]
+}
+
+/// The pixels that stray, and their share in all.
+fn strays(
+    walker: &Walker,
+    references: &[Reference],
+    territory: &Territory,
+    map: &ShParallax,
+) -> (f64, Vec<(Vec2, Sight)>) {
+    let each: Vec<(usize, Vec<(Vec2, Sight)>)> = references
+        .par_iter()
+        .map(|reference| {
+            let (mut seen, mut stray) = (0, Vec::new());
+            walker.walk(reference, |pixel| {
+                seen += 1;
+                if territory.strays(map, pixel.uv, &pixel.sight) {
+                    stray.push((pixel.uv, pixel.sight));
+                }
+            });
+            (seen, stray)
+        })
+        .collect();
+    let all: usize = each.iter().map(|e| e.0).sum();
+    let stray: Vec<_> = each.into_iter().flat_map(|e| e.1).collect();
+    (stray.len() as f64 / all.max(1) as f64, stray)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parbake_model::glam::Vec3;
+
+    /// Protects other charts' colours: a border is seen, and so is the texture's edge.
+    #[test]
+    fn shifts_across_a_border_stray() {
+        let label = (0..16).map(|i| u32::from(i % 4 >= 2)).collect();
+        let territory = Territory::new(&Atlas { size: 4, label, covered: vec![true; 16] });
+        let mut map = ShParallax::zeros(0, 1);
+        let sight = Sight { direction: Vec3::Z, cosine: 1.0 };
+        let mut strays = |x: f32, from: f32| {
+            map.coefficients[0] = Vec2::new(x / 0.282_094_8, 0.0);
+            territory.strays(&map, Vec2::new(from, 0.5), &sight)
+        };
+        assert!(!strays(0.2, 0.25) && strays(0.3, 0.25));
+        assert!(!strays(0.2, 0.75) && strays(0.3, 0.75));
+    }
+}

@@ -1,0 +1,186 @@
+//! What follows from a user's options: every number settled that a preset leaves open, stage
+//! by stage.
+
+use crate::algorithm_one::AlgorithmPlan;
+use crate::depth::{DepthPlan, ParallaxPass};
+use crate::options::{BakeOptions, Method, Parallax, Preset, ShapeMode, UvMode};
+use crate::shape::ShapePlan;
+use crate::unfold::UnfoldOptions;
+use parbake_fit::cutout::CutoutOptions;
+use parbake_fit::parallax::ParallaxOptions;
+use parbake_fit::reference::Sampling;
+use parbake_fit::schedule::Schedule;
+use parbake_shape::paper::PaperOptions as AlgorithmOptions;
+use parbake_shape::{Motion, ShapeOptions};
+use parbake_uv::paper::PaperOptions;
+
+/// Options with every number settled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plan {
+    /// Training views.
+    pub views: usize,
+    /// How the high-poly is sampled in them.
+    pub reference: Sampling,
+    /// The order of the fit.
+    pub schedule: Schedule,
+}
+
+/// Seconds below which a time budget is better spent on textures alone.
+const LEAST_BUDGET: f64 = 8.0;
+
+/// Side in pixels of the views that vertices are fitted to: edges are found between pixels, so
+/// more of them only take longer.
+const SHAPE_VIEW_SIZE: usize = 160;
+
+impl BakeOptions {
+    /// Of a stage's views, those that the user's number leaves.
+    fn at_most_views(&self, own: usize) -> usize {
+        self.views.map_or(own, |views| views.min(own))
+    }
+
+    /// A stage's view size, or the user's where that is smaller.
+    fn at_most_pixels(&self, own: usize) -> usize {
+        self.view_size.map_or(own, |size| size.min(own))
+    }
+
+    /// Whether there is only time for textures.
+    fn hurried(&self) -> bool {
+        self.time_budget.is_some_and(|seconds| seconds < LEAST_BUDGET)
+    }
+
+    /// What to do with vertices; none where they stay.
+    pub(crate) fn shape_plan(&self) -> Option<ShapePlan> {
+        let motion = match self.shape {
+            ShapeMode::Keep => return None,
+            ShapeMode::Normal => Motion::Normal,
+            ShapeMode::Free => Motion::Free,
+        };
+        let (views, steps) = match self.preset {
+            Preset::Fast => (96, 60),
+            Preset::Balanced => (192, 160),
+            Preset::Best => (384, 400),
+        };
+        // What stands out will be cut out, what is missing cannot be put there.
+        let overhang_discount = if self.cuts() { 0.9 } else { 0.0 };
+        (self.method == Method::Fit && !self.hurried()).then_some(ShapePlan {
+            views: self.at_most_views(views),
+            view_size: self.at_most_pixels(SHAPE_VIEW_SIZE),
+            texture_size: 128,
+            samples: 3,
+            fit: ShapeOptions { motion, steps, overhang_discount, ..ShapeOptions::default() },
+        })
+    }
+
+    /// How cutout and parallax map are fitted; none where there are none.
+    pub(crate) fn depth_plan(&self) -> Option<DepthPlan> {
+        let (views, cutout_steps, steps) = match self.preset {
+            Preset::Fast => (240, 200, [100, 60]),
+            Preset::Balanced => (480, 300, [300, 150]),
+            Preset::Best => (960, 500, [600, 400]),
+        };
+        let own = ParallaxOptions::default();
+        let pass = |texture_size: usize, steps, rate| ParallaxPass {
+            texture_size: self.texture_size.min(texture_size),
+            steps,
+            rate,
+        };
+        (self.parallax == Parallax::Sh && self.method == Method::Fit).then_some(DepthPlan {
+            views,
+            cutout: (!self.no_cutout).then_some(CutoutOptions {
+                order: self.cutout_order,
+                size: self.cutout_size,
+                steps: cutout_steps,
+                ..CutoutOptions::default()
+            }),
+            parallax: ParallaxOptions { order: self.parallax_order, size: self.parallax_size, ..own },
+            passes: [pass(128, steps[0], own.rate), pass(256, steps[1], 0.3 * own.rate)],
+        })
+    }
+
+    /// Whether the low-poly is cut at the high-poly's silhouettes.
+    fn cuts(&self) -> bool {
+        self.parallax == Parallax::Sh && self.method == Method::Fit && !self.no_cutout
+    }
+
+    /// The paper's optimiser for vertices and parallax; none where neither is asked for.
+    pub(crate) fn algorithm_plan(&self) -> Option<AlgorithmPlan> {
+        let (own, paper) = (AlgorithmOptions::default(), PaperOptions::default());
+        let rounds = self.uv_steps.unwrap_or(paper.rounds);
+        let fit = AlgorithmOptions {
+            motion: (self.shape != ShapeMode::Keep).then_some(Motion::Normal),
+            parallax: (self.parallax == Parallax::Sh).then_some((self.parallax_order, self.parallax_size)),
+            texture_size: self.texture_size.min(256),
+            steps: paper.first_steps + rounds * paper.steps_in_round,
+            ..own
+        };
+        let moves = fit.motion.is_some() || fit.parallax.is_some();
+        (self.method == Method::Paper && moves).then_some(AlgorithmPlan {
+            views: self.at_most_views(192),
+            view_size: self.at_most_pixels(SHAPE_VIEW_SIZE),
+            fit,
+        })
+    }
+
+    /// How much pixels count beyond the high-poly's silhouette: none where they are cut out.
+    pub(crate) fn silhouette_weight(&self) -> f32 {
+        self.silhouette.unwrap_or(if self.cuts() { 0.0 } else { 0.5 })
+    }
+
+    /// What to do with texture coordinates in another mode.
+    pub(crate) fn unfold_as(&self, mode: UvMode) -> UnfoldOptions {
+        UnfoldOptions { mode, ..self.unfold() }
+    }
+
+    /// What to do with texture coordinates.
+    pub(crate) fn unfold(&self) -> UnfoldOptions {
+        let steps = match (self.method, self.preset) {
+            (Method::Paper, _) => PaperOptions::default().rounds,
+            (Method::Fit, Preset::Fast) => 10,
+            (Method::Fit, Preset::Balanced) => 30,
+            (Method::Fit, Preset::Best) => 60,
+        };
+        UnfoldOptions {
+            mode: if self.hurried() && self.uv == UvMode::Optimize { UvMode::Repair } else { self.uv },
+            method: self.method,
+            guide: Method::guide(self.no_content_aware),
+            texture_size: self.texture_size,
+            gutter: self.gutter_texels(),
+            gutter_asked: self.gutter.is_some(),
+            steps: self.uv_steps.unwrap_or(steps),
+        }
+    }
+
+    /// Settles what the preset leaves open.
+    pub fn plan(&self) -> Plan {
+        // Views matter more than their pixels: what a texel looks like depends on the
+        // side it is seen from, and few sides are learnt by heart.
+        let (views, view_size, rounds, final_steps) = match self.preset {
+            Preset::Fast => (240, 192, 3, 1),
+            Preset::Balanced => (640, 192, 5, 2),
+            Preset::Best => (1280, 256, 8, 3),
+        };
+        // A texel that hardly a sample reads is noise: beyond 1024 texels views grow, though
+        // by less than the texture, or bakes would take for ever.
+        let finer = (self.texture_size as f32 / 1024.0).max(1.0).sqrt();
+        let view_size = self.view_size.unwrap_or((view_size as f32 * finer) as usize);
+        let rounds = self.rounds.unwrap_or(rounds);
+        // A projection is only looked at, to report its loss.
+        let views = if rounds == 0 { 16 } else { views };
+        Plan {
+            views: self.views.unwrap_or(views),
+            reference: Sampling {
+                size: view_size,
+                // Half a texel wide where the texture fills the picture: averaging is the
+                // solver's work, over all the samples that meet in a texel.
+                filter: (0.5 * view_size as f32 / self.texture_size as f32).clamp(1.0 / 16.0, 1.0),
+                samples: 1,
+            },
+            schedule: Schedule {
+                rounds,
+                normal_steps: if self.keep_normals { 0 } else { Schedule::default().normal_steps },
+                final_steps: if rounds == 0 { 0 } else { final_steps },
+                ..Schedule::default()
+            },
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! What all variants have in common: the two models, views, samples, and the way from a map
+//! that shifts nothing to figures and pictures.
+
+use super::look::Look;
+use super::options::VariantsOptions;
+use super::report::VariantFigures;
+use super::stored::Stored;
+use crate::error::BakeError;
+use crate::evaluate::{EvaluateOptions, compare, mean, shown};
+use crate::low::LowPoly;
+use crate::message::{Message, Watcher};
+use crate::pair::{common_frame, placed};
+use parbake_fit::canvas::Canvas;
+use parbake_fit::parallax::{Sighted, State, fit_parallax, sighted_views};
+use parbake_fit::quantise::{color_canvas, normal_canvas};
+use parbake_fit::reference::{Reference, render_references};
+use parbake_fit::samples::collect_shifted_samples;
+use parbake_fit::schedule::fit_textures;
+use parbake_fit::start::{Start, project};
+use parbake_fit::view_walk::{Beyond, Walker};
+use parbake_fit::views::{Rig, view_pool};
+use parbake_fit::watch::Watch;
+use parbake_mesh::HighSurface;
+use parbake_metric::Rgb;
+use parbake_model::Model;
+use parbake_model::glam::Vec3;
+use parbake_render::camera::{Camera, Projection, fibonacci_sphere};
+use parbake_render::display::Display;
+use parbake_render::display_table::DisplayTable;
+use parbake_render::parallax_variants::shift_map::Unshifted;
+use parbake_render::scene::Scene;
+use parbake_render::shade::Lambert;
+use std::time::Instant;
+
+/// Held-out views.
+pub const VIEWS: usize = 8;
+/// Where training cameras stand: those of a bake.
+const RIG: Rig = Rig { radius: 3.5, projection: Projection::Perspective(0.4) };
+/// How far projection looks to either side in the common frame: as a bake by default.
+const REACH: f32 = 0.1;
+/// Silhouettes are treated as a bake by default treats them.
+const BEYOND: Beyond = Beyond::Background([0.0; 3], 0.5);
+/// Sides to look at: azimuth from +Z towards +X and height in degrees, and half the width of
+/// the view at unit depth.
+const SIDES: [([f32; 2], f32); 2] = [([25.0, 12.0], 0.36), ([62.0, 24.0], 0.17)];
+/// Side of these pictures in pixels, and samples along a side of each.
+const PICTURE: (usize, usize) = (384, 2);
+/// Before dark grey, as in the report of a bake; linear light.
+const GREY: [f32; 3] = [0.04; 3];
+/// Steps at either end whose mean the report gives.
+const REPORTED: usize = 10;
+
+/// The models and all that is rendered or projected once.
+pub struct Subject {
+    display: Display,
+    srgb: bool,
+    scene: Scene,
+    low: LowPoly,
+    start: Start,
+    /// The textures that are fitted along with maps, as they begin.
+    small: (LowPoly, Start),
+    references: Vec<Reference>,
+}
+
+impl Subject {
+    /// Renders and projects.
+    pub fn new<W: Watcher + Watch>(
+        high: &Model,
+        low: &Model,
+        options: &VariantsOptions,
+        watch: &W,
+    ) -> Result<Self, BakeError> {
+        let (convention, frame) = (options.convention, common_frame(high)?);
+        let mesh = placed(high, &frame);
+        let surface = HighSurface::new(&mesh);
+        let scene = Scene::new(mesh, &high.materials, &high.images, convention.interpretation());
+        let made = |size| -> Result<(LowPoly, Start), BakeError> {
+            let low = LowPoly::new(low, &frame, size)?;
+            let start = project(&low.placed, &low.map, &low.atlas, &scene, &surface, REACH);
+            Ok((low, start))
+        };
+        let (ready, start) = made(options.texture_size)?;
+        let small = made(options.fitted_texels())?;
+        for warning in &ready.warnings {
+            watch.message(Message::Warning(warning.clone()));
+        }
+        let pool = view_pool(options.views, &RIG, options.seed);
+        let references = render_references(&scene, &Lambert, &pool, &options.sampling(), 1, watch);
+        let (display, srgb) = (convention.display(), convention.decodes_srgb());
+        let made = Self { display, srgb, scene, low: ready, start, small, references };
+        let walker = made.walker(options);
+        let mut seen = 0;
+        made.references.iter().for_each(|reference| walker.walk(reference, |_| seen += 1));
+        match seen {
+            0 => Err(BakeError::OutOfView { low: low.name.clone(), high: high.name.clone() }),
+            _ => Ok(made),
+        }
+    }
+
+    fn walker(&self, options: &VariantsOptions) -> Walker<'_> {
+        Walker::new(&self.low.placed, options.view_size, &self.display, BEYOND)
+    }
+}
+
+/// The same, ready for fits.
+pub struct Ground<'a> {
+    subject: &'a Subject,
+    options: &'a VariantsOptions,
+    walker: Walker<'a>,
+    views: Vec<Vec<Sighted>>,
+    /// Small textures that were solved for without parallax.
+    begin: [Canvas; 2],
+    evaluate: EvaluateOptions,
+    /// The high-poly in each held-out view.
+    wanted: Vec<(Camera, Rgb)>,
+}
+
+impl<'a> Ground<'a> {
+    /// Collects samples and renders the held-out views.
+    pub fn new(subject: &'a Subject, options: &'a VariantsOptions, watch: &impl Watch) -> Self {
+        let walker = subject.walker(options);
+        let (low, start) = &subject.small;
+        let references = &subject.references;
+        let samples =
+            collect_shifted_samples(&walker, references, options.fitted_texels(), &Unshifted, watch);
+        let (display, srgb) = (subject.display, subject.srgb);
+        let begin = fit_textures(&samples, &low.atlas, start, display, srgb, &options.schedule(), watch);
+        let evaluate = EvaluateOptions { resolution: options.resolution, ..EvaluateOptions::default() };
+        let wanted = (fibonacci_sphere(VIEWS, 0.0).into_iter())
+            .map(|direction| {
+                let camera = Camera::towards_origin(direction, evaluate.radius, evaluate.projection());
+                let (size, supersample) = (evaluate.resolution, evaluate.supersample);
+                let picture = subject.scene.render(&Lambert, &camera, size, supersample);
+                (camera, shown(&picture, &display, [0.0; 3]))
+            })
+            .collect();
+        Self {
+            views: sighted_views(&walker, references),
+            begin: [color_canvas(&begin.color, srgb), normal_canvas(&begin.normal)],
+            subject,
+            options,
+            walker,
+            evaluate,
+            wanted,
+        }
+    }
+
+    /// The high-poly from the sides to look at.
+    pub fn high_sides(&self) -> Vec<Rgb> {
+        let scene = &self.subject.scene;
+        SIDES.map(|side| self.grey(&scene.render(&Lambert, &camera(side), PICTURE.0, PICTURE.1))).into()
+    }
+
+    fn grey(&self, picture: &parbake_render::scene::Picture) -> Rgb {
+        shown(picture, &self.subject.display, GREY)
+    }
+
+    /// The next variant, unless it shall stop: half a fit would be no fair comparison.
+    pub fn next<M: Stored>(
+        &self,
+        name: &str,
+        map: impl FnOnce() -> M,
+        watch: &impl Watch,
+    ) -> Option<(VariantFigures, Vec<Rgb>)> {
+        let variant = (!watch.should_stop()).then(|| self.variant(name, map(), watch));
+        variant.filter(|_| !watch.should_stop())
+    }
+
+    /// Fits a map, keeps it, solves for textures, and looks at the result.
+    pub fn variant<M: Stored>(&self, name: &str, map: M, watch: &impl Watch) -> (VariantFigures, Vec<Rgb>) {
+        let (since, options) = (Instant::now(), self.options);
+        let Subject { display, srgb, low, start, references, .. } = self.subject;
+        let [color, normal] = self.begin.clone();
+        let mut fit = options.fit();
+        fit.rate *= map.share_of_rate();
+        let mut state = State { map, color, normal };
+        let losses = match state.map.parameters().is_empty() {
+            true => Vec::new(),
+            false => fit_parallax(&self.views, &mut state, &DisplayTable::new(display), &fit, watch),
+        };
+        let (map, cost) = state.map.stored();
+        let samples = collect_shifted_samples(&self.walker, references, options.texture_size, &map, watch);
+        let fitted = fit_textures(&samples, &low.atlas, start, *display, *srgb, &options.schedule(), watch);
+        drop(samples);
+        let seconds = since.elapsed().as_secs_f64();
+
+        let look = Look::new(&low.placed, &fitted.color, &fitted.normal, *srgb, map);
+        let (size, supersample) = (self.evaluate.resolution, self.evaluate.supersample);
+        let views: Vec<_> = (self.wanted.iter())
+            .map(|(camera, wanted)| {
+                let picture = shown(&look.render(camera, size, supersample), display, [0.0; 3]);
+                compare(wanted, &picture, false)
+            })
+            .collect();
+        let figures = mean(&views);
+        let average = |losses: &[f64]| losses.iter().sum::<f64>() / losses.len().max(1) as f64;
+        let few = REPORTED.min(losses.len());
+        let fitted = [average(&losses[..few]), average(&losses[losses.len() - few..])];
+        let figures = VariantFigures {
+            name: name.into(),
+            psnr: figures.psnr,
+            ms_ssim: figures.ms_ssim,
+            fitted: (few > 0).then_some(fitted),
+            bytes: cost.bytes,
+            places: cost.places,
+            fetches: cost.fetches,
+            seconds,
+        };
+        let sides = SIDES.map(|side| self.grey(&look.render(&camera(side), PICTURE.0, PICTURE.1)));
+        (figures, sides.into())
+    }
+}
+
+fn camera(([azimuth, height], half_width): ([f32; 2], f32)) -> Camera {
+    let (azimuth, height) = (azimuth.to_radians(), height.to_radians());
+    let direction = Vec3::new(height.cos() * azimuth.sin(), height.sin(), height.cos() * azimuth.cos());
+    Camera::towards_origin(direction, RIG.radius, Projection::Perspective(half_width))
+}

@@ -1,0 +1,189 @@
+//! What a fit needs of a map that shifts texture coordinates, whatever its formula.
+//!
+//! Forward: `t' = t + shift(t, v)`, with v from where the point t is seen.
+//! Adjoint: the gradient of the shift becomes one of the map's parameters.
+//!
+//! Contract: shifts are finite, in texture widths, u to the right and v down; nothing depends
+//! on the number of threads.
+
+use crate::frame::TangentLight;
+use crate::parallax::{ShParallax, Sight};
+use parbake_model::glam::{Vec2, Vec3, Vec4};
+
+/// From where a point is seen, in the mesh's axes and in the surface's own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vantage {
+    /// Direction to the viewer in the mesh's axes, and its cosine.
+    pub sight: Sight,
+    /// Direction to the viewer along tangent, bitangent and vertex normal; about of unit length.
+    pub tangent: Vec3,
+}
+
+impl Vantage {
+    /// Where the light stands with the viewer, shading knows the direction in the tangent frame
+    /// already, but flipped on faces that are seen from behind: this turns it back.
+    #[inline]
+    pub fn under_headlight(sight: Sight, light: &TangentLight) -> Self {
+        let flipped = (light.light.z < 0.0) != (sight.cosine < 0.0);
+        Self { sight, tangent: if flipped { -light.light } else { light.light } }
+    }
+}
+
+/// A map that shifts texture coordinates and can be fitted by its gradient.
+pub trait ShiftMap: Clone + Send + Sync {
+    /// How far the coordinate moves, in texture widths.
+    fn shift(&self, uv: Vec2, from: &Vantage) -> Vec2;
+
+    /// Adds the gradients of the parameters to `into`, which has this map's shape.
+    fn adjoint_of_maps(&self, uv: Vec2, from: &Vantage, to_shift: Vec2, into: &mut Self);
+
+    /// Zeros in this map's shape.
+    fn zeros_like(&self) -> Self;
+
+    /// All that is fitted, in lanes of four; the last lanes may be padding that has no gradient.
+    fn parameters(&self) -> Vec<Vec4>;
+
+    /// Takes parameters as [`ShiftMap::parameters`] gives them, brought into the range that the
+    /// map allows.
+    fn set_parameters(&mut self, lanes: &[Vec4]);
+
+    /// About how far a parameter has to move for a shift to move by one texture width: fits of
+    /// different maps then keep the same pace.
+    fn pace(&self) -> f32;
+}
+
+/// No shift at all: textures as they are without parallax.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Unshifted;
+
+impl ShiftMap for Unshifted {
+    #[inline]
+    fn shift(&self, _: Vec2, _: &Vantage) -> Vec2 {
+        Vec2::ZERO
+    }
+
+    fn adjoint_of_maps(&self, _: Vec2, _: &Vantage, _: Vec2, _: &mut Self) {}
+
+    fn zeros_like(&self) -> Self {
+        *self
+    }
+
+    fn parameters(&self) -> Vec<Vec4> {
+        Vec::new()
+    }
+
+    fn set_parameters(&mut self, _: &[Vec4]) {}
+
+    fn pace(&self) -> f32 {
+        1.0
+    }
+}
+
+/// Coefficients are fitted; a depth map stays as it is, since it could only scale them.
+impl ShiftMap for ShParallax {
+    #[inline]
+    fn shift(&self, uv: Vec2, from: &Vantage) -> Vec2 {
+        ShParallax::shift(self, uv, &from.sight)
+    }
+
+    #[inline]
+    fn adjoint_of_maps(&self, uv: Vec2, from: &Vantage, to_shift: Vec2, into: &mut Self) {
+        ShParallax::adjoint_of_maps(self, uv, &from.sight, to_shift, into);
+    }
+
+    fn zeros_like(&self) -> Self {
+        ShParallax::zeros_like(self)
+    }
+
+    fn parameters(&self) -> Vec<Vec4> {
+        let lane = |c: &[Vec2]| {
+            let second = c.get(1).copied().unwrap_or_default();
+            Vec4::new(c[0].x, c[0].y, second.x, second.y)
+        };
+        self.coefficients.chunks(2).map(lane).collect()
+    }
+
+    fn set_parameters(&mut self, lanes: &[Vec4]) {
+        for (pair, lane) in self.coefficients.chunks_mut(2).zip(lanes) {
+            for (c, x) in pair.iter_mut().zip([Vec2::new(lane.x, lane.y), Vec2::new(lane.z, lane.w)]) {
+                *c = x;
+            }
+        }
+    }
+
+    fn pace(&self) -> f32 {
+        1.0
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::frame::tangent_light;
+
+    pub(crate) fn noise(i: usize) -> f32 {
+        ((i * 37 + 11) % 101) as f32 / 50.0 - 1.0
+    }
+
+    /// A vantage above the surface, in the mesh's axes as in the surface's.
+    pub(crate) fn vantage(i: usize) -> Vantage {
+        let direction = Vec3::new(noise(i), noise(2 * i + 3), 0.3 + noise(3 * i + 8).abs()).normalize();
+        Vantage { sight: Sight { direction, cosine: direction.z }, tangent: direction }
+    }
+
+    /// How far the gradient of a map's parameters is off central differences of `step`, at the
+    /// worst of all parameters; `smooth` says where the shift has no kink within a step.
+    pub(crate) fn worst_gradient<M: ShiftMap>(
+        map: &M,
+        uv: Vec2,
+        from: &Vantage,
+        step: f32,
+        smooth: impl Fn(&M, &M) -> bool,
+    ) -> f32 {
+        let to_shift = Vec2::new(0.7, -1.3);
+        let mut into = map.zeros_like();
+        map.adjoint_of_maps(uv, from, to_shift, &mut into);
+        let (have, values) = (into.parameters(), map.parameters());
+        let mut worst = 0.0f32;
+        for lane in 0..values.len() {
+            for k in 0..4 {
+                let [down, up] = [-step, step].map(|by| {
+                    let (mut moved, mut lanes) = (map.clone(), values.clone());
+                    lanes[lane][k] += by;
+                    moved.set_parameters(&lanes);
+                    moved
+                });
+                // Padding does not come back, and has no gradient.
+                if up.parameters()[lane][k] == values[lane][k] {
+                    assert_eq!(have[lane][k], 0.0);
+                } else if smooth(&down, &up) {
+                    let difference = up.shift(uv, from) - down.shift(uv, from);
+                    worst = worst.max((difference.dot(to_shift) / (2.0 * step) - have[lane][k]).abs());
+                }
+            }
+        }
+        worst
+    }
+
+    /// Protects the spherical harmonics behind the interface: an odd number of coefficients
+    /// comes back from its lanes, and the gradient is that of the shift.
+    #[test]
+    fn coefficients_pass_through_lanes() {
+        let mut map = ShParallax { width: 3, height: 1, ..ShParallax::zeros(0, 0) };
+        map.coefficients = (0..3).map(|i| Vec2::new(noise(i), noise(i + 7))).collect();
+        let mut back = map.zeros_like();
+        back.set_parameters(&map.parameters());
+        assert_eq!(back, map);
+        assert!(worst_gradient(&map, Vec2::new(0.4, 0.5), &vantage(1), 0.5, |_, _| true) < 1e-5);
+    }
+
+    /// Protects surfaces seen from behind: the direction is that to the viewer on both sides.
+    #[test]
+    fn a_flipped_light_is_turned_back() {
+        for direction in [Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.6, 0.0, -0.8)] {
+            let light = tangent_light(Vec3::Z, Vec3::X, 1.0, direction, direction.z.signum());
+            let sight = Sight { direction, cosine: direction.z };
+            assert_eq!(Vantage::under_headlight(sight, &light).tangent, direction);
+        }
+    }
+}
