@@ -159,7 +159,7 @@ proptest! {
                     points[point][axis] += h;
                     energy(&points)
                 };
-                let h = 1e-6;
+                let h = 1e-7;
                 let difference = (at(h) - at(-h)) / (2.0 * h);
                 prop_assume!(difference.is_finite());
                 let error = (gradient[point][axis] - difference).abs();
