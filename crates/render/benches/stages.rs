@@ -15,6 +15,7 @@ use glam::{Vec2, Vec3, Vec4};
 use parbake_render::antialias::{Blends, find_blends};
 use parbake_render::background::{Background, Composer};
 use parbake_render::camera::{Camera, Projection};
+use parbake_render::cutout::ShCutout;
 use parbake_render::display::{Curve, Display};
 use parbake_render::display_table::DisplayTable;
 use parbake_render::edges::EdgeAdjacency;
@@ -23,6 +24,7 @@ use parbake_render::interpolate::{
     Barycentrics, barycentrics, barycentrics_adjoint, footprint_adjoint, interpolate,
 };
 use parbake_render::loss::{Comparison, ImageLoss, Reference, compare};
+use parbake_render::parallax::{ShParallax, Sight};
 use parbake_render::pipeline::{self, Gradients, View};
 use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 use parbake_render::scatter::{Fetch, Scatter};
@@ -245,6 +247,54 @@ fn interpolate_attributes(bencher: Bencher) {
             black_box(interpolate(corners.map(|i| b.positions[i]), w.weights));
             black_box(interpolate(corners.map(|i| b.normals[i]), w.weights));
             black_box(interpolate(corners.map(|i| b.tangents[i].truncate()), w.weights));
+        }
+    });
+}
+
+/// Where each sample falls, and from where it is seen.
+fn sights(b: &Bench) -> Vec<(Vec2, Sight)> {
+    let sight = |&(t, x, y): &(usize, f64, f64)| {
+        let weights = barycentrics(&b.screen.triangles[t], x, y).weights;
+        let corners = b.triangles[t].map(|i| i as usize);
+        let direction = b.camera.view_direction(interpolate(corners.map(|i| b.positions[i]), weights));
+        let normal = interpolate(corners.map(|i| b.normals[i]), weights).normalize();
+        let sight = Sight { direction, cosine: normal.dot(direction) };
+        (interpolate(corners.map(|i| b.uvs[i]), weights), sight)
+    };
+    b.samples.iter().map(sight).collect()
+}
+
+/// A parallax map of 64², by the order of its functions.
+#[divan::bench(args = [0, 1, 2, 3, 4, 5, 6, 7])]
+fn parallax_forward(bencher: Bencher, order: usize) {
+    let b = Bench::new();
+    let (map, sights) = (ShParallax::zeros(order, 64), sights(&b));
+    bencher.counter(b.pixels()).bench_local(|| {
+        for (uv, sight) in &sights {
+            black_box(map.shift(*uv, sight));
+        }
+    });
+}
+
+#[divan::bench(args = [0, 1, 2, 3, 4, 5, 6, 7])]
+fn parallax_adjoint(bencher: Bencher, order: usize) {
+    let b = Bench::new();
+    let (map, sights) = (ShParallax::zeros(order, 64), sights(&b));
+    let mut into = map.zeros_like();
+    bencher.counter(b.pixels()).bench_local(|| {
+        for (uv, sight) in &sights {
+            map.adjoint_of_maps(*uv, sight, black_box(Vec2::splat(0.1)), &mut into);
+        }
+    });
+}
+
+#[divan::bench(args = [0, 1, 2, 3])]
+fn cutout_forward(bencher: Bencher, order: usize) {
+    let b = Bench::new();
+    let (map, sights) = (ShCutout::opaque(order, 128), sights(&b));
+    bencher.counter(b.pixels()).bench_local(|| {
+        for (uv, sight) in &sights {
+            black_box(map.opacity(*uv, sight.direction));
         }
     });
 }
