@@ -1,9 +1,10 @@
 //! A bake, from two models to a third.
 //!
 //! ```text
-//! high ─ placed ─┬ Scene ──────┬ reference views ─┐
-//!                └ HighSurface ┴ projection ──┐   │
-//! low ── LowPoly (texel map, charts) ─────── start ┴ samples ─ fit ─ Model
+//! high ─ placed ─┬ Scene ──────┬ reference views ──────────────┬───────┐
+//!                └ HighSurface ┴ projection ────────┐          │       │
+//! low ─ mend ─ shape ─ unfold ─ LowPoly ────────── start ─── depth ─ samples ─ fit ─ Model
+//!            (vertices) (coordinates) (texel map, charts)  (cutout, parallax)
 //! ```
 
 use crate::algorithm_one::algorithm_one;
@@ -52,10 +53,10 @@ pub struct Baked {
 
 /// The shares of stages in the time that a budget leaves them: textures are worth most, and
 /// what reference pictures show must be solved for.
-const SHAPE_SHARE: f64 = 0.3;
-const UNFOLD_SHARE: f64 = 0.3;
-const REFERENCE_SHARE: f64 = 0.3;
-const DEPTH_SHARE: f64 = 0.5;
+const SHAPE_SHARE: f64 = 0.2;
+const UNFOLD_SHARE: f64 = 0.15;
+const REFERENCE_SHARE: f64 = 0.25;
+const DEPTH_SHARE: f64 = 0.35;
 
 /// Bakes the high-poly's look onto the low-poly.
 ///

@@ -28,6 +28,9 @@ pub struct Plan {
 /// Seconds below which a time budget is better spent on textures alone.
 const LEAST_BUDGET: f64 = 8.0;
 
+/// Views that maps are fitted to within a time budget.
+const HURRIED_VIEWS: usize = 96;
+
 /// Side in pixels of the views that vertices are fitted to: edges are found between pixels, so
 /// more of them only take longer.
 const SHAPE_VIEW_SIZE: usize = 160;
@@ -85,7 +88,8 @@ impl BakeOptions {
             rate,
         };
         (self.parallax == Parallax::Sh && self.method == Method::Fit).then_some(DepthPlan {
-            views,
+            // What cannot be stopped half-way costs by the view.
+            views: if self.time_budget.is_some() { views.min(HURRIED_VIEWS) } else { views },
             cutout: (!self.no_cutout).then_some(CutoutOptions {
                 order: self.cutout_order,
                 size: self.cutout_size,
