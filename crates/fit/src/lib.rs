@@ -11,6 +11,9 @@
 //!                                   └ stencil, conjugate_gradient
 //! ```
 //!
+//! With maps of depth, between views and samples: `view_walk` (a view's pixels) → `cutout` (what
+//! is left out) → `parallax` (where coordinates shift) → `territory` (shifts stay in their chart).
+//!
 //! `schedule` walks that way; `watch` is how it reports and is stopped.
 
 pub mod atlas;

@@ -9,7 +9,7 @@
 //! contact, inversion, region          what keeps a layout bijective
 //! laplacian, lbfgs, descent           feasible descent
 //! variable_projection, optimise       the default method
-//! adam, paper                         the paper's method
+//! paper                               the paper's method
 //! ```
 
 pub mod best_texture;
