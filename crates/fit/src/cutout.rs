@@ -16,7 +16,6 @@ use crate::watch::{Stage, Watch};
 use parbake_adam::{Adam, AdamOptions};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_render::cutout::ShCutout;
-use parbake_render::spherical_harmonics::functions;
 use parbake_render::texture::taps;
 use rayon::prelude::*;
 
@@ -138,7 +137,6 @@ pub fn fit_cutout(
         }
     }
     watch.progress(Stage::Cutout, options.steps, options.steps);
-    debug_assert_eq!(map.coefficients.len(), options.size * options.size * functions(options.order));
     let after = wrong(views, &map);
     (map, [before, after])
 }
