@@ -3,13 +3,11 @@
 
 use crate::error::BakeError;
 use crate::message::{Message, Stage, Watcher};
-use crate::pair::{common_frame, scene};
+use crate::studio::Studio;
 use parbake_metric::Rgb;
 use parbake_model::Model;
-use parbake_render::camera::{Camera, Projection, fibonacci_sphere};
-use parbake_render::display::{Curve, Display};
-use parbake_render::scene::{Interpretation, Picture, Scene};
-use parbake_render::shade::Lambert;
+use parbake_render::camera::{Projection, fibonacci_sphere};
+use parbake_render::scene::Interpretation;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -173,49 +171,63 @@ pub const GREY: f32 = 0.5;
 /// FLIP's viewing distance: pixels per degree of its authors' default monitor.
 const PIXELS_PER_DEGREE: f32 = 67.020_64;
 
-/// Renders a picture of a scene as a screen shows it.
-pub fn shown(picture: &Picture, display: &Display, background: [f32; 3]) -> Rgb {
-    let after = Display { gain: 1.0, ..*display };
-    let pixels = picture
-        .rgba
-        .iter()
-        .map(|p| {
-            std::array::from_fn(|k| {
-                after.encode(p[k] * display.gain + (1.0 - p[3]) * background[k]).clamp(0.0, 1.0)
-            })
-        })
-        .collect();
-    Rgb { width: picture.size, height: picture.size, pixels }
-}
-
 /// Compares `low` with `high`.
+///
+/// # Errors
+/// An option out of range; a high-poly without extent.
 pub fn evaluate(
     high: &Model,
     low: &Model,
     options: &EvaluateOptions,
     watcher: &impl Watcher,
 ) -> Result<Evaluation, BakeError> {
-    let background = options.checked_background()?;
-    let frame = common_frame(high)?;
-    let interpretation = options.interpretation();
-    let (high, low) = (scene(high, &frame, interpretation), scene(low, &frame, interpretation));
-    let display = Display { gain: options.gain, curve: Curve::Srgb };
+    let mut all = evaluate_before(high, low, options, &[&options.background], watcher)?;
+    Ok(all.remove(0))
+}
+
+/// Compares them before several backgrounds in turn, each as `options.background` has it; a view
+/// is rendered once for all of them.
+///
+/// # Errors
+/// As of [`evaluate`].
+pub fn evaluate_before(
+    high: &Model,
+    low: &Model,
+    options: &EvaluateOptions,
+    backgrounds: &[&str],
+    watcher: &impl Watcher,
+) -> Result<Vec<Evaluation>, BakeError> {
+    let asked: Vec<EvaluateOptions> = backgrounds
+        .iter()
+        .map(|&name| EvaluateOptions { background: name.into(), ..options.clone() })
+        .collect();
+    let colors: Vec<[f32; 3]> =
+        asked.iter().map(EvaluateOptions::checked_background).collect::<Result<_, _>>()?;
+    let studio = Studio::new(high, options)?;
+    let (high, low) = (studio.subject(high), studio.subject(low));
     let done = AtomicUsize::new(0);
-    let views: Vec<ViewFigures> = fibonacci_sphere(options.views, 0.0)
+    let views: Vec<Vec<ViewFigures>> = fibonacci_sphere(options.views, 0.0)
         .into_par_iter()
         .map(|direction| {
-            let camera = Camera::towards_origin(direction, options.radius, options.projection());
-            let picture = |scene: &Scene| {
-                let p = scene.render(&Lambert, &camera, options.resolution, options.supersample);
-                shown(&p, &display, background)
-            };
-            let figures = compare(&picture(&high), &picture(&low), !options.no_flip);
+            let shots = [&high, &low].map(|subject| studio.shot(subject, direction));
+            let figures = colors.iter().map(|&color| {
+                let [high, low] = shots.each_ref().map(|shot| studio.develop(shot, color));
+                compare(&high, &low, !options.no_flip)
+            });
+            let figures = figures.collect();
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             watcher.message(Message::Progress { stage: Stage::Evaluate, done, total: options.views });
             figures
         })
         .collect();
-    Ok(Evaluation { options: options.clone(), mean: mean(&views), views })
+    Ok(asked
+        .into_iter()
+        .enumerate()
+        .map(|(k, options)| {
+            let views: Vec<ViewFigures> = views.iter().map(|view| view[k]).collect();
+            Evaluation { options, mean: mean(&views), views }
+        })
+        .collect())
 }
 
 /// All figures of one pair of pictures of equal size.

@@ -4,8 +4,9 @@
 //! hence the same figures; but each view is rendered once for all backgrounds.
 
 use super::scenes::Scenes;
-use crate::evaluate::{EvaluateOptions, ViewFigures, compare, mean, shown};
+use crate::evaluate::{EvaluateOptions, ViewFigures, compare, mean};
 use crate::options::Convention;
+use crate::studio::shown;
 use parbake_model::glam::Vec3;
 use parbake_render::camera::{Camera, fibonacci_sphere};
 use parbake_render::shade::Lambert;

@@ -2,11 +2,11 @@
 //! left between them. Pointing at a picture (or tapping, or moving the focus there)
 //! shows the high-poly in its place: the eye finds differences best in a flicker.
 
-use super::picture_data::embed_rgb;
 use super::pictures::{AMPLIFIED, PIXELS, Side};
-use super::text::{change, decimal, escape};
 use crate::error::BakeError;
 use parbake_metric::Rgb;
+use parbake_page::embed_rgb;
+use parbake_page::text::{change, decimal, escape};
 use rayon::prelude::*;
 
 /// All sides, one below the other.

@@ -1,8 +1,8 @@
 //! The fit's progress as a chart: decibels on the training views after each step.
 
-use super::axes::Axes;
-use super::text::{decimal, duration};
 use crate::report::LossStep;
+use parbake_page::Axes;
+use parbake_page::text::{decimal, duration};
 use std::fmt::Write;
 
 /// What can move in a step: its name in the report, its name for people.

@@ -14,23 +14,18 @@
 //! asked: whoever stopped a bake wants to see what came of it, the more so, and
 //! drawing takes a bounded time, which depends on the models' sizes only.
 
-mod axes;
-mod base64;
 mod figures;
 mod gallery;
 mod loss_curve;
 mod page;
-mod picture_data;
 mod pictures;
 mod scenes;
 mod settings;
 mod tables;
 #[cfg(test)]
 mod tests;
-mod text;
 mod textures;
 mod uv_check;
-mod uv_layout;
 mod uv_moves;
 mod variants;
 mod view_chart;

@@ -6,7 +6,6 @@ use super::loss_curve::loss_curve;
 use super::pictures::{AMPLIFIED, Side};
 use super::settings::settings;
 use super::tables;
-use super::text::{bytes, change, count, decimal, duration, escape, verdict};
 use super::textures::textures;
 use super::uv_check::uv_check;
 use super::uv_moves::uv_moves;
@@ -15,9 +14,9 @@ use crate::bake::Baked;
 use crate::error::BakeError;
 use crate::report::BakeReport;
 use parbake_model::Model;
+use parbake_page::text::{bytes, change, count, decimal, duration, escape, verdict};
+use parbake_page::{document, section};
 use std::fmt::Write;
-
-const STYLE: &str = include_str!("style.css");
 
 /// Puts everything together.
 pub fn page(high: &Model, baked: &Baked, evaluated: &Evaluated, sides: &[Side]) -> Result<String, BakeError> {
@@ -26,19 +25,7 @@ pub fn page(high: &Model, baked: &Baked, evaluated: &Evaluated, sides: &[Side]) 
         "" => "a model without a name".into(),
         name => escape(name),
     };
-    let mut out = format!(
-        concat!(
-            "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">",
-            r#"<meta name="viewport" content="width=device-width,initial-scale=1">"#,
-            r#"<meta name="color-scheme" content="light dark">"#,
-            // The browser itself keeps the page from fetching or running anything.
-            r#"<meta http-equiv="Content-Security-Policy" content="default-src 'none';img-src data:;style-src 'unsafe-inline'">"#,
-            "<title>{name} – Parbake</title><style>{style}</style></head>\n<body><main>"
-        ),
-        name = name,
-        style = STYLE
-    );
-    out += &header(&name, high, report, evaluated);
+    let mut out = header(&name, high, report, evaluated);
     out += &notes(report, evaluated);
     section(
         &mut out,
@@ -91,16 +78,7 @@ pub fn page(high: &Model, baked: &Baked, evaluated: &Evaluated, sides: &[Side]) 
             settings(&report.options)
         ),
     );
-    let _ = writeln!(out, "</main><footer>Parbake {}</footer></body></html>", env!("CARGO_PKG_VERSION"));
-    Ok(out)
-}
-
-fn section(out: &mut String, id: &str, title: &str, lead: &str, content: &str) {
-    let _ = write!(out, r#"<section id="{id}"><h2>{title}</h2>"#);
-    if !lead.is_empty() {
-        let _ = write!(out, r#"<p class="lead">{lead}</p>"#);
-    }
-    let _ = writeln!(out, "{content}</section>");
+    Ok(document(&name, &out))
 }
 
 /// Name, headline figures and facts.

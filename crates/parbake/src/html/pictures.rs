@@ -5,7 +5,7 @@
 //! directions belong to no lattice of training or evaluation.
 
 use super::scenes::Scenes;
-use crate::evaluate::shown;
+use crate::studio::shown;
 use parbake_metric::{Rgb, mean_squared_error, psnr_from_mse};
 use parbake_model::glam::Vec3;
 use parbake_render::camera::{Camera, Projection};

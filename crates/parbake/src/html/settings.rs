@@ -1,8 +1,8 @@
 //! The settings on the page, read from the options' own serialisation, so that no
 //! option can be forgotten.
 
-use super::text::escape;
 use crate::options::BakeOptions;
+use parbake_page::text::escape;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;

@@ -2,9 +2,9 @@
 
 use super::figures::{BACKGROUNDS, Evaluated};
 use super::settings::flags;
-use super::text::{NOTHING, change, count, decimal, duration, share, verdict};
 use crate::evaluate::{EvaluateOptions, ViewFigures};
 use crate::report::BakeReport;
+use parbake_page::text::{NOTHING, change, count, decimal, duration, share, verdict};
 use std::fmt::Write;
 
 /// A figure: its name, decimals, whether more is better, and where it stands.

@@ -3,15 +3,14 @@
 //! Contract: the model's first image is its base colour and its second its normal
 //! map, as a bake writes them; what is missing is left out.
 
-use super::picture_data::embed;
-use super::text::escape;
-use super::uv_layout::uv_layout;
 use crate::error::BakeError;
 use parbake_model::{Image, Model};
+use parbake_page::text::escape;
+use parbake_page::{embed, uv_layout};
 
 /// Both textures.
 pub fn textures(model: &Model) -> Result<String, BakeError> {
-    let layout = uv_layout(&model.mesh);
+    let layout = uv_layout(&model.mesh, "borders");
     let (lines, left_out) = layout.map_or((String::new(), None), |l| (l.svg, l.left_out));
     let mut out = String::new();
     if !lines.is_empty() {

@@ -1,8 +1,8 @@
 //! The check of the written texture coordinates on the page: its figures, and what is
 //! wrong, in sentences.
 
-use super::text::{NOTHING, count, decimal, escape};
 use parbake_atlas::UvCheck;
+use parbake_page::text::{NOTHING, count, decimal, escape};
 use std::fmt::Write;
 
 /// The table, after the problems, if there are any.

@@ -1,14 +1,14 @@
 //! The moves of the texture coordinates on the page, as an animated picture.
 
-use super::base64;
 use crate::error::BakeError;
 use crate::uv_animation::{UvAnimationOptions, UvMoves, uv_animation};
+use parbake_page::base64;
 
 /// The animation with its caption; nothing where nothing moved.
 pub fn uv_moves(moves: Option<&UvMoves>) -> Result<String, BakeError> {
     let Some(moves) = moves.filter(|moves| moves.frames.len() > 1) else { return Ok(String::new()) };
     let mut address = String::from("data:image/gif;base64,");
-    base64::encode(&uv_animation(moves, &UvAnimationOptions::default())?, &mut address);
+    base64(&uv_animation(moves, &UvAnimationOptions::default())?, &mut address);
     Ok(format!(
         concat!(
             r#"<figure class="moves"><img src="{}" alt="The texture layout on its way through the run">"#,

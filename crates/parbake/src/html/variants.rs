@@ -1,17 +1,16 @@
 //! The page of a comparison of parallax variants: a table, and each variant's picture beside
 //! the high-poly's. Pointing at a picture shows the high-poly in its place.
 
-use super::picture_data::embed_rgb;
 use super::settings::flags;
-use super::text::{NOTHING, change, count, decimal, duration, escape, verdict};
 use crate::error::BakeError;
 use crate::variants::{ComparedVariants, VariantFigures, VariantsOptions, VariantsReport};
 use parbake_metric::Rgb;
 use parbake_model::Model;
+use parbake_page::embed_rgb;
+use parbake_page::text::{NOTHING, change, count, decimal, duration, escape, verdict};
+use parbake_page::{document, section};
 use rayon::prelude::*;
 use std::fmt::Write;
-
-const STYLE: &str = include_str!("style.css");
 
 /// Names of the sides, in the order of the pictures.
 const SIDES: [&str; 2] = ["front", "a corner, closer"];
@@ -26,36 +25,23 @@ pub fn variants_html(high: &Model, compared: &ComparedVariants) -> Result<String
         "" => "a model without a name".into(),
         name => escape(name),
     };
-    let mut out = format!(
-        concat!(
-            "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">",
-            r#"<meta name="viewport" content="width=device-width,initial-scale=1">"#,
-            r#"<meta name="color-scheme" content="light dark">"#,
-            r#"<meta http-equiv="Content-Security-Policy" content="default-src 'none';img-src data:;style-src 'unsafe-inline'">"#,
-            "<title>{name} – parallax variants – Parbake</title><style>{style}</style></head>\n<body><main>",
-            r#"<header><p class="kicker">Parbake: ways of parallax</p><h1>{name}</h1></header>"#
-        ),
-        name = name,
-        style = STYLE
-    );
+    let mut out =
+        format!(r#"<header><p class="kicker">Parbake: ways of parallax</p><h1>{name}</h1></header>"#);
     if report.stopped_early {
         out += r#"<ul class="notes"><li>The run was stopped early; variants that were left are not here.</li></ul>"#;
     }
-    out += r#"<section id="figures"><h2>Figures</h2>"#;
-    out += &table(report);
-    out += concat!(
-        r#"</section><section id="looks"><h2>Side by side</h2><p class="lead">Point at a picture, or tap it, to see the "#,
-        r#"high-poly in its place. The decibels are means over the held-out views, not of these pictures.</p>"#
-    );
+    section(&mut out, "figures", "Figures", "", &table(report));
     let sides: Result<Vec<String>, BakeError> =
         (0..SIDES.len()).into_par_iter().map(|index| side(compared, index)).collect();
-    out += &sides?.concat();
-    let _ = writeln!(
-        out,
-        "</section></main><footer>Parbake {}</footer></body></html>",
-        env!("CARGO_PKG_VERSION")
+    section(
+        &mut out,
+        "looks",
+        "Side by side",
+        "Point at a picture, or tap it, to see the high-poly in its place. The decibels are means over the held-out \
+         views, not of these pictures.",
+        &sides?.concat(),
     );
-    Ok(out)
+    Ok(document(&format!("{name} – parallax variants"), &out))
 }
 
 fn table(report: &VariantsReport) -> String {

@@ -1,9 +1,9 @@
 //! Each compared view's decibels before and after, on the first of the backgrounds,
 //! so that no bad view hides behind a mean.
 
-use super::axes::Axes;
 use super::figures::Evaluated;
-use super::text::{change, decimal};
+use parbake_page::Axes;
+use parbake_page::text::{change, decimal};
 use std::fmt::Write;
 
 /// The chart with its legend.

@@ -27,8 +27,8 @@ pub struct UvLayout {
     pub left_out: Option<&'static str>,
 }
 
-/// Draws the layout; None when there is nothing to draw.
-pub fn uv_layout(mesh: &Mesh) -> Option<UvLayout> {
+/// Draws the layout; None when there is nothing to draw. `id` names it among the page's elements.
+pub fn uv_layout(mesh: &Mesh, id: &str) -> Option<UvLayout> {
     let mut edges: Vec<[[i32; 2]; 2]> = Vec::with_capacity(3 * mesh.triangles.len());
     for triangle in 0..mesh.triangles.len() {
         let uvs = mesh.corner_uvs(triangle);
@@ -64,10 +64,11 @@ pub fn uv_layout(mesh: &Mesh) -> Option<UvLayout> {
     let svg = format!(
         concat!(
             r#"<svg class="uv" viewBox="0 0 {units} {units}" aria-hidden="true">"#,
-            r##"<path class="inside" d="{inside}"/><defs><path id="borders" d="{borders}" fill="none"/></defs>"##,
-            r##"<use class="halo" href="#borders"/><use class="border" href="#borders"/></svg>"##
+            r##"<path class="inside" d="{inside}"/><defs><path id="{id}" d="{borders}" fill="none"/></defs>"##,
+            r##"<use class="halo" href="#{id}"/><use class="border" href="#{id}"/></svg>"##
         ),
         units = UNITS,
+        id = id,
         inside = path(&inside),
         borders = path(&borders)
     );
@@ -108,7 +109,7 @@ mod tests {
     #[test]
     fn a_square_has_four_borders_and_a_diagonal() {
         let uvs = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-        let svg = uv_layout(&mesh(&uvs, &[[0, 1, 2], [0, 2, 3]])).unwrap().svg;
+        let svg = uv_layout(&mesh(&uvs, &[[0, 1, 2], [0, 2, 3]]), "borders").unwrap().svg;
         assert!(svg.contains(r#"class="inside" d="M0 0l4096 4096""#), "{svg}");
         let borders = "M0 0l0 4096M0 0l4096 0M0 4096l4096 0M4096 0l0 4096";
         assert!(svg.contains(&format!(r#"id="borders" d="{borders}""#)), "{svg}");
@@ -119,11 +120,12 @@ mod tests {
     fn odd_coordinates_stay_finite() {
         let uvs =
             [[f32::NAN, 0.0], [f32::INFINITY, 1.0], [1e30, 0.5], [2.5, -3.5], [2.75, -3.5], [2.5, -3.25]];
-        let layout = uv_layout(&mesh(&uvs, &[[0, 1, 2], [0, 3, 4], [2, 3, 4], [3, 4, 5]])).unwrap();
+        let layout =
+            uv_layout(&mesh(&uvs, &[[0, 1, 2], [0, 3, 4], [2, 3, 4], [3, 4, 5]]), "borders").unwrap();
         assert!(!layout.svg.contains("NaN") && !layout.svg.contains("inf\""), "{}", layout.svg);
         assert!(layout.svg.contains("M2048 2048"), "repeats into the texture: {}", layout.svg);
-        assert!(uv_layout(&mesh(&uvs, &[[0, 1, 2], [3, 3, 3]])).is_none());
-        assert!(uv_layout(&Mesh::default()).is_none());
+        assert!(uv_layout(&mesh(&uvs, &[[0, 1, 2], [3, 3, 3]]), "borders").is_none());
+        assert!(uv_layout(&Mesh::default(), "borders").is_none());
     }
 
     /// Protects the page's size.
@@ -140,7 +142,7 @@ mod tests {
                 [[a, b, c], [a, c, d]]
             })
             .collect();
-        let layout = uv_layout(&mesh(&uvs, &triangles)).unwrap();
+        let layout = uv_layout(&mesh(&uvs, &triangles), "borders").unwrap();
         assert!(layout.left_out.is_some() && layout.svg.len() < 20_000);
     }
 }

@@ -3,7 +3,7 @@
 //! Contract: ranges may be empty or a point and are then widened; every coordinate
 //! that comes out is finite, whatever went in.
 
-use super::text::{decimal, escape};
+use crate::text::{decimal, escape};
 use std::fmt::Write;
 
 /// The drawing's size in its own units; the page scales it.

@@ -4,8 +4,8 @@
 //! [`MOST_BYTES`]; others are averaged down by a whole factor until they are, so that
 //! the page stays small whatever the textures.
 
-use super::base64;
-use crate::error::BakeError;
+use crate::base64;
+use parbake_files::FileError;
 use parbake_metric::Rgb;
 use parbake_model::Image;
 
@@ -25,7 +25,7 @@ pub struct Embedded {
 }
 
 /// Embeds a texture, opaque: alpha would hide colours that a renderer does show.
-pub fn embed(image: &Image) -> Result<Embedded, BakeError> {
+pub fn embed(image: &Image) -> Result<Embedded, FileError> {
     let mut factor = image.width.max(image.height).div_ceil(LARGEST).max(1);
     loop {
         let mut small = reduced(image, factor);
@@ -38,13 +38,13 @@ pub fn embed(image: &Image) -> Result<Embedded, BakeError> {
             continue;
         }
         let mut address = String::from("data:image/png;base64,");
-        base64::encode(&png, &mut address);
+        base64(&png, &mut address);
         return Ok(Embedded { address, width: small.width, height: small.height });
     }
 }
 
 /// Embeds a rendered picture.
-pub fn embed_rgb(name: &str, picture: &Rgb) -> Result<Embedded, BakeError> {
+pub fn embed_rgb(name: &str, picture: &Rgb) -> Result<Embedded, FileError> {
     let byte = |x: f32| (x.clamp(0.0, 1.0) * 255.0).round() as u8;
     let pixels = picture.pixels.iter().map(|&[r, g, b]| [byte(r), byte(g), byte(b), 255]).collect();
     embed(&Image { name: name.into(), width: picture.width, height: picture.height, pixels })
