@@ -33,7 +33,7 @@ impl Axes {
         }
         let widened = (1.0 - (high - low)).max(0.0) * 0.5;
         (low, high) = (low - widened, high + widened);
-        let step = round_step((high - low) / 4.0);
+        let step = round_step(((high - low) / 4.0).max(0.1));
         let range = ((low / step).floor() * step, (high / step).ceil() * step);
         Self { last: (last as f64).max(1.0), range, step }
     }
@@ -92,9 +92,9 @@ impl Axes {
     }
 }
 
-/// The nearest of 1, 2 and 5 times a power of ten, at least a tenth.
-fn round_step(step: f64) -> f64 {
-    let step = if step.is_finite() { step.max(0.1) } else { 1.0 };
+/// The nearest of 1, 2 and 5 times a power of ten; 1 where there is no step.
+pub(crate) fn round_step(step: f64) -> f64 {
+    let step = if step.is_finite() && step > 0.0 { step } else { 1.0 };
     let power = 10f64.powf(step.log10().floor());
     match step / power {
         r if r < 1.5 => power,
@@ -111,7 +111,7 @@ mod tests {
     /// Protects readable tick labels.
     #[test]
     fn steps_are_round() {
-        for (step, rounded) in [(0.0, 0.1), (0.13, 0.1), (0.3, 0.2), (0.9, 1.0), (2.2, 2.0), (40.0, 50.0)] {
+        for (step, rounded) in [(0.0, 1.0), (0.013, 0.01), (0.3, 0.2), (0.9, 1.0), (2.2, 2.0), (40.0, 50.0)] {
             assert!((round_step(step) - rounded).abs() < 1e-9, "{step}");
         }
     }

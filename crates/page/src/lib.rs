@@ -6,6 +6,7 @@
 
 mod axes;
 mod base64;
+pub mod charts;
 mod document;
 mod picture;
 pub mod text;

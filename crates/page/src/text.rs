@@ -51,7 +51,50 @@ pub fn decimal(number: f64, decimals: usize) -> String {
     if negative { format!("−{text}") } else { text }
 }
 
-/// The same with a plus sign where it grows.
+/// The same with the thousands of its whole part parted.
+pub fn grouped(number: f64, decimals: usize) -> String {
+    let text = decimal(number, decimals);
+    let whole = text.trim_start_matches('−').split('.').next().unwrap_or_default();
+    match whole.parse() {
+        Ok(digits) => text.replacen(whole, &count(digits), 1),
+        Err(_) => text,
+    }
+}
+
+/// `number` as 1.5×10⁷, its first factor with so many decimals; a factor of 1 is left out.
+pub fn scientific(number: f64, decimals: usize) -> String {
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    if !number.is_finite() {
+        return NOTHING.into();
+    }
+    if number == 0.0 {
+        return "0".into();
+    }
+    let text = format!("{number:.decimals$e}").replace('-', "−");
+    let Some((factor, power)) = text.split_once('e') else { return text };
+    let mut out = match factor {
+        "1" => String::from("10"),
+        "−1" => String::from("−10"),
+        factor => format!("{factor}×10"),
+    };
+    out.extend(power.chars().map(|c| c.to_digit(10).map_or('⁻', |digit| RAISED[digit as usize])));
+    out
+}
+
+/// `number` with so many significant figures (whole numbers with all of theirs), and with a
+/// power of ten where zeros would have to be counted.
+pub fn figures(number: f64, figures: usize) -> String {
+    let power = number.abs().log10().floor();
+    if number == 0.0 || number.fract() == 0.0 && power < 7.0 {
+        grouped(number, 0)
+    } else if (-5.0..7.0).contains(&power) {
+        grouped(number, (figures as f64 - 1.0 - power).max(0.0) as usize)
+    } else {
+        scientific(number, figures.saturating_sub(1))
+    }
+}
+
+/// [`decimal`] with a plus sign where it grows.
 pub fn change(number: f64, decimals: usize) -> String {
     let text = decimal(number, decimals);
     if number.is_finite() && text.chars().any(|c| matches!(c, '1'..='9')) && number > 0.0 {
@@ -149,5 +192,21 @@ mod tests {
         assert_eq!(duration(125.2), "2\u{202f}min 05\u{202f}s");
         assert_eq!(duration(f64::NAN), "–");
         assert_eq!(bytes(457_000_000), "457\u{202f}MB");
+    }
+
+    /// Protects a chart's numbers, which may have any magnitude.
+    #[test]
+    fn numbers_of_any_magnitude() {
+        assert_eq!(grouped(-12_345.67, 1), "−12\u{202f}345.7");
+        assert_eq!(grouped(999.96, 1), "1\u{202f}000.0");
+        assert_eq!(grouped(f64::NAN, 1), "–");
+        assert_eq!(scientific(0.000_012, 1), "1.2×10⁻⁵");
+        assert_eq!(scientific(-1e12, 0), "−10¹²");
+        assert_eq!(scientific(9.99e7, 0), "10⁸");
+        assert_eq!(scientific(0.0, 2), "0");
+        assert_eq!(scientific(f64::NEG_INFINITY, 2), "–");
+        let all = [0.0, 3.0, 30_000.0, 31.2345, -0.012_345, 1.2346e-9, 1e300, f64::INFINITY];
+        let texts = ["0", "3", "30\u{202f}000", "31.23", "−0.01235", "1.235×10⁻⁹", "1.000×10³⁰⁰", "–"];
+        assert_eq!(all.map(|number| figures(number, 4)), texts);
     }
 }
