@@ -1,14 +1,15 @@
 //! What can be typed.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use parbake::{BakeOptions, EvaluateOptions, ImageOptions, VariantsOptions};
+use parbake::{BakeOptions, EvaluateOptions, ImageOptions, TurntableOptions, VariantsOptions};
+use parbake_reproduce::ReproduceOptions;
 use std::path::PathBuf;
 
 /// Makes a small 3D model look like a big one
 #[derive(Parser, Debug)]
 #[command(name = "parbake", version, propagate_version = true)]
 #[command(after_help = "Exit codes: 0 done, 1 bad input or failed output, 2 wrong usage, \
-3 check found problems, 130 interrupted (the best state so far was written).")]
+3 check found problems, 4 reproduce found gains that fell, 130 interrupted (the best state so far was written).")]
 pub struct Arguments {
     /// What to do
     #[command(subcommand)]
@@ -30,6 +31,10 @@ pub enum Command {
     Eval(EvalCommand),
     /// Fit each kind of parallax map to a pair of models and show them side by side
     Variants(VariantsCommand),
+    /// Film a detailed model and coarse ones beside it while they turn: an animated PNG or a GIF
+    Turntable(TurntableCommand),
+    /// Run the paper's experiments on a folder of data and draw its tables and figures
+    Reproduce(ReproduceCommand),
     /// Prove that a model's texture coordinates are sound, or say what is wrong with them
     Check(CheckCommand),
     /// Write a coarser copy of a model, which keeps its texture coordinates
@@ -224,6 +229,64 @@ pub struct EvalCommand {
     /// How to compare
     #[command(flatten, next_help_heading = "Comparison")]
     pub evaluate: EvaluateOptions,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = "Messages")]
+    pub talk: Talk,
+}
+
+/// Arguments of `turntable`.
+#[derive(Args, Debug)]
+#[command(after_help = "All models are shown as they stand in the high-poly's frame, by a light at the \
+camera. The film plays again and again. Ctrl-C ends without a file.")]
+pub struct TurntableCommand {
+    /// The detailed model
+    pub high: PathBuf,
+
+    /// The models to show beside it, in this order
+    #[arg(required = true)]
+    pub low: Vec<PathBuf>,
+
+    /// Where the film goes: .png or .apng for all colours, .gif for smaller files with 256
+    #[arg(short, long, value_name = "FILE", default_value = "turntable.png")]
+    pub output: PathBuf,
+
+    /// How to film
+    #[command(flatten, next_help_heading = "Film")]
+    pub turntable: TurntableOptions,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = "Messages")]
+    pub talk: Talk,
+}
+
+/// Arguments of `reproduce`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "The folder holds pairs/NAME/high with a textured model and pairs/NAME/low_simplygon, \
+low_simplygon100, low_simplygon50 (or lod1, lod2, lod3) with coarse ones, and images2d with pictures; folders of your \
+own are run as well. Outcomes are kept in the output folder under the content of their files, options and the program: \
+a run that was stopped goes on where it was. With --record the exit code is 4 where a gain fell by more than 0.2 dB."
+)]
+pub struct ReproduceCommand {
+    /// The folder of data [default: what PARBAKE_DATA names]
+    pub data: Option<PathBuf>,
+
+    /// Folder for report.html, tables.md, gains.json and what is kept
+    #[arg(short, long, value_name = "FOLDER", default_value = "reproduced")]
+    pub output: PathBuf,
+
+    /// Compare gains with those on record in this JSON file
+    #[arg(long, value_name = "FILE")]
+    pub record: Option<PathBuf>,
+
+    /// Write the gains to the record instead of comparing them
+    #[arg(long, requires = "record")]
+    pub update_record: bool,
+
+    /// What to run
+    #[command(flatten, next_help_heading = "What to run")]
+    pub options: ReproduceOptions,
 
     /// What to tell
     #[command(flatten, next_help_heading = "Messages")]

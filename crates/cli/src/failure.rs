@@ -1,6 +1,7 @@
 //! How the command ends: exit codes that a script can act on.
 
 use parbake::BakeError;
+use parbake_reproduce::ReproduceError;
 use std::fmt;
 use std::process::ExitCode;
 
@@ -11,6 +12,8 @@ pub enum Ending {
     Finished,
     /// `check` found problems in a layout: 3.
     Problems,
+    /// `reproduce` found gains that fell below the record: 4.
+    Fallen,
     /// Ctrl-C: the best state so far was written: 130.
     Interrupted,
 }
@@ -21,6 +24,7 @@ impl Ending {
         match self {
             Ending::Finished => ExitCode::SUCCESS,
             Ending::Problems => ExitCode::from(3),
+            Ending::Fallen => ExitCode::from(4),
             Ending::Interrupted => ExitCode::from(130),
         }
     }
@@ -35,14 +39,18 @@ pub enum Failure {
     Usage(String),
     /// The report or JSON could not be made or written: 1.
     Output(String),
+    /// The paper's experiments could not be run: 2 for options, 1 for everything else.
+    Reproduce(ReproduceError),
 }
 
 impl Failure {
     /// The process's exit code.
     pub fn exit_code(&self) -> ExitCode {
         match self {
-            Failure::Usage(_) | Failure::Bake(BakeError::Option { .. }) => ExitCode::from(2),
-            Failure::Bake(_) | Failure::Output(_) => ExitCode::from(1),
+            Failure::Usage(_)
+            | Failure::Bake(BakeError::Option { .. })
+            | Failure::Reproduce(ReproduceError::Bake(BakeError::Option { .. })) => ExitCode::from(2),
+            Failure::Bake(_) | Failure::Output(_) | Failure::Reproduce(_) => ExitCode::from(1),
         }
     }
 }
@@ -51,6 +59,7 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Failure::Bake(error) => error.fmt(f),
+            Failure::Reproduce(error) => error.fmt(f),
             Failure::Usage(text) | Failure::Output(text) => f.write_str(text),
         }
     }
@@ -59,6 +68,12 @@ impl fmt::Display for Failure {
 impl From<BakeError> for Failure {
     fn from(error: BakeError) -> Self {
         Failure::Bake(error)
+    }
+}
+
+impl From<ReproduceError> for Failure {
+    fn from(error: ReproduceError) -> Self {
+        Failure::Reproduce(error)
     }
 }
 

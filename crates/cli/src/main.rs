@@ -11,7 +11,9 @@ mod failure;
 mod image;
 mod options_file;
 mod progress;
+mod reproduce;
 mod simplify;
+mod turntable;
 mod variants;
 
 use arguments::{Arguments, Command};
@@ -32,6 +34,8 @@ fn main() -> ExitCode {
         (Command::Compress(command), Some(given)) => compress::run(command, given),
         (Command::Image(command), _) => image::run(command),
         (Command::Variants(command), _) => variants::run(command),
+        (Command::Turntable(command), _) => turntable::run(command),
+        (Command::Reproduce(command), _) => reproduce::run(command),
         (Command::Check(command), _) => check::run(command),
         (Command::Simplify(command), _) => simplify::run(command),
         _ => Ok(failure::Ending::Finished),

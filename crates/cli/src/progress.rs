@@ -17,14 +17,14 @@ pub fn interrupted() -> bool {
 }
 
 /// The first Ctrl-C asks for a clean stop, the second ends at once.
-fn catch_interrupts() {
+fn catch_interrupts(what_becomes: &'static str) {
     HANDLER.get_or_init(|| {
         // Without a handler the bake still works; it only cannot stop cleanly.
-        let _ = ctrlc::set_handler(|| {
+        let _ = ctrlc::set_handler(move || {
             if INTERRUPTED.swap(true, Ordering::Relaxed) {
                 std::process::exit(130);
             }
-            eprintln!("\nstopping: the best state so far is being written (Ctrl-C again to give up)");
+            eprintln!("\nstopping: {what_becomes} (Ctrl-C again to give up)");
         });
     });
 }
@@ -51,8 +51,33 @@ impl Console {
     /// For a bake, which Ctrl-C ends with the best state so far. Begins the clock of
     /// the time budget.
     pub fn for_bake(talk: Talk, time_budget: Option<f64>) -> Self {
-        catch_interrupts();
+        catch_interrupts("the best state so far is being written");
         Self::with_deadline(talk, time_budget)
+    }
+
+    /// For a film, of which a part is no use: Ctrl-C ends without a file, not even a temporary one.
+    pub fn for_film(talk: Talk) -> Self {
+        catch_interrupts("no film is written");
+        Self::with_deadline(talk, None)
+    }
+
+    /// For many runs one after the other, which Ctrl-C ends with what is finished.
+    pub fn for_many(talk: Talk) -> Self {
+        catch_interrupts("what is finished is being drawn");
+        let console = Self::with_deadline(talk, None);
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {prefix}{msg}") {
+            console.bar.set_style(style);
+        }
+        console
+    }
+
+    /// Shows how many of many runs are finished, which one runs, and how long the rest will take.
+    pub fn show_run(&self, done: usize, total: usize, title: &str, seconds_left: Option<f64>) {
+        let left = seconds_left.map_or(String::new(), |s| format!("{} left: ", minutes(s)));
+        self.bar.set_prefix(left);
+        self.bar.set_message(title.to_string());
+        self.bar.set_length(total as u64);
+        self.bar.set_position(done as u64);
     }
 
     fn with_deadline(talk: Talk, time_budget: Option<f64>) -> Self {
@@ -93,6 +118,14 @@ impl Console {
     /// Takes the bar away.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+/// "3 min", "40 s".
+fn minutes(seconds: f64) -> String {
+    match seconds {
+        s if s < 90.0 => format!("{s:.0} s"),
+        s => format!("{:.0} min", s / 60.0),
     }
 }
 

@@ -5,7 +5,7 @@
 use crate::FileError;
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -16,6 +16,26 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// beside it.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     write_together(&[(path.to_path_buf(), bytes)])
+}
+
+/// Replaces `path` by whatever `work` writes, which need not fit into memory. The folder must exist.
+///
+/// # Errors
+/// When the file cannot be written, and `work`'s own; then `path` is as it was, and nothing is left
+/// beside it.
+pub fn write_streamed<E: From<FileError>>(
+    path: &Path,
+    work: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), E>,
+) -> Result<(), E> {
+    let failed = |source| E::from(FileError::Write { path: path.into(), source });
+    let (temporary, file) = Temporary::beside(path).map_err(failed)?;
+    let mut file = BufWriter::new(file);
+    work(&mut file)?;
+    file.flush().and_then(|()| file.get_ref().sync_all()).map_err(failed)?;
+    drop(file);
+    temporary.rename_to(path).map_err(failed)?;
+    sync_folder(path);
+    Ok(())
 }
 
 /// Replaces all these files, in this order. No target changes before every byte is
@@ -107,6 +127,28 @@ mod tests {
         write_atomically(&path, b"one").unwrap();
         write_atomically(&path, b"two").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"two");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    /// Protects films that are written as they come: nothing shows before the end, and work that is
+    /// given up leaves no trace.
+    #[test]
+    fn a_stream_is_written_whole_or_not_at_all() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.bin");
+        let result: Result<(), FileError> = write_streamed(&path, |file| {
+            file.write_all(b"whole").unwrap();
+            assert!(!path.exists());
+            Ok(())
+        });
+        result.unwrap();
+        let given_up = FileError::Write { path: path.clone(), source: io::ErrorKind::Other.into() };
+        let result: Result<(), FileError> = write_streamed(&path, |file| {
+            file.write_all(b"half").unwrap();
+            Err(given_up)
+        });
+        assert!(result.is_err());
+        assert_eq!(fs::read(&path).unwrap(), b"whole");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 

@@ -20,7 +20,7 @@ mod resources;
 mod unit;
 mod words;
 
-pub use atomic::write_atomically;
+pub use atomic::{write_atomically, write_streamed};
 pub use error::{FileError, Place};
 pub use gltf::{glb_bytes, read_gltf_bytes, write_glb};
 pub use image_in::{decode_image, read_image};

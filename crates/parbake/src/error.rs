@@ -58,6 +58,15 @@ pub enum BakeError {
         /// What the encoder said.
         reason: String,
     },
+    /// A film could not be encoded or written.
+    #[error("cannot write the film: {source}")]
+    Film {
+        /// What the writer said.
+        source: std::io::Error,
+    },
+    /// The watcher stopped a run that has no use for half a result.
+    #[error("stopped before the end: nothing was written")]
+    Stopped,
     /// The operating system refused to start threads.
     #[error("could not start {threads} threads: {source}")]
     Threads {

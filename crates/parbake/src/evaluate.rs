@@ -93,7 +93,7 @@ impl EvaluateOptions {
         self.checked_background().map(|_| ())
     }
 
-    fn checked_background(&self) -> Result<[f32; 3], BakeError> {
+    pub(crate) fn checked_background(&self) -> Result<[f32; 3], BakeError> {
         let fail = |option, value: String, range: &str| {
             Err(BakeError::Option { option, value, range: range.into() })
         };

@@ -37,6 +37,7 @@ mod report;
 mod shape;
 mod studio;
 mod threads;
+mod turntable;
 mod unfold;
 mod uv_animation;
 mod variants;
@@ -54,15 +55,17 @@ pub use models::{demo_pair, simplified, subdivided, wall_pair};
 pub use options::{Backdrop, BakeOptions, Convention, Method, Parallax, Preset, ShapeMode, UvMode};
 pub use parbake_atlas::UvCheck;
 pub use parbake_files::{
-    FileError, Limits, Loaded, read_image, read_model, write_atomically as write_file, write_glb, write_obj,
+    FileError, Limits, Loaded, encode_png, read_image, read_model, write_atomically as write_file, write_glb,
+    write_obj,
 };
 pub use parbake_model::Model;
 pub use picture::{BakedImage, ImageOptions, ImageReport, bake_image};
 pub use plan::Plan;
-pub use report::{BakeReport, LossStep, StageTime};
+pub use report::{BakeReport, Convergence, LossStep, StageTime};
 pub use shape::ShapeReport;
 pub use studio::{Shot, Studio, Subject};
 pub use threads::{join, with_threads};
-pub use unfold::UnfoldReport;
+pub use turntable::{FilmFormat, TurntableOptions, turntable, write_turntable};
+pub use unfold::{UnfoldReport, laid_out};
 pub use uv_animation::{UvAnimationOptions, UvMoves, uv_animation};
 pub use variants::{ComparedVariants, VariantFigures, VariantsOptions, VariantsReport, compare_variants};

@@ -28,6 +28,8 @@ pub enum Stage {
     Solve,
     /// Comparing pictures.
     Evaluate,
+    /// Rendering and encoding frames of a film.
+    Film,
     /// Encoding and writing files.
     Write,
 }
@@ -47,6 +49,7 @@ impl Stage {
             Stage::Parallax => "fitting parallax",
             Stage::Solve => "solving for textures",
             Stage::Evaluate => "comparing pictures",
+            Stage::Film => "filming",
             Stage::Write => "writing files",
         }
     }

@@ -63,6 +63,9 @@ pub enum UvMode {
     Repair,
     /// They are made anew.
     Unwrap,
+    /// They are made anew as Tutte's embedding in the middle of the square, a poor start that
+    /// optimisers can be tried on.
+    Tutte,
     /// They are mended and then moved to where they show most.
     #[default]
     Optimize,
@@ -77,6 +80,8 @@ pub enum ShapeMode {
     Keep,
     /// They move along their normals, as in the paper.
     Normal,
+    /// They move anywhere, held together by a Laplacian term as in earlier work, for comparison.
+    Laplacian,
     /// They move where the pictures want them.
     #[default]
     Free,

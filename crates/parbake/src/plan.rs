@@ -35,6 +35,9 @@ const HURRIED_VIEWS: usize = 96;
 /// more of them only take longer.
 const SHAPE_VIEW_SIZE: usize = 160;
 
+/// Weight of the Laplacian term where it is asked for.
+const LAPLACIAN: f32 = 10.0;
+
 impl BakeOptions {
     /// Of a stage's views, those that the user's number leaves.
     fn at_most_views(&self, own: usize) -> usize {
@@ -56,13 +59,14 @@ impl BakeOptions {
         let motion = match self.shape {
             ShapeMode::Keep => return None,
             ShapeMode::Normal => Motion::Normal,
-            ShapeMode::Free => Motion::Free,
+            ShapeMode::Free | ShapeMode::Laplacian => Motion::Free,
         };
         let (views, steps) = match self.preset {
             Preset::Fast => (96, 60),
             Preset::Balanced => (192, 160),
             Preset::Best => (384, 400),
         };
+        let laplacian = if self.shape == ShapeMode::Laplacian { LAPLACIAN } else { 0.0 };
         // What stands out will be cut out, what is missing cannot be put there.
         let overhang_discount = if self.cuts() { 0.9 } else { 0.0 };
         (self.method == Method::Fit && !self.hurried()).then_some(ShapePlan {
@@ -70,7 +74,7 @@ impl BakeOptions {
             view_size: self.at_most_pixels(SHAPE_VIEW_SIZE),
             texture_size: 128,
             samples: 3,
-            fit: ShapeOptions { motion, steps, overhang_discount, ..ShapeOptions::default() },
+            fit: ShapeOptions { motion, steps, overhang_discount, laplacian, ..ShapeOptions::default() },
         })
     }
 

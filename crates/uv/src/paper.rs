@@ -121,6 +121,29 @@ pub struct PaperProgress<'a> {
     pub points: &'a [DVec2],
 }
 
+/// A point of the way (Fig. 15).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PaperPoint {
+    /// Steps of Adam so far.
+    pub iteration: usize,
+    /// L_diff: mean squared error.
+    pub loss: f64,
+    /// L_I∘UV: the sum of `Aₜ eₜ Dₜ` over triangles.
+    pub content: f64,
+}
+
+/// The way through the three stages.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PaperHistory {
+    /// Each round, and some of the steps before and after.
+    pub points: Vec<PaperPoint>,
+    /// Iterations at which coordinates began to move and ended.
+    pub moved: [usize; 2],
+}
+
+/// Steps of Adam between two points of the history where coordinates stand.
+const RECORDED: usize = 20;
+
 /// What the method found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PaperResult {
@@ -132,6 +155,8 @@ pub struct PaperResult {
     pub error: f64,
     /// Rounds done.
     pub rounds: usize,
+    /// How it went.
+    pub history: PaperHistory,
 }
 
 /// Runs Algorithm 1 from `mapped.points` for a texture of `size`² texels (at least 2²),
@@ -155,9 +180,17 @@ pub fn paper_method(
     let problem = Problem::new(mapped, &signal, rest, contact, size, options);
     let mut texture = Texture::solid(size, Vec4::splat(0.5));
     let mut painter = Painter::new(&texture, options);
-    painter.steps(&mut texture, &problem.loss(mapped.points, size), options.first_steps, Rate::Constant);
-
     let mut errors = vec![0.0; mapped.triangles.len()];
+    let mut history = PaperHistory::default();
+    let loss = problem.loss(mapped.points, size);
+    painter.steps(&mut texture, &loss, options.first_steps, Rate::Constant, |step, texture| {
+        if step % RECORDED == 0 {
+            history.points.push(problem.point(step, mapped.points, texture, &mut errors));
+        }
+    });
+    history.moved = [options.first_steps; 2];
+    problem.errors(mapped.points, &texture, &mut errors);
+
     let mut place =
         Place::new(mapped.points.to_vec(), &mut problem.energy(mapped.points, &texture, &errors), region);
     let mut memory = Lbfgs::new(options.memory);
@@ -165,8 +198,11 @@ pub fn paper_method(
     let mut rounds = 0;
     while rounds < options.rounds {
         let loss = problem.loss(&place.points, size);
-        let changed = painter.steps(&mut texture, &loss, options.steps_in_round, Rate::Constant);
-        let error = problem.errors(&place.points, &texture, &mut errors);
+        let changed = painter.steps(&mut texture, &loss, options.steps_in_round, Rate::Constant, |_, _| {});
+        history.moved[1] += options.steps_in_round;
+        let now = problem.point(history.moved[1], &place.points, &texture, &mut errors);
+        let error = now.loss;
+        history.points.push(now);
         if options.keep_best && best.as_ref().is_none_or(|(least, ..)| error < *least) {
             best = Some((error, place.points.clone(), texture.clone()));
         }
@@ -187,9 +223,19 @@ pub fn paper_method(
         (points, texture) = (best_points, best_texture);
     }
     let mut painter = Painter::new(&texture, options);
-    painter.steps(&mut texture, &problem.loss(&points, size), options.last_steps, Rate::Falling);
+    painter.steps(
+        &mut texture,
+        &problem.loss(&points, size),
+        options.last_steps,
+        Rate::Falling,
+        |step, texture| {
+            if step % RECORDED == 0 {
+                history.points.push(problem.point(history.moved[1] + step, &points, texture, &mut errors));
+            }
+        },
+    );
     let error = problem.errors(&points, &texture, &mut errors);
-    PaperResult { points, texture, error, rounds }
+    PaperResult { points, texture, error, rounds, history }
 }
 
 /// How Adam's rate goes on.
@@ -215,11 +261,20 @@ impl Painter {
         Self { adam, gradient: vec![Vec4::ZERO; count], threshold: options.threshold }
     }
 
-    /// Returns how much the texture has changed: the root of the mean square.
-    fn steps(&mut self, texture: &mut Texture, loss: &TextureLoss, steps: usize, rate: Rate) -> f64 {
+    /// Returns how much the texture has changed: the root of the mean square. `watch` sees the
+    /// texture before each step, and how many were done.
+    fn steps(
+        &mut self,
+        texture: &mut Texture,
+        loss: &TextureLoss,
+        steps: usize,
+        rate: Rate,
+        mut watch: impl FnMut(usize, &Texture),
+    ) -> f64 {
         let start = texture.texels.clone();
         let mut before = Vec::new();
         for step in 0..steps {
+            watch(step, texture);
             let mut share = 1.0;
             if rate == Rate::Falling {
                 let angle = std::f32::consts::PI * step as f32 / steps as f32;

@@ -23,6 +23,7 @@ pub use options::ImageOptions;
 use crate::error::BakeError;
 use crate::message::Watcher;
 use crate::options::{Method, UvMode};
+use crate::report::Convergence;
 use crate::uv_animation::UvMoves;
 use balance::best_share;
 use coarse_to_fine::optimised;
@@ -67,6 +68,8 @@ pub struct ImageReport {
     pub left_as_is: bool,
     /// True where the run was stopped before its end.
     pub stopped_early: bool,
+    /// How the paper's method went, where it was asked for.
+    pub convergence: Option<Convergence>,
 }
 
 /// Makes the plane of a picture.
@@ -90,7 +93,7 @@ pub fn bake_image(
     let kept_texture = written_texture(&start, &all[..1], Texture::solid(size, Vec4::splat(0.5)));
     let kept_errors = errors(&start, &all, &kept_texture);
 
-    let mut moves = Moves { frames: Vec::new(), steps: 0 };
+    let mut moves = Moves::default();
     let moving = options.uv == UvMode::Optimize && options.settled_steps() > 0;
     let found = match options.method {
         Method::Fit if moving => optimised(&picture, options, &contact, &mut moves, watcher)
@@ -114,6 +117,7 @@ pub fn bake_image(
         uv: check(&layout, size),
         left_as_is,
         stopped_early: watcher.stopped(),
+        convergence: moves.convergence,
     };
     let uv_moves = (!left_as_is && !moves.frames.is_empty()).then(|| UvMoves {
         frames: moves.frames,
@@ -123,10 +127,12 @@ pub fn bake_image(
     Ok(BakedImage { model: model(image, finest, &layout, &texture), uv_moves, report })
 }
 
-/// Frames and steps so far.
+/// Frames and steps so far, and how the paper's method went.
+#[derive(Default)]
 struct Moves {
     frames: Vec<Vec<Vec2>>,
     steps: usize,
+    convergence: Option<Convergence>,
 }
 
 fn as_f64(points: &[Vec2]) -> Vec<DVec2> {

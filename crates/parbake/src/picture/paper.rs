@@ -71,6 +71,7 @@ pub fn moved(
         !watcher.stopped()
     });
     moves.steps = found.rounds;
+    moves.convergence = Some(found.history.into());
     moves.frames.push(found.points.iter().map(|p| p.as_vec2()).collect());
     layout.points = found.points;
     layout

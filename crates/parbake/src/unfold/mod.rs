@@ -6,7 +6,7 @@
 //!        signal ─────────┴ the paper's (paper.rs) ────────┘
 //! ```
 //!
-//! Contract: whatever comes out of `repair`, `unwrap` or `optimize` is bijective, with the
+//! Contract: whatever comes out of any mode but `keep` is bijective, with the
 //! gutter asked for between charts. Coordinates that the default method moved are only taken
 //! if they show the surface better than the ones they began with; those of the paper's method
 //! are taken as they come, for what it does is what one wants to see.
@@ -20,9 +20,12 @@ pub use surface_signal::Source;
 use crate::error::BakeError;
 use crate::low::texture_coordinates;
 use crate::message::Watcher;
-use crate::options::{Method, UvMode};
+use crate::options::{BakeOptions, Method, UvMode};
+use crate::report::Convergence;
 use crate::uv_animation::UvMoves;
-use parbake_atlas::{Layout, PackOptions, RepairOptions, UnwrapOptions, check, repair, unwrap};
+use parbake_atlas::{
+    Layout, PackOptions, RepairOptions, TutteOptions, UnwrapOptions, check, repair, tutte, unwrap,
+};
 use parbake_mesh::ensure_normals;
 use parbake_model::glam::{DVec2, Vec2, Vec4};
 use parbake_model::{Material, Mesh, Model, Placement};
@@ -71,6 +74,9 @@ pub struct UnfoldReport {
     pub relative_error: Vec<f64>,
     /// True where charts were packed anew before they moved.
     pub packed: bool,
+    /// How the paper's method went, where it was asked for.
+    #[serde(default)]
+    pub convergence: Option<Convergence>,
 }
 
 /// A low-poly with new coordinates.
@@ -90,6 +96,18 @@ const MOST_SAMPLES: usize = 400_000;
 /// Width of a pixel in the common frame, in which a model is 2 long: a model that fills
 /// some 700 pixels.
 const PIXEL: f64 = 2.8 / 1024.0;
+
+/// A copy of a model whose texture coordinates are mended or made anew as the mode asks, for a
+/// texture of this size, and not moved.
+///
+/// # Errors
+/// Where charts do not fit into the texture.
+pub fn laid_out(low: &Model, mode: UvMode, texture_size: usize) -> Result<Model, BakeError> {
+    let options = BakeOptions { texture_size, ..BakeOptions::default() };
+    let Mended { name, mut mesh, .. } = mend(low, &options.unfold_as(mode))?;
+    mesh.triangle_materials.fill(0);
+    Ok(Model { name, mesh, materials: vec![Material::default()], images: Vec::new() })
+}
 
 /// Prepares the texture coordinates of a mended low-poly that `frame` places.
 pub fn unfold(
@@ -150,6 +168,10 @@ pub fn mend(low: &Model, options: &UnfoldOptions) -> Result<Mended, BakeError> {
             (mesh, Vec::new())
         }
         UvMode::Unwrap => (unwrap(&mesh, &UnwrapOptions { pack, ..Default::default() })?.mesh, Vec::new()),
+        UvMode::Tutte => (
+            tutte(&mesh, &TutteOptions { in_the_middle: true, pack, ..Default::default() })?.mesh,
+            Vec::new(),
+        ),
         UvMode::Repair | UvMode::Optimize => repair(&mesh, &RepairOptions { pack, ..Default::default() })?,
     };
     if repaired > 0 && !low.mesh.normals.is_empty() {

@@ -64,6 +64,7 @@ pub fn moved(
     frames.push(as_f32(&found.points));
     let layout = Layout { points: found.points, ..start.clone() };
     report.steps = found.rounds;
+    report.convergence = Some(found.history.into());
     report.relative_error = errors(&problem, &layout, false)
         .iter()
         .zip(errors(&problem, &start, false))

@@ -33,8 +33,6 @@ use parbake_render::scene::Scene;
 use parbake_render::shade::Lambert;
 use std::time::Instant;
 
-/// Held-out views.
-pub const VIEWS: usize = 8;
 /// Where training cameras stand: those of a bake.
 const RIG: Rig = Rig { radius: 3.5, projection: Projection::Perspective(0.4) };
 /// How far projection looks to either side in the common frame: as a bake by default.
@@ -127,7 +125,7 @@ impl<'a> Ground<'a> {
         let (display, srgb) = (subject.display, subject.srgb);
         let begin = fit_textures(&samples, &low.atlas, start, display, srgb, &options.schedule(), watch);
         let evaluate = EvaluateOptions { resolution: options.resolution, ..EvaluateOptions::default() };
-        let wanted = (fibonacci_sphere(VIEWS, 0.0).into_iter())
+        let wanted = (fibonacci_sphere(options.held_out, 0.0).into_iter())
             .map(|direction| {
                 let camera = Camera::towards_origin(direction, evaluate.radius, evaluate.projection());
                 let (size, supersample) = (evaluate.resolution, evaluate.supersample);

@@ -36,10 +36,10 @@ use std::time::Instant;
 pub struct ComparedVariants {
     /// All figures.
     pub report: VariantsReport,
-    /// The high-poly from each of the sides to look at.
-    pub(crate) high: Vec<Rgb>,
+    /// The high-poly from each of the sides to look at, display-referred.
+    pub high: Vec<Rgb>,
     /// Each variant from the same sides.
-    pub(crate) pictures: Vec<Vec<Rgb>>,
+    pub pictures: Vec<Vec<Rgb>>,
 }
 
 /// Fits and compares all variants. Runs on rayon's current thread pool.
@@ -73,7 +73,7 @@ pub fn compare_variants(
     let report = VariantsReport {
         options: options.clone(),
         variants,
-        views: ground::VIEWS,
+        views: options.held_out,
         stopped_early: bridge.should_stop(),
     };
     Ok(ComparedVariants { report, high: ground.high_sides(), pictures })

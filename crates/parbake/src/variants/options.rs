@@ -42,6 +42,10 @@ pub struct VariantsOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", default_value_t = 144))]
     pub view_size: usize,
 
+    /// Held-out views that figures are means of, 1 to 4096
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 8))]
+    pub held_out: usize,
+
     /// Side of a held-out view in pixels, 16 to 4096
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", default_value_t = 512))]
     pub resolution: usize,
@@ -69,6 +73,7 @@ impl Default for VariantsOptions {
             steps: 300,
             views: 240,
             view_size: 144,
+            held_out: 8,
             resolution: 512,
             convention: Convention::Gltf,
             seed: 0,
@@ -93,6 +98,7 @@ impl VariantsOptions {
             ("steps", self.steps, 0, 10_000),
             ("views", self.views, 1, 4096),
             ("view-size", self.view_size, 32, 1024),
+            ("held-out", self.held_out, 1, 4096),
             ("resolution", self.resolution, 16, 4096),
             ("threads", self.threads, 0, crate::threads::MOST_THREADS),
         ];

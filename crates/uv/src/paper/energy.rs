@@ -10,7 +10,7 @@
 //! image loss L_diff itself.
 
 use super::texture_loss::TextureLoss;
-use super::{Guide, PaperOptions};
+use super::{Guide, PaperOptions, PaperPoint};
 use crate::best_texture::{Mapped, Texture};
 use crate::contact::Contact;
 use crate::descent::Objective;
@@ -76,6 +76,29 @@ impl<'a> Problem<'a> {
             *error = part / mean_over;
         }
         sum(&left) / self.mean_over
+    }
+
+    /// L_diff and L_I∘UV after so many iterations; overwrites `errors` with eₜ of all triangles.
+    pub fn point(
+        &self,
+        iteration: usize,
+        points: &[DVec2],
+        texture: &Texture,
+        errors: &mut [f64],
+    ) -> PaperPoint {
+        let loss = self.errors(points, texture, errors);
+        let distortion = Distortion::symmetric_dirichlet(self.rest, self.options.scale, |_| 1.0);
+        let content = (distortion.elements.iter().zip(self.mapped.triangles).zip(errors.iter()))
+            .map(|((element, corners), error)| {
+                let [a, b, c] = corners.map(|i| points[i as usize]);
+                if element.area > 0.0 {
+                    error * element.evaluate(DMat2::from_cols(b - a, c - a)).0
+                } else {
+                    0.0
+                }
+            })
+            .sum();
+        PaperPoint { iteration, loss, content }
     }
 
     /// The energy of a step from `points`, with the errors and the texture there.

@@ -1,0 +1,142 @@
+//! Models side by side with insets, for the page.
+//!
+//! Contract: all pictures of a row are taken from the same place in the same light; the inset is
+//! where the last result is most ahead of the first, by squared error, so it is chosen by what is
+//! there and not by hand.
+
+use crate::error::ReproduceError;
+use crate::outcome::Outcome;
+use parbake::{EvaluateOptions, Limits, Studio, read_model};
+use parbake_metric::Rgb;
+use parbake_model::Model;
+use parbake_model::glam::Vec3;
+use parbake_page::embed_rgb;
+use parbake_page::text::{decimal, escape};
+use std::fmt::Write;
+use std::path::Path;
+
+/// Side of a picture in pixels, and of its inset.
+const PICTURE: usize = 384;
+const INSET: usize = 96;
+/// Dark grey, which neither swallows outlines nor outshines models. Linear light.
+const BACKGROUND: [f32; 3] = [0.04; 3];
+
+/// A result to be shown.
+pub struct Plate<'a> {
+    /// What it is.
+    pub name: String,
+    /// The folder of its model.
+    pub place: &'a Path,
+    /// Its figures.
+    pub outcome: &'a Outcome,
+}
+
+/// The high-poly and all results in a row, each with its inset below.
+///
+/// # Errors
+/// Where a file cannot be read again.
+pub fn row(title: &str, high: &Path, plates: &[Plate]) -> Result<String, ReproduceError> {
+    if plates.is_empty() {
+        return Ok(String::new());
+    }
+    let limits = Limits::default();
+    let options = EvaluateOptions { resolution: PICTURE, ..EvaluateOptions::default() };
+    let high = read_model(high, &limits)?.model;
+    let studio = Studio::new(&high, &options)?;
+    // The usual front, as a photographer would take it.
+    let direction = Vec3::new(0.413, 0.208, 0.887).normalize();
+    let picture = |model: &Model| {
+        let subject = studio.subject(model);
+        studio.develop(&studio.shot(&subject, direction), BACKGROUND)
+    };
+    let wanted = picture(&high);
+    let mut shown = Vec::new();
+    for plate in plates {
+        let low = read_model(&plate.place.join(crate::perform::MODEL), &limits)?.model;
+        shown.push(picture(&low));
+    }
+    let at = inset(&wanted, &shown[0], &shown[shown.len() - 1]);
+    let mut out = format!(r#"<h3>{}</h3><div class="plates">"#, escape(title));
+    out += &figure("high-poly", "", &wanted, at)?;
+    for (plate, picture) in plates.iter().zip(&shown) {
+        let score = match plate.outcome.ms_ssim() {
+            Some(ssim) => format!("{} dB / {}", decimal(plate.outcome.psnr(), 2), decimal(ssim, 3)),
+            None => format!("{} dB", decimal(plate.outcome.psnr(), 2)),
+        };
+        out += &figure(&plate.name, &score, picture, at)?;
+    }
+    Ok(out + "</div>")
+}
+
+fn figure(name: &str, score: &str, picture: &Rgb, at: [usize; 2]) -> Result<String, ReproduceError> {
+    let name = escape(name);
+    let mut out = String::from("<figure>");
+    for (what, picture) in [("", picture), (", inset", &cut(picture, at))] {
+        let data = embed_rgb(&name, picture)?;
+        let class = if what.is_empty() { "frame" } else { "frame inset" };
+        let _ = write!(
+            out,
+            r#"<div class="{class}"><img src="{}" width="{}" height="{}" alt="{name}{what}"></div>"#,
+            data.address, data.width, data.height
+        );
+    }
+    Ok(out + &format!("<figcaption>{name} <b>{score}</b></figcaption></figure>"))
+}
+
+/// Upper left corner of the square in which `best` is most ahead of `first`.
+fn inset(wanted: &Rgb, first: &Rgb, best: &Rgb) -> [usize; 2] {
+    let (width, height) = (wanted.width, wanted.height);
+    let error = |picture: &Rgb, i: usize| -> f64 {
+        (0..3).map(|k| f64::from(picture.pixels[i][k] - wanted.pixels[i][k]).powi(2)).sum()
+    };
+    // Sums over all pixels above and to the left, so that a square's sum is four of them.
+    let mut sums = vec![0.0; (width + 1) * (height + 1)];
+    for y in 0..height {
+        for x in 0..width {
+            let i = y * width + x;
+            let ahead = error(first, i) - error(best, i);
+            let at = |x: usize, y: usize| y * (width + 1) + x;
+            sums[at(x + 1, y + 1)] = ahead + sums[at(x, y + 1)] + sums[at(x + 1, y)] - sums[at(x, y)];
+        }
+    }
+    let at = |x: usize, y: usize| sums[y * (width + 1) + x];
+    let square =
+        |x: usize, y: usize| at(x + INSET, y + INSET) - at(x, y + INSET) - at(x + INSET, y) + at(x, y);
+    let mut best_at = ([0, 0], f64::NEG_INFINITY);
+    for y in (0..=height.saturating_sub(INSET)).step_by(8) {
+        for x in (0..=width.saturating_sub(INSET)).step_by(8) {
+            if square(x, y) > best_at.1 {
+                best_at = ([x, y], square(x, y));
+            }
+        }
+    }
+    best_at.0
+}
+
+fn cut(picture: &Rgb, [left, top]: [usize; 2]) -> Rgb {
+    let pixels = (top..top + INSET)
+        .flat_map(|y| picture.pixels[y * picture.width + left..][..INSET].iter().copied())
+        .collect();
+    Rgb { width: INSET, height: INSET, pixels }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects the choice of insets: where the result is ahead, wherever that is.
+    #[test]
+    fn insets_lie_where_the_gain_is() {
+        let plain =
+            |value| Rgb { width: PICTURE, height: PICTURE, pixels: vec![[value; 3]; PICTURE * PICTURE] };
+        let (wanted, best, mut first) = (plain(0.5), plain(0.5), plain(0.5));
+        for y in 200..220 {
+            for x in 300..310 {
+                first.pixels[y * PICTURE + x] = [0.0; 3];
+            }
+        }
+        let [left, top] = inset(&wanted, &first, &best);
+        assert!(left <= 300 && left + INSET >= 310 && top <= 200 && top + INSET >= 220, "{left} {top}");
+        assert_eq!(cut(&first, [left, top]).pixels.iter().filter(|p| p[0] == 0.0).count(), 200);
+    }
+}

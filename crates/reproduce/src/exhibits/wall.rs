@@ -1,0 +1,74 @@
+//! Figure 11: every kind of parallax mapping on the built-in brick wall over its plain cube.
+
+use super::{Drawn, Results};
+use crate::error::ReproduceError;
+use crate::experiment::{Experiment, Recipe, Subject};
+use crate::perform::variant_file;
+use crate::scope::Scope;
+use crate::table::{Cell, Table};
+use parbake::{Limits, VariantsOptions, read_image};
+use parbake_page::embed;
+use parbake_page::text::{decimal, escape};
+
+/// How to read it.
+pub const LEAD: &str = "A cube of brick walls made by formula, and the plain cube with each kind of map, fitted alike. \
+Places are coordinates at which a pixel has to fetch from its map, one after the other. Heights are held to 0 … 1, as \
+files hold them.";
+
+/// The comparison on the wall.
+fn run(scope: &Scope) -> Experiment {
+    let evaluate = scope.options.evaluate();
+    let options = VariantsOptions {
+        texture_size: scope.shown_size(),
+        held_out: evaluate.views,
+        resolution: evaluate.resolution,
+        ..VariantsOptions::default()
+    };
+    let recipe = Recipe::Variants { options };
+    Experiment { subject: Subject::Wall, recipe, label: "parallax variants".into() }
+}
+
+/// The one comparison.
+pub fn experiments(scope: &Scope) -> Vec<Experiment> {
+    vec![run(scope)]
+}
+
+/// Draws its pictures and its table.
+///
+/// # Errors
+/// Where a picture cannot be read again.
+pub fn draw(scope: &Scope, results: &Results) -> Result<Drawn, ReproduceError> {
+    let experiment = run(scope);
+    let (Some(outcome), Some(place)) = (results.of(&experiment), results.place(&experiment)) else {
+        return Ok(Drawn::default());
+    };
+    let columns = ["map", "PSNR / MS-SSIM", "gain", "places", "fetches", "bytes"];
+    let mut table = Table::new("Kinds of parallax mapping on the brick wall", &columns);
+    let plain = outcome.variants.first().map_or(f64::NAN, |v| v.psnr);
+    let mut html = String::from(r#"<div class="plates">"#);
+    for index in 0..=outcome.variants.len() {
+        let variant = index.checked_sub(1).and_then(|k| outcome.variants.get(k));
+        let name = variant.map_or("high-poly", |v| v.name.as_str());
+        let score = variant.map_or(String::new(), |v| format!("{} dB", decimal(v.psnr, 2)));
+        html += "<figure>";
+        for side in 0..2 {
+            let image = read_image(&place.join(variant_file(index, side)), &Limits::default())?;
+            let data = embed(&image)?;
+            html += &format!(
+                r#"<div class="frame"><img src="{}" width="{}" height="{}" alt="{}"></div>"#,
+                data.address,
+                data.width,
+                data.height,
+                escape(name)
+            );
+        }
+        html += &format!("<figcaption>{} <b>{score}</b></figcaption></figure>", escape(name));
+        if let Some(v) = variant {
+            let counts = [v.places, v.fetches, v.bytes].map(|n| Cell::Number(n as f64, 0));
+            let row = [Cell::Score(v.psnr, v.ms_ssim), Cell::Gain(v.psnr - plain)].into_iter().chain(counts);
+            table.push(name, row.collect());
+        }
+    }
+    html += "</div>";
+    Ok(Drawn { tables: vec![table], html, ..Drawn::default() })
+}
