@@ -29,7 +29,11 @@ pub fn run(command: &ReproduceCommand) -> Result<Ending, Failure> {
     if found.stopped && interrupted() {
         return Ok(Ending::Interrupted);
     }
-    judged(command, &console, recorded, &found)
+    let ending = judged(command, &console, recorded, &found)?;
+    match found.failed.len() {
+        0 => Ok(ending),
+        failed => Err(Failure::Output(format!("{failed} experiments failed; {} names them", page.display()))),
+    }
 }
 
 /// The folder of data: as given, or as the environment says.
@@ -62,20 +66,22 @@ fn judged(
         return Ok(Ending::Finished);
     }
     let Some(recorded) = recorded else { return Ok(Ending::Finished) };
-    let falls = recorded.falls(&found.gains);
+    let (missing, falls): (Vec<Fall>, Vec<Fall>) =
+        recorded.falls(&found.gains).into_iter().partition(|fall| fall.measured.is_none());
+    for fall in &missing {
+        console.say(&format!("note: {}", sentence(fall)));
+    }
     if falls.is_empty() {
-        console.say(&format!("none of {} gains fell below the record", recorded.0.len()));
+        let held = recorded.0.len() - missing.len();
+        console.say(&format!("none of {held} gains fell below the record"));
         return Ok(Ending::Finished);
     }
     for fall in &falls {
         eprintln!("{}", sentence(fall));
     }
     let path = command.record.as_deref().unwrap_or(Path::new(""));
-    eprintln!(
-        "{} gains fell below {}; if that is on purpose, run again with --update-record",
-        falls.len(),
-        path.display()
-    );
+    let gains = if falls.len() == 1 { "1 gain".to_string() } else { format!("{} gains", falls.len()) };
+    eprintln!("{gains} fell below {}; if that is on purpose, run again with --update-record", path.display());
     Ok(Ending::Fallen)
 }
 

@@ -58,7 +58,7 @@ pub use parbake_files::{
     FileError, Limits, Loaded, encode_png, read_image, read_model, write_atomically as write_file, write_glb,
     write_obj,
 };
-pub use parbake_model::Model;
+pub use parbake_model::{Image as Picture, Model};
 pub use picture::{BakedImage, ImageOptions, ImageReport, bake_image};
 pub use plan::Plan;
 pub use report::{BakeReport, Convergence, LossStep, StageTime};

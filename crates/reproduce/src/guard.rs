@@ -2,7 +2,8 @@
 //! changed on purpose.
 //!
 //! Contract: a record is a JSON object from the names of gains to decibels, in the order of names.
-//! What is not on record is no fall; what is on record and was not made is told.
+//! What is not on record is no fall; what is on record and was not made is told, and no fall either:
+//! not everybody has all of the data.
 
 use crate::error::ReproduceError;
 use std::collections::BTreeMap;
