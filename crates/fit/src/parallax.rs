@@ -168,6 +168,14 @@ fn view_gradient<M: ShiftMap>(samples: &[Sighted], state: &State<M>, display: &D
     part
 }
 
+/// The mean squared difference of these views as they are.
+pub fn mean_square<M: ShiftMap>(views: &[Vec<Sighted>], state: &State<M>, display: &DisplayTable) -> f64 {
+    let losses: Vec<f64> =
+        views.par_iter().map(|samples| view_gradient(samples, state, display).loss).collect();
+    let count: usize = views.iter().map(Vec::len).sum();
+    losses.iter().sum::<f64>() / (3 * count.max(1)) as f64
+}
+
 /// Share of the steps that go at the full rate; then it falls as a cosine does.
 const FULL_RATE: f32 = 0.3;
 
