@@ -194,7 +194,13 @@ pub fn fit_parallax<M: ShiftMap>(
 ) -> Vec<f64> {
     let texels = state.color.texels.len();
     let at_rate = |rate| AdamOptions { rate, ..AdamOptions::default() };
-    let mut moving = state.map.parameters();
+    // Adam sees parameters in units of their strides, and moves all of those alike.
+    let strides = state.map.strides();
+    let in_strides = |mut lanes: Vec<Vec4>| {
+        lanes.iter_mut().zip(&strides).for_each(|(lane, stride)| *lane /= *stride);
+        lanes
+    };
+    let mut moving = in_strides(state.map.parameters());
     let mean_size = views.iter().map(Vec::len).sum::<usize>() as f32 / views.len().max(1) as f32;
     let map_options = AdamOptions {
         epsilon: options.indifference * mean_size * options.views_per_step as f32,
@@ -231,12 +237,16 @@ pub fn fit_parallax<M: ShiftMap>(
             *texel = Vec3::new(x, y, z.max(0.02)).normalize().extend(0.0);
         }
         let to_maps: Vec<Vec<Vec4>> = parts.iter().map(|p| p.map.parameters()).collect();
-        let to_map: Vec<Vec4> =
-            (0..moving.len()).into_par_iter().map(|i| to_maps.iter().map(|m| m[i]).sum()).collect();
+        let stride = |i: usize| strides.get(i).copied().unwrap_or(Vec4::ONE);
+        let to_map: Vec<Vec4> = (0..moving.len())
+            .into_par_iter()
+            .map(|i| stride(i) * to_maps.iter().map(|m| m[i]).sum::<Vec4>())
+            .collect();
         adam_map.step(&mut moving, &to_map, share);
-        state.map.set_parameters(&moving);
+        let moved: Vec<Vec4> = moving.iter().enumerate().map(|(i, x)| *x * stride(i)).collect();
+        state.map.set_parameters(&moved);
         // Those that were held in their range must not wander on beyond it.
-        moving = state.map.parameters();
+        moving = in_strides(state.map.parameters());
     }
     watch.progress(Stage::Parallax, options.steps, options.steps);
     losses

@@ -47,6 +47,12 @@ pub trait ShiftMap: Clone + Send + Sync {
     /// map allows.
     fn set_parameters(&mut self, lanes: &[Vec4]);
 
+    /// How far each parameter moves in a step beside the others, in the lanes of
+    /// [`ShiftMap::parameters`]; empty where all move alike.
+    fn strides(&self) -> Vec<Vec4> {
+        Vec::new()
+    }
+
     /// About how far a parameter has to move for a shift to move by one texture width: fits of
     /// different maps then keep the same pace.
     fn pace(&self) -> f32;
@@ -111,14 +117,51 @@ impl ShiftMap for ShParallax {
         }
     }
 
+    /// Short for functions of high order: there are many, and steps in all of them at once would
+    /// throw a shift about farther than they can turn it.
+    fn strides(&self) -> Vec<Vec4> {
+        let by_function: Vec<f32> =
+            (0..=self.order).flat_map(|l| std::iter::repeat_n(stride(l), 2 * l + 1)).collect();
+        let of = |i: usize| by_function[i % by_function.len()];
+        let pairs = self.coefficients.len().div_ceil(2);
+        (0..pairs)
+            .map(|k| {
+                let (a, b) = (of(2 * k), of(2 * k + 1));
+                Vec4::new(a, a, b, b)
+            })
+            .collect()
+    }
+
     fn pace(&self) -> f32 {
         1.0
     }
 }
 
+/// The stride of functions of an order: whole up to the second, then it falls with `l (l + 1)`,
+/// by which the sphere's Laplacian weighs them.
+fn stride(order: usize) -> f32 {
+    let beyond = (order * (order + 1)).saturating_sub(6) as f32;
+    1.0 / (1.0 + 0.1 * beyond)
+}
+
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+
+    /// Protects high orders from too long steps, and each coefficient from another one's stride.
+    #[test]
+    fn strides_follow_their_functions() {
+        let map = ShParallax::zeros(3, 5);
+        let strides = map.strides();
+        assert_eq!(strides.len(), map.parameters().len());
+        let flat: Vec<f32> = strides.iter().flat_map(|lane| lane.to_array()).collect();
+        for (coefficient, pair) in flat.chunks(2).take(16 * 25).enumerate() {
+            let whole = coefficient % 16 < 9;
+            assert_eq!(pair, [if whole { 1.0 } else { 0.625 }; 2], "{coefficient}");
+        }
+        assert!(ShParallax::zeros(2, 4).strides().iter().all(|lane| *lane == Vec4::ONE));
+    }
+
     use crate::frame::tangent_light;
 
     pub(crate) fn noise(i: usize) -> f32 {
