@@ -2,6 +2,7 @@
 
 use crate::exhibits::{Drawn, Exhibit, Results};
 use crate::scope::Scope;
+use crate::table::Table;
 use parbake_page::text::{count, duration, escape};
 use parbake_page::{document, section};
 use std::collections::BTreeMap;
@@ -68,6 +69,11 @@ impl Facts<'_> {
     }
 }
 
+/// Tables of which anything was made.
+fn shown(drawn: &Drawn) -> impl Iterator<Item = &Table> {
+    drawn.tables.iter().filter(|table| !table.rows.is_empty())
+}
+
 /// The page.
 pub fn html(facts: &Facts, drawn: &[(Exhibit, Drawn)]) -> String {
     let mut out = concat!(
@@ -77,8 +83,8 @@ pub fn html(facts: &Facts, drawn: &[(Exhibit, Drawn)]) -> String {
     .to_string();
     let notes: String = facts.sentences().iter().map(|s| format!("<li>{}</li>", escape(s))).collect();
     out += &format!(r#"<ul class="notes">{notes}</ul>"#);
-    for (exhibit, drawn) in drawn {
-        let tables: String = drawn.tables.iter().map(|table| table.html()).collect();
+    for (exhibit, drawn) in drawn.iter().filter(|(_, drawn)| drawn.has_something()) {
+        let tables: String = shown(drawn).map(|table| table.html()).collect();
         let id = exhibit.name().to_lowercase().replace(' ', "");
         section(&mut out, &id, exhibit.name(), &escape(exhibit.lead()), &(tables + &drawn.html));
     }
@@ -88,9 +94,9 @@ pub fn html(facts: &Facts, drawn: &[(Exhibit, Drawn)]) -> String {
 /// The tables for a document.
 pub fn markdown(facts: &Facts, drawn: &[(Exhibit, Drawn)]) -> String {
     let mut out: String = facts.sentences().iter().map(|s| format!("- {s}\n")).collect();
-    for (exhibit, drawn) in drawn.iter().filter(|(_, drawn)| !drawn.tables.is_empty()) {
+    for (exhibit, drawn) in drawn.iter().filter(|(_, drawn)| shown(drawn).count() > 0) {
         out += &format!("\n## {}\n\n{}\n", exhibit.name(), exhibit.lead());
-        for table in &drawn.tables {
+        for table in shown(drawn) {
             out += &format!("\n{}", table.markdown());
         }
     }
@@ -101,7 +107,7 @@ pub fn markdown(facts: &Facts, drawn: &[(Exhibit, Drawn)]) -> String {
 pub fn terminal(drawn: &[(Exhibit, Drawn)]) -> String {
     let mut out = String::new();
     for (exhibit, drawn) in drawn {
-        for table in drawn.tables.iter().filter(|table| !table.rows.is_empty()) {
+        for table in shown(drawn) {
             out += &format!("{}: {}\n", exhibit.name(), table.terminal());
         }
     }

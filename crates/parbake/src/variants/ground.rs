@@ -2,6 +2,7 @@
 //! that shifts nothing to figures and pictures.
 
 use super::look::Look;
+use super::measured_heights::MeasuredHeights;
 use super::options::VariantsOptions;
 use super::report::VariantFigures;
 use super::stored::Stored;
@@ -59,6 +60,8 @@ pub struct Subject {
     /// The textures that are fitted along with maps, as they begin.
     small: (LowPoly, Start),
     references: Vec<Reference>,
+    /// Measured, where that was asked for.
+    pub heights: Option<MeasuredHeights>,
 }
 
 impl Subject {
@@ -83,10 +86,16 @@ impl Subject {
         for warning in &ready.warnings {
             watch.message(Message::Warning(warning.clone()));
         }
+        let heights = match options.measured_heights {
+            true => {
+                Some(MeasuredHeights::new(&LowPoly::new(low, &frame, options.height_size)?, &surface, REACH))
+            }
+            false => None,
+        };
         let pool = view_pool(options.views, &RIG, options.seed);
         let references = render_references(&scene, &Lambert, &pool, &options.sampling(), 1, watch);
         let (display, srgb) = (convention.display(), convention.decodes_srgb());
-        let made = Self { display, srgb, scene, low: ready, start, small, references };
+        let made = Self { display, srgb, scene, low: ready, start, small, references, heights };
         let walker = made.walker(options);
         let mut seen = 0;
         made.references.iter().for_each(|reference| walker.walk(reference, |_| seen += 1));
@@ -170,10 +179,10 @@ impl<'a> Ground<'a> {
         let (since, options) = (Instant::now(), self.options);
         let Subject { display, srgb, low, start, references, .. } = self.subject;
         let [color, normal] = self.begin.clone();
-        let mut fit = options.fit();
-        fit.rate *= map.share_of_rate();
+        let fit = options.fit();
+        let stays = map.is_height() && self.subject.heights.is_some();
         let mut state = State { map, color, normal };
-        let losses = match state.map.parameters().is_empty() {
+        let losses = match stays || state.map.parameters().is_empty() {
             true => Vec::new(),
             false => fit_parallax(&self.views, &mut state, &DisplayTable::new(display), &fit, watch),
         };

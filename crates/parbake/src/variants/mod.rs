@@ -11,6 +11,7 @@
 
 mod ground;
 mod look;
+mod measured_heights;
 mod options;
 mod report;
 mod stored;
@@ -57,7 +58,15 @@ pub fn compare_variants(
     let bridge = Bridge::new(watcher, Instant::now(), None);
     let subject = ground::Subject::new(high, low, options, &bridge)?;
     let ground = Ground::new(&subject, options, &bridge);
-    let heights = |variant| HeightParallax::flat(variant, options.height_size, options.height_scale);
+    let heights = |variant| {
+        let flat = HeightParallax::flat(variant, options.height_size, options.height_scale);
+        match &subject.heights {
+            Some(measured) => {
+                HeightParallax { heights: measured.heights.clone(), scale: measured.scale, ..flat }
+            }
+            None => flat,
+        }
+    };
     let harmonics = |order| ShParallax::zeros(order, options.parallax_size);
     let variants = [
         Some(ground.variant("no parallax", Unshifted, &bridge)),

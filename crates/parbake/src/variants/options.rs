@@ -30,6 +30,11 @@ pub struct VariantsOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "WIDTHS", default_value_t = SCALE))]
     pub height_scale: f32,
 
+    /// Measure heights along the normals instead of fitting them, and their scale with them; other
+    /// maps are fitted all the same
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub measured_heights: bool,
+
     /// Steps in which each map is fitted, 0 to 10000
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 300))]
     pub steps: usize,
@@ -70,6 +75,7 @@ impl Default for VariantsOptions {
             parallax_size: 64,
             height_size: 128,
             height_scale: SCALE,
+            measured_heights: false,
             steps: 300,
             views: 240,
             view_size: 144,

@@ -5,7 +5,6 @@ use parbake_render::parallax::ShParallax;
 use parbake_render::parallax_variants::height::{HeightParallax, LAYERS};
 use parbake_render::parallax_variants::neural::NeuralParallax;
 use parbake_render::parallax_variants::shift_map::{ShiftMap, Unshifted};
-use parbake_render::spherical_harmonics::functions;
 
 /// The cost of a map.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,9 +22,9 @@ pub trait Stored: ShiftMap {
     /// The map as it comes back, and its cost.
     fn stored(self) -> (Self, Cost);
 
-    /// Share of the usual rate at which it is fitted best.
-    fn share_of_rate(&self) -> f32 {
-        1.0
+    /// Whether it is made of heights, which can be measured.
+    fn is_height(&self) -> bool {
+        false
     }
 }
 
@@ -43,15 +42,13 @@ impl Stored for ShParallax {
         let back = ShParallax::unpack(&packed, &images).unwrap_or(self);
         (back, Cost { bytes, places: 1, fetches: images.len() })
     }
-
-    /// Many functions that move together move a shift far, so higher orders go slower: order 7
-    /// gained 0.8 dB on the brick wall by a third of the rate that suits order 3.
-    fn share_of_rate(&self) -> f32 {
-        (functions(3) as f32 / functions(self.order) as f32).min(1.0)
-    }
 }
 
 impl Stored for HeightParallax {
+    fn is_height(&self) -> bool {
+        true
+    }
+
     /// One byte a texel, from the least height to the greatest.
     fn stored(mut self) -> (Self, Cost) {
         let (least, most) = (self.heights.texels.iter())

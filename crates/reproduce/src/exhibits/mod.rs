@@ -12,7 +12,7 @@
 //! violins      Figures 6, 9         gains of all models
 //! side_by_side Figures 7, 8         levels and texture sizes to look at
 //! layouts      Figures 10, 18       texture coordinates over pictures and from other starts
-//! wall         Figure 11            the brick wall
+//! wall         Figures 11, 12       the brick wall, heights fitted and measured
 //! convergence  Figure 15            the paper's method, iteration by iteration
 //! ablation     Figures 16, 17       one thing at a time, and SH orders
 //! ```
@@ -75,6 +75,8 @@ pub enum Exhibit {
     Figure10,
     /// The brick wall.
     Figure11,
+    /// Measured depth.
+    Figure12,
     /// Convergence of the paper's method.
     Figure15,
     /// One thing at a time.
@@ -94,6 +96,13 @@ pub struct Drawn {
     pub html: String,
     /// Gains that the guard looks at, by name.
     pub gains: Vec<(String, f64)>,
+}
+
+impl Drawn {
+    /// Whether anything was made of it.
+    pub fn has_something(&self) -> bool {
+        !self.html.is_empty() || self.tables.iter().any(|table| !table.rows.is_empty())
+    }
 }
 
 /// Outcomes with their experiments and places.
@@ -130,7 +139,7 @@ impl Results {
 impl Exhibit {
     /// All, in the order in which they are made: what most others build on comes first, what takes
     /// longest last.
-    pub const ALL: [Exhibit; 18] = [
+    pub const ALL: [Exhibit; 19] = [
         Exhibit::Table10,
         Exhibit::Table6,
         Exhibit::Table7,
@@ -143,6 +152,7 @@ impl Exhibit {
         Exhibit::Figure9,
         Exhibit::Figure10,
         Exhibit::Figure11,
+        Exhibit::Figure12,
         Exhibit::Figure16,
         Exhibit::Figure17,
         Exhibit::Figure18,
@@ -172,6 +182,7 @@ impl Exhibit {
             Exhibit::Figure9 => "Figure 9",
             Exhibit::Figure10 => "Figure 10",
             Exhibit::Figure11 => "Figure 11",
+            Exhibit::Figure12 => "Figure 12",
             Exhibit::Figure15 => "Figure 15",
             Exhibit::Figure16 => "Figure 16",
             Exhibit::Figure17 => "Figure 17",
@@ -191,7 +202,8 @@ impl Exhibit {
             Exhibit::Figure6 | Exhibit::Figure9 => violins::LEAD,
             Exhibit::Figure7 | Exhibit::Figure8 => side_by_side::LEAD,
             Exhibit::Figure10 => layouts::LEAD_PICTURES,
-            Exhibit::Figure11 => wall::LEAD,
+            Exhibit::Figure11 => wall::LEAD_FITTED,
+            Exhibit::Figure12 => wall::LEAD_MEASURED,
             Exhibit::Figure15 => convergence::LEAD,
             Exhibit::Figure16 => ablation::LEAD_PARTS,
             Exhibit::Figure17 => ablation::LEAD_ORDERS,
@@ -214,7 +226,8 @@ impl Exhibit {
             Exhibit::Figure7 => side_by_side::level_experiments(scope),
             Exhibit::Figure8 => side_by_side::size_experiments(scope),
             Exhibit::Figure10 => layouts::picture_experiments(scope),
-            Exhibit::Figure11 => wall::experiments(scope),
+            Exhibit::Figure11 => vec![wall::run(scope, false)],
+            Exhibit::Figure12 => vec![wall::run(scope, true)],
             Exhibit::Figure15 => convergence::experiments(scope),
             Exhibit::Figure16 => ablation::part_experiments(scope),
             Exhibit::Figure17 => ablation::order_experiments(scope),
@@ -241,7 +254,8 @@ impl Exhibit {
             Exhibit::Figure8 => side_by_side::draw_sizes(scope, results),
             Exhibit::Figure9 => Ok(violins::draw_compressed(scope, results)),
             Exhibit::Figure10 => layouts::draw_pictures(scope, results),
-            Exhibit::Figure11 => wall::draw(scope, results),
+            Exhibit::Figure11 => wall::draw(scope, results, false),
+            Exhibit::Figure12 => wall::draw(scope, results, true),
             Exhibit::Figure15 => Ok(convergence::draw(scope, results)),
             Exhibit::Figure16 => ablation::draw_parts(scope, results),
             Exhibit::Figure17 => ablation::draw_orders(scope, results),

@@ -1,4 +1,5 @@
-//! Figure 11: every kind of parallax mapping on the built-in brick wall over its plain cube.
+//! Figures 11 and 12: every kind of parallax mapping on the built-in brick wall over its plain cube,
+//! with heights that are fitted, and with the wall's own depth.
 
 use super::{Drawn, Results};
 use crate::error::ReproduceError;
@@ -10,40 +11,44 @@ use parbake::{Limits, VariantsOptions, read_image};
 use parbake_page::embed;
 use parbake_page::text::{decimal, escape};
 
-/// How to read it.
-pub const LEAD: &str = "A cube of brick walls made by formula, and the plain cube with each kind of map, fitted alike. \
+/// How to read Figure 12.
+pub const LEAD_MEASURED: &str = "The same wall; heights are its own depth, measured along the normals, and only \
+textures are fitted to them. SH and network, which have no such truth, are fitted as in Figure 11.";
+/// How to read Figure 11.
+pub const LEAD_FITTED: &str = "A cube of brick walls made by formula, and the plain cube with each kind of map, fitted alike. \
 Places are coordinates at which a pixel has to fetch from its map, one after the other. Heights are held to 0 … 1, as \
 files hold them.";
 
 /// The comparison on the wall.
-fn run(scope: &Scope) -> Experiment {
+pub fn run(scope: &Scope, measured_heights: bool) -> Experiment {
     let evaluate = scope.options.evaluate();
     let options = VariantsOptions {
         texture_size: scope.shown_size(),
+        measured_heights,
         held_out: evaluate.views,
         resolution: evaluate.resolution,
         ..VariantsOptions::default()
     };
     let recipe = Recipe::Variants { options };
-    Experiment { subject: Subject::Wall, recipe, label: "parallax variants".into() }
-}
-
-/// The one comparison.
-pub fn experiments(scope: &Scope) -> Vec<Experiment> {
-    vec![run(scope)]
+    Experiment {
+        subject: Subject::Wall,
+        recipe,
+        label: format!("parallax variants, heights {}", if measured_heights { "measured" } else { "fitted" }),
+    }
 }
 
 /// Draws its pictures and its table.
 ///
 /// # Errors
 /// Where a picture cannot be read again.
-pub fn draw(scope: &Scope, results: &Results) -> Result<Drawn, ReproduceError> {
-    let experiment = run(scope);
+pub fn draw(scope: &Scope, results: &Results, measured: bool) -> Result<Drawn, ReproduceError> {
+    let experiment = run(scope, measured);
     let (Some(outcome), Some(place)) = (results.of(&experiment), results.place(&experiment)) else {
         return Ok(Drawn::default());
     };
     let columns = ["map", "PSNR / MS-SSIM", "gain", "places", "fetches", "bytes"];
-    let mut table = Table::new("Kinds of parallax mapping on the brick wall", &columns);
+    let heights = if measured { "measured" } else { "fitted" };
+    let mut table = Table::new(&format!("The brick wall, heights {heights}"), &columns);
     let plain = outcome.variants.first().map_or(f64::NAN, |v| v.psnr);
     let mut html = String::from(r#"<div class="plates">"#);
     for index in 0..=outcome.variants.len() {
