@@ -50,6 +50,14 @@ pub fn embed_rgb(name: &str, picture: &Rgb) -> Result<Embedded, FileError> {
     embed(&Image { name: name.into(), width: picture.width, height: picture.height, pixels })
 }
 
+/// `|a − b|` of two pictures of equal size, so many times as strong, clipped to 1.
+pub fn amplified_difference(a: &Rgb, b: &Rgb, times: f32) -> Rgb {
+    let pixels = (a.pixels.iter().zip(&b.pixels))
+        .map(|(a, b)| [0, 1, 2].map(|k| ((a[k] - b[k]).abs() * times).min(1.0)))
+        .collect();
+    Rgb { width: a.width, height: a.height, pixels }
+}
+
 /// Each pixel the mean of `factor`² (fewer at the far borders).
 fn reduced(image: &Image, factor: usize) -> Image {
     if factor == 1 {
@@ -88,6 +96,16 @@ mod tests {
         let embedded = embed(&Image::solid("b", 2100, 5, [0; 4])).unwrap();
         assert_eq!((embedded.width, embedded.height), (700, 2));
         assert!(embedded.address.starts_with("data:image/png;base64,iVBORw0KGgo"));
+    }
+
+    /// Protects the amplification that pages state.
+    #[test]
+    fn differences_are_amplified_and_clipped() {
+        let of = |v| Rgb { width: 1, height: 1, pixels: vec![v] };
+        let d = amplified_difference(&of([0.5, 0.1, 1.0]), &of([0.25, 0.2, 0.0]), 4.0);
+        assert_eq!(d.pixels[0][0], 1.0);
+        assert!((d.pixels[0][1] - 0.4).abs() < 1e-6);
+        assert_eq!(d.pixels[0][2], 1.0);
     }
 
     /// Protects the page's size from textures that no PNG makes small.

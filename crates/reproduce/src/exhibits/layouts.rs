@@ -12,10 +12,9 @@ use crate::plane::{as_shown, wanted};
 use crate::scope::Scope;
 use crate::table::{Cell, Table};
 use parbake::{BakeOptions, ImageOptions, Limits, UvMode, read_image, read_model};
-use parbake_metric::Rgb;
 use parbake_model::Model;
 use parbake_page::text::{decimal, escape};
-use parbake_page::{embed, embed_rgb, uv_layout};
+use parbake_page::{amplified_difference, embed, embed_rgb, uv_layout};
 use std::path::Path;
 
 /// How to read Figure 10.
@@ -95,7 +94,7 @@ pub fn draw_pictures(scope: &Scope, results: &Results) -> Result<Drawn, Reproduc
             let what = if k == 0 { "fixed UV" } else { "UV moved" };
             let caption = format!("{what} <b>{} dB</b>", decimal(outcome.psnr(), 2));
             html += &framed(&caption, &embed_rgb("shown", &shown)?.address, "");
-            let left = difference(&wanted(&picture), &shown);
+            let left = amplified_difference(&wanted(&picture), &shown, AMPLIFIED);
             html += &framed(&format!("difference, {what}"), &embed_rgb("difference", &left)?.address, "");
             if k == 1 {
                 html += &textured(&plane, "texture and cells", &format!("picture-{}", escape(&stem(path))))?;
@@ -155,11 +154,4 @@ fn textured(model: &Model, caption: &str, id: &str) -> Result<String, ReproduceE
     let id = id.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
     let lines = uv_layout(&model.mesh, &id).map_or(String::new(), |layout| layout.svg);
     Ok(framed(caption, &embed(texture)?.address, &lines))
-}
-
-fn difference(a: &Rgb, b: &Rgb) -> Rgb {
-    let pixels = (a.pixels.iter().zip(&b.pixels))
-        .map(|(a, b)| [0, 1, 2].map(|k| ((a[k] - b[k]).abs() * AMPLIFIED).min(1.0)))
-        .collect();
-    Rgb { width: a.width, height: a.height, pixels }
 }

@@ -18,6 +18,10 @@ use std::path::Path;
 /// Side of a picture in pixels, and of its inset.
 const PICTURE: usize = 384;
 const INSET: usize = 96;
+/// Insets have so many times the pixels.
+const FINER: usize = 3;
+/// How much larger the picture is than the model.
+const ROOM: f32 = 1.06;
 /// Dark grey, which neither swallows outlines nor outshines models. Linear light.
 const BACKGROUND: [f32; 3] = [0.04; 3];
 
@@ -40,22 +44,25 @@ pub fn row(title: &str, high: &Path, plates: &[Plate]) -> Result<String, Reprodu
         return Ok(String::new());
     }
     let limits = Limits::default();
-    let options = EvaluateOptions { resolution: PICTURE, ..EvaluateOptions::default() };
     let high = read_model(high, &limits)?.model;
-    let studio = Studio::new(&high, &options)?;
-    // The usual front, as a photographer would take it.
-    let direction = Vec3::new(0.413, 0.208, 0.887).normalize();
-    let picture = |model: &Model| {
-        let subject = studio.subject(model);
-        studio.develop(&studio.shot(&subject, direction), BACKGROUND)
+    let (direction, fov) = framing(&high)?;
+    let studio =
+        |resolution| Studio::new(&high, &EvaluateOptions { resolution, fov, ..EvaluateOptions::default() });
+    let (whole, fine) = (studio(PICTURE)?, studio(FINER * PICTURE)?);
+    let taken = |model: &Model| {
+        let taken = [&whole, &fine].map(|studio| {
+            let subject = studio.subject(model);
+            studio.develop(&studio.shot(&subject, direction), BACKGROUND)
+        });
+        let [picture, detail] = taken;
+        Pictures { picture, detail }
     };
-    let wanted = picture(&high);
+    let wanted = taken(&high);
     let mut shown = Vec::new();
     for plate in plates {
-        let low = read_model(&plate.place.join(crate::perform::MODEL), &limits)?.model;
-        shown.push(picture(&low));
+        shown.push(taken(&read_model(&plate.place.join(crate::perform::MODEL), &limits)?.model));
     }
-    let at = inset(&wanted, &shown[0], &shown[shown.len() - 1]);
+    let at = inset(&wanted.picture, &shown[0].picture, &shown[shown.len() - 1].picture);
     let mut out = format!(r#"<h3>{}</h3><div class="plates">"#, escape(title));
     out += &figure("high-poly", "", &wanted, at)?;
     for (plate, picture) in plates.iter().zip(&shown) {
@@ -68,10 +75,41 @@ pub fn row(title: &str, high: &Path, plates: &[Plate]) -> Result<String, Reprodu
     Ok(out + "</div>")
 }
 
-fn figure(name: &str, score: &str, picture: &Rgb, at: [usize; 2]) -> Result<String, ReproduceError> {
+/// A view of a model, and the same with more pixels, of which the inset is cut.
+struct Pictures {
+    picture: Rgb,
+    detail: Rgb,
+}
+
+/// Where to take pictures from, and the field of view in degrees: the one of some sides that shows
+/// most of the model, as near as it fits.
+fn framing(high: &Model) -> Result<(Vec3, f32), ReproduceError> {
+    let options = EvaluateOptions { resolution: 96, supersample: 1, ..EvaluateOptions::default() };
+    let studio = Studio::new(high, &options)?;
+    let subject = studio.subject(high);
+    let sides = [[0.413, 0.208, 0.887], [-0.54, 0.45, 0.71], [0.35, 0.8, 0.49], [0.3, -0.45, -0.84]];
+    let mut best = (0, Vec3::Z, options.fov);
+    for direction in sides.map(|side| Vec3::from(side).normalize()) {
+        let shot = studio.shot(&subject, direction);
+        let [black, white] = [[0.0; 3], [1.0; 3]].map(|background| studio.develop(&shot, background));
+        let size = black.width;
+        // What a background does not change is the model.
+        let covered: Vec<usize> = (0..size * size).filter(|&i| black.pixels[i] == white.pixels[i]).collect();
+        let middle = 0.5 * size as f32;
+        let away = |i: usize| (i as f32 + 0.5 - middle).abs() + 0.5;
+        let reach = covered.iter().map(|&i| away(i % size).max(away(i / size))).fold(1.0, f32::max);
+        if covered.len() > best.0 {
+            let tangent = (0.5 * options.fov.to_radians()).tan() * (reach / middle) * ROOM;
+            best = (covered.len(), direction, 2.0 * tangent.atan().to_degrees());
+        }
+    }
+    Ok((best.1, best.2.clamp(1.0, 120.0)))
+}
+
+fn figure(name: &str, score: &str, taken: &Pictures, at: [usize; 2]) -> Result<String, ReproduceError> {
     let name = escape(name);
     let mut out = String::from("<figure>");
-    for (what, picture) in [("", picture), (", inset", &cut(picture, at))] {
+    for (what, picture) in [("", &taken.picture), (", inset", &cut(&taken.detail, at))] {
         let data = embed_rgb(&name, picture)?;
         let class = if what.is_empty() { "frame" } else { "frame inset" };
         let _ = write!(
@@ -113,11 +151,14 @@ fn inset(wanted: &Rgb, first: &Rgb, best: &Rgb) -> [usize; 2] {
     best_at.0
 }
 
-fn cut(picture: &Rgb, [left, top]: [usize; 2]) -> Rgb {
-    let pixels = (top..top + INSET)
-        .flat_map(|y| picture.pixels[y * picture.width + left..][..INSET].iter().copied())
+/// The inset at `at` of the picture with more pixels.
+fn cut(detail: &Rgb, at: [usize; 2]) -> Rgb {
+    let side = FINER * INSET;
+    let [left, top] = at.map(|x| FINER * x);
+    let pixels = (top..top + side)
+        .flat_map(|y| detail.pixels[y * detail.width + left..][..side].iter().copied())
         .collect();
-    Rgb { width: INSET, height: INSET, pixels }
+    Rgb { width: side, height: side, pixels }
 }
 
 #[cfg(test)]
@@ -137,6 +178,8 @@ mod tests {
         }
         let [left, top] = inset(&wanted, &first, &best);
         assert!(left <= 300 && left + INSET >= 310 && top <= 200 && top + INSET >= 220, "{left} {top}");
-        assert_eq!(cut(&first, [left, top]).pixels.iter().filter(|p| p[0] == 0.0).count(), 200);
+        let side = FINER * PICTURE;
+        let detail = Rgb { width: side, height: side, pixels: vec![[0.5; 3]; side * side] };
+        assert_eq!(cut(&detail, [PICTURE - INSET; 2]).pixels.len(), (FINER * INSET).pow(2));
     }
 }
