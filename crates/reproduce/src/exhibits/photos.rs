@@ -20,6 +20,8 @@ const PICTURE: usize = 384;
 const INSET: usize = 96;
 /// Insets have so many times the pixels.
 const FINER: usize = 3;
+/// How much more a later side has to show to be taken.
+const PREFERENCE: f32 = 1.5;
 /// How much larger the picture is than the model.
 const ROOM: f32 = 1.06;
 /// Dark grey, which neither swallows outlines nor outshines models. Linear light.
@@ -81,8 +83,8 @@ struct Pictures {
     detail: Rgb,
 }
 
-/// Where to take pictures from, and the field of view in degrees: the one of some sides that shows
-/// most of the model, as near as it fits.
+/// Where to take pictures from, and the field of view in degrees, as near as the model fits: the
+/// usual front, as a photographer would take it, unless another side shows much more.
 fn framing(high: &Model) -> Result<(Vec3, f32), ReproduceError> {
     let options = EvaluateOptions { resolution: 96, supersample: 1, ..EvaluateOptions::default() };
     let studio = Studio::new(high, &options)?;
@@ -98,7 +100,7 @@ fn framing(high: &Model) -> Result<(Vec3, f32), ReproduceError> {
         let middle = 0.5 * size as f32;
         let away = |i: usize| (i as f32 + 0.5 - middle).abs() + 0.5;
         let reach = covered.iter().map(|&i| away(i % size).max(away(i / size))).fold(1.0, f32::max);
-        if covered.len() > best.0 {
+        if covered.len() as f32 > PREFERENCE * best.0 as f32 {
             let tangent = (0.5 * options.fov.to_radians()).tan() * (reach / middle) * ROOM;
             best = (covered.len(), direction, 2.0 * tangent.atan().to_degrees());
         }
