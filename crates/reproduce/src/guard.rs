@@ -49,7 +49,7 @@ impl Record {
         serde_json::to_string_pretty(&rounded).unwrap_or_default() + "\n"
     }
 
-    /// Gains that fell by more than [`TOLERANCE`], or are missing.
+    /// Gains that fell by more than is tolerated, or are missing.
     pub fn falls(&self, measured: &Record) -> Vec<Fall> {
         let fall = |(name, recorded): (&String, &f64)| {
             let now = measured.0.get(name).copied();
