@@ -11,7 +11,7 @@
 //! textures lie there. An outcome names the build that made it; another build's is taken only
 //! where that was asked for.
 
-use crate::catalogue::{file_name, list};
+use crate::catalogue::{file_name, has_ending, list};
 use crate::error::ReproduceError;
 use crate::experiment::Experiment;
 use crate::outcome::Outcome;
@@ -64,7 +64,8 @@ impl Cache {
         }
         let mut hasher = Sha256::new();
         hasher.update(file_name(file));
-        let is_model = file.extension().is_some_and(|e| e == "obj" || e == "gltf");
+        // A GLB or a picture is whole by itself.
+        let is_model = has_ending(file, &["obj", "gltf"]);
         let beside = match file.parent() {
             Some(folder) if is_model => list(folder)?,
             _ => vec![file.to_path_buf()],
@@ -152,7 +153,7 @@ mod tests {
     #[test]
     fn what_lies_beside_a_model_counts() {
         let folder = tempfile::tempdir().unwrap();
-        let model = folder.path().join("m.obj");
+        let model = folder.path().join("m.OBJ");
         std::fs::write(&model, "v 0 0 0").unwrap();
         let content = || Cache::new(folder.path(), "a".into(), false).content(&model).unwrap();
         let before = content();

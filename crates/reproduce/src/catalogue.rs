@@ -136,7 +136,8 @@ fn model_in(folder: &Path) -> Option<PathBuf> {
     list(folder).ok()?.into_iter().find(|path| has_ending(path, &["obj", "glb", "gltf"]))
 }
 
-fn has_ending(path: &Path, endings: &[&str]) -> bool {
+/// Whether a file is of one of these kinds, in small letters or capitals.
+pub fn has_ending(path: &Path, endings: &[&str]) -> bool {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     endings.contains(&ending.as_str())
 }

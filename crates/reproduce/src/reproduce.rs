@@ -16,7 +16,6 @@ use crate::scope::Scope;
 use parbake::write_file;
 use parbake_page::text::decimal;
 use std::path::Path;
-use std::time::Instant;
 
 /// What a run leaves besides its files.
 #[derive(Clone, Debug)]
@@ -141,12 +140,10 @@ impl State {
                 let seconds_left = self.seconds_left(&plan[done..]);
                 let (total, title) = (plan.len(), experiment.title());
                 observer.event(Event::Begin { done, total, title, seconds_left });
-                let begin = Instant::now();
                 let Some(mut made) = perform(experiment, &place, &evaluate, observer)? else {
                     return Ok(());
                 };
                 made.build = cache.build().into();
-                made.seconds_in_all = begin.elapsed().as_secs_f64();
                 cache.keep(&place, &made)?;
                 made
             }

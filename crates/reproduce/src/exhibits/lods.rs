@@ -13,7 +13,7 @@ use crate::table::{Cell, Table};
 /// How to read them.
 pub const LEAD: &str = "PSNR in dB and MS-SSIM, before black. Each column of ours stands before the paper's that comes \
 closest: projection beside Blender's ray casting, the fit of textures with fixed coordinates beside NVDiffModeling. \
-Gains are over the fixed coordinates of the same table side. The paper's setting is not fully known: compare gains, not \
+Gains are over the fixed coordinates of the same row. The paper's setting is not fully known: compare gains, not \
 absolute decibels.";
 
 /// All columns of a level.
