@@ -25,7 +25,8 @@ use parbake_model::glam::{Vec3, Vec4};
 use parbake_render::camera::Projection;
 use parbake_render::display::{Curve, Display};
 use parbake_render::display_table::DisplayTable;
-use parbake_render::scene::{Interpretation, Scene};
+use parbake_render::interpretation::Interpretation;
+use parbake_render::scene::Scene;
 use parbake_render::shade::Lambert;
 use std::sync::LazyLock;
 

@@ -4,7 +4,7 @@
 
 use crate::error::BakeError;
 use parbake_render::display::{Curve, Display};
-use parbake_render::scene::Interpretation;
+use parbake_render::interpretation::Interpretation;
 use parbake_uv::paper::Guide;
 use serde::{Deserialize, Serialize};
 
@@ -150,7 +150,7 @@ impl Backdrop {
     pub fn light(self) -> [f32; 3] {
         match self {
             Backdrop::Black => [0.0; 3],
-            Backdrop::Grey => [crate::evaluate::GREY; 3],
+            Backdrop::Grey => [crate::evaluate::options::GREY; 3],
             Backdrop::White => [1.0; 3],
         }
     }

@@ -5,7 +5,8 @@
 use crate::error::BakeError;
 use parbake_mesh::{compute_tangents, ensure_normals};
 use parbake_model::{Bounds, Mesh, Model, Placement};
-use parbake_render::scene::{Interpretation, Scene};
+use parbake_render::interpretation::Interpretation;
+use parbake_render::scene::Scene;
 
 /// The common frame of a pair.
 pub fn common_frame(high: &Model) -> Result<Placement, BakeError> {

@@ -7,7 +7,6 @@ use crate::shape::ShapeReport;
 use crate::unfold::UnfoldReport;
 use parbake_atlas::UvCheck;
 use parbake_fit::schedule::{LossPoint, Move};
-use parbake_uv::paper::PaperHistory;
 use serde::{Deserialize, Serialize};
 
 /// Seconds that a stage took.
@@ -39,22 +38,6 @@ impl From<&LossPoint> for LossStep {
             Move::Rounding => "rounding",
         };
         Self { moved: moved.into(), seconds: p.seconds, mean_square: p.mean_square }
-    }
-}
-
-/// How the paper's method went through its three stages (Fig. 15).
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Convergence {
-    /// Iterations, L_diff (mean squared error) and L_I∘UV.
-    pub points: Vec<(usize, f64, f64)>,
-    /// Iterations at which coordinates began to move and ended.
-    pub moved: [usize; 2],
-}
-
-impl From<PaperHistory> for Convergence {
-    fn from(history: PaperHistory) -> Self {
-        let points = history.points.iter().map(|p| (p.iteration, p.loss, p.content)).collect();
-        Self { points, moved: history.moved }
     }
 }
 

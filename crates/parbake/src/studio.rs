@@ -10,7 +10,7 @@
 //! models of a studio stand in the high-poly's frame, so their pictures lie on each other.
 
 use crate::error::BakeError;
-use crate::evaluate::EvaluateOptions;
+use crate::evaluate::options::EvaluateOptions;
 use crate::pair::{common_frame, scene};
 use parbake_metric::Rgb;
 use parbake_model::glam::Vec3;

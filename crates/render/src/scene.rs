@@ -14,6 +14,7 @@ use crate::cutout::rasterise_cut;
 use crate::display::encode_srgb;
 use crate::frame::tangent_light;
 use crate::interpolate::{barycentrics, interpolate};
+use crate::interpretation::Interpretation;
 use crate::parallax::Sight;
 use crate::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 use crate::scene_textures::{Builder, Map, Surface, Textures};
@@ -23,25 +24,6 @@ use crate::texture::Pyramid;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{Image, Material, Mesh};
 use rayon::prelude::*;
-
-/// What a file's numbers mean when they are rendered.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interpretation {
-    /// Decode base colour from sRGB to linear light before shading, as glTF says.
-    /// Off: shade the stored numbers as they are (the paper's pictures).
-    pub decode_srgb: bool,
-    /// Fetch through mip levels; off: bilinear on the finest level.
-    pub trilinear: bool,
-    /// Shift texture coordinates where a material has a parallax map, and leave out what its
-    /// cutout does; off: as viewers see the model that know no such maps.
-    pub parallax: bool,
-}
-
-impl Default for Interpretation {
-    fn default() -> Self {
-        Self { decode_srgb: true, trilinear: true, parallax: true }
-    }
-}
 
 /// A square picture in linear light: premultiplied RGB and coverage.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -8,8 +8,8 @@
 use crate::cutout::ShCutout;
 use crate::display::{decode_srgb, encode_srgb};
 use crate::interpolate::interpolate;
+use crate::interpretation::Interpretation;
 use crate::parallax::{ShParallax, Sight};
-use crate::scene::Interpretation;
 use crate::texture::{Level, Pyramid};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{Image, Material, Mesh, TextureSlot, Wrap};

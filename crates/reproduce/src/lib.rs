@@ -19,6 +19,7 @@
 mod cache;
 mod catalogue;
 mod error;
+mod exhibit;
 mod exhibits;
 mod experiment;
 mod guard;
@@ -30,11 +31,12 @@ mod perform;
 mod plane;
 mod report;
 mod reproduce;
+mod results;
 mod scope;
 mod table;
 
 pub use error::ReproduceError;
-pub use exhibits::Exhibit;
+pub use exhibit::Exhibit;
 pub use guard::{Fall, Record};
 pub use observer::{Event, Observer};
 pub use options::ReproduceOptions;

@@ -1,6 +1,6 @@
 //! What a reproduction is asked for.
 
-use crate::exhibits::Exhibit;
+use crate::exhibit::Exhibit;
 use parbake::{BakeError, EvaluateOptions};
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,8 @@
 //! Everything on one page, as Markdown, and for a terminal.
 
-use crate::exhibits::{Drawn, Exhibit, Results};
+use crate::exhibit::Exhibit;
+use crate::exhibits::drawn::Drawn;
+use crate::results::Results;
 use crate::scope::Scope;
 use crate::table::Table;
 use parbake_page::text::{count, duration, escape};

@@ -4,7 +4,8 @@
 use crate::cache::{Cache, digest_of};
 use crate::catalogue::Catalogue;
 use crate::error::ReproduceError;
-use crate::exhibits::{Drawn, Exhibit, Results};
+use crate::exhibit::Exhibit;
+use crate::exhibits::drawn::Drawn;
 use crate::experiment::{Experiment, Recipe};
 use crate::guard::Record;
 use crate::observer::{Event, Observer};
@@ -12,6 +13,7 @@ use crate::options::ReproduceOptions;
 use crate::outcome::Outcome;
 use crate::perform::perform;
 use crate::report;
+use crate::results::Results;
 use crate::scope::Scope;
 use parbake::write_file;
 use parbake_page::text::decimal;

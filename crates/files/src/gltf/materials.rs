@@ -1,20 +1,11 @@
-//! Materials, textures, samplers and images (glTF 2.0, 3.8 and 3.9), with
-//! KHR_texture_transform, EXT_texture_webp, the diffuse part of
-//! KHR_materials_pbrSpecularGlossiness, and parallax maps (`parallax.rs`).
-//!
-//! Images are decoded once each, and only those that a base colour, a normal texture or a
-//! parallax map uses. An image that is not there is a warning; one that cannot be
-//! decoded is an error.
+//! Materials (glTF 2.0, 3.9), with the diffuse part of KHR_materials_pbrSpecularGlossiness and
+//! parallax maps (`parallax.rs`); their textures come from `textures.rs`.
 
-use super::buffers::{Buffers, pointer};
-use super::json::{self, TextureInfo};
+use super::buffers::Buffers;
 use super::parallax;
-use super::uri::{Uri, parse};
+use super::textures::TextureReader;
 use crate::FileError;
-use crate::context::{NamedBytes, Textures};
-use parbake_model::glam::Vec2;
-use parbake_model::{AlphaMode, Image, Material, TextureSlot, UvTransform, Wrap};
-use std::collections::HashMap;
+use parbake_model::{AlphaMode, Image, Material};
 
 /// The document's materials of these indices (`None`: the default), and their images.
 /// `turned` says of each whether a node turns or stretches what has it.
@@ -23,191 +14,50 @@ pub(super) fn build(
     indices: &[Option<usize>],
     turned: &[bool],
 ) -> Result<(Vec<Material>, Vec<Image>), FileError> {
-    let mut reader = Reader { buffers, pictures: Vec::new(), places: HashMap::new() };
+    let mut textures = TextureReader::new(buffers);
     let mut materials = Vec::with_capacity(indices.len());
     for index in indices {
         materials.push(match index {
             None => Material { name: "default".into(), ..Material::default() },
-            Some(index) => reader.material(*index)?,
+            Some(index) => material(&mut textures, *index)?,
         });
     }
-    let images = buffers.context.decode_images(&reader.pictures)?;
+    let images = textures.decode()?;
     parallax::leave_out(&mut materials, turned, &images, buffers.context);
     Ok((materials, images))
 }
 
-pub(super) struct Reader<'a, 'd> {
-    pub buffers: &'a Buffers<'d>,
-    /// Those in use, to be decoded at the end.
-    pictures: Vec<NamedBytes<'a>>,
-    /// From the document's images to ours; `None` where one could not be found.
-    places: HashMap<usize, Option<usize>>,
-}
-
-impl<'a> Reader<'a, '_> {
-    fn material(&mut self, index: usize) -> Result<Material, FileError> {
-        let json = &self.buffers.document.materials[index];
-        let here = format!("/materials/{index}");
-        let name = if json.name.is_empty() { format!("material {index}") } else { json.name.clone() };
-        let mut material = Material { name, ..Material::default() };
-        material.alpha_mode = match json.alpha_mode.as_deref() {
-            Some("MASK") => AlphaMode::Mask,
-            Some("BLEND") => AlphaMode::Blend,
-            _ => AlphaMode::Opaque,
-        };
-        let (factor, texture, part) =
-            match (&json.extensions.specular_glossiness, &json.pbr_metallic_roughness) {
-                (Some(s), _) => (
-                    s.diffuse_factor,
-                    &s.diffuse_texture,
-                    "extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture",
-                ),
-                (None, Some(p)) => {
-                    (p.base_color_factor, &p.base_color_texture, "pbrMetallicRoughness/baseColorTexture")
-                }
-                (None, None) => (None, &None, ""),
-            };
-        material.base_color = factor.unwrap_or([1.0; 4]).map(|x| x.clamp(0.0, 1.0));
-        if let Some(info) = texture {
-            material.base_color_texture = self.slot(info, &format!("{here}/{part}"))?;
+fn material(textures: &mut TextureReader<'_, '_>, index: usize) -> Result<Material, FileError> {
+    let json = &textures.buffers.document.materials[index];
+    let here = format!("/materials/{index}");
+    let name = if json.name.is_empty() { format!("material {index}") } else { json.name.clone() };
+    let mut material = Material { name, ..Material::default() };
+    material.alpha_mode = match json.alpha_mode.as_deref() {
+        Some("MASK") => AlphaMode::Mask,
+        Some("BLEND") => AlphaMode::Blend,
+        _ => AlphaMode::Opaque,
+    };
+    let (factor, texture, part) = match (&json.extensions.specular_glossiness, &json.pbr_metallic_roughness) {
+        (Some(s), _) => (
+            s.diffuse_factor,
+            &s.diffuse_texture,
+            "extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture",
+        ),
+        (None, Some(p)) => {
+            (p.base_color_factor, &p.base_color_texture, "pbrMetallicRoughness/baseColorTexture")
         }
-        if let Some(info) = &json.normal_texture {
-            material.normal_texture = self.slot(info, &format!("{here}/normalTexture"))?;
-            material.normal_scale = info.scale.filter(|s| s.is_finite()).unwrap_or(1.0);
-        }
-        if let Some(json) = &json.extensions.parallax_sh {
-            material.parallax = parallax::read(self, json, &here, &material.name);
-        }
-        Ok(material)
+        (None, None) => (None, &None, ""),
+    };
+    material.base_color = factor.unwrap_or([1.0; 4]).map(|x| x.clamp(0.0, 1.0));
+    if let Some(info) = texture {
+        material.base_color_texture = textures.slot(info, &format!("{here}/{part}"))?;
     }
-
-    /// One use of a texture; `None`, with a warning, when its picture cannot be found.
-    pub fn slot(&mut self, info: &TextureInfo, here: &str) -> Result<Option<TextureSlot>, FileError> {
-        let (buffers, document) = (self.buffers, self.buffers.document);
-        if buffers.context.textures == Textures::Skip {
-            return Ok(None);
-        }
-        let Some(texture) = document.textures.get(info.index) else {
-            return Err(buffers.missing(
-                &format!("{here}/index"),
-                "texture",
-                info.index,
-                document.textures.len(),
-            ));
-        };
-        let wrap = match texture.sampler {
-            None => [Wrap::Repeat; 2],
-            Some(index) => {
-                let sampler = document.samplers.get(index).ok_or_else(|| {
-                    let from = format!("/textures/{}/sampler", info.index);
-                    buffers.missing(&from, "sampler", index, document.samplers.len())
-                })?;
-                [wrap(sampler.wrap_s), wrap(sampler.wrap_t)]
-            }
-        };
-        let transform = info.extensions.transform.as_ref();
-        let set = transform.and_then(|t| t.tex_coord).unwrap_or(info.tex_coord);
-        let uv_set = match set {
-            0 => 0,
-            1 => 1,
-            _ => {
-                let feature = format!("texture coordinate set {set}");
-                let advice = "move it to set 0 or 1";
-                return Err(buffers.context.unsupported(pointer(here.into()), feature, advice));
-            }
-        };
-        // Both sources may be given; a PNG or JPEG needs no extension.
-        let webp = texture.extensions.webp.as_ref().and_then(|w| w.source);
-        let Some(source) = texture.source.or(webp) else {
-            let index = info.index;
-            buffers
-                .context
-                .warn(format!("texture {index} has no image that can be read; {here} goes without it"));
-            return Ok(None);
-        };
-        let Some(image) = self.image(source, &format!("/textures/{}/source", info.index))? else {
-            return Ok(None);
-        };
-        Ok(Some(TextureSlot {
-            image,
-            uv_set,
-            wrap,
-            transform: match transform {
-                None => UvTransform::default(),
-                Some(json) => uv_transform(json).ok_or_else(|| {
-                    let place = pointer(format!("{here}/extensions/KHR_texture_transform"));
-                    buffers.context.invalid(place, "the transform is not finite in single precision")
-                })?,
-            },
-        }))
+    if let Some(info) = &json.normal_texture {
+        material.normal_texture = textures.slot(info, &format!("{here}/normalTexture"))?;
+        material.normal_scale = info.scale.filter(|s| s.is_finite()).unwrap_or(1.0);
     }
-
-    fn image(&mut self, index: usize, from: &str) -> Result<Option<usize>, FileError> {
-        let Some(json) = self.buffers.document.images.get(index) else {
-            return Err(self.buffers.missing(from, "image", index, self.buffers.document.images.len()));
-        };
-        if let Some(&place) = self.places.get(&index) {
-            return Ok(place);
-        }
-        let place = self.fetch(index, json)?.map(|picture| {
-            self.pictures.push(picture);
-            self.pictures.len() - 1
-        });
-        self.places.insert(index, place);
-        Ok(place)
+    if let Some(json) = &json.extensions.parallax_sh {
+        material.parallax = parallax::read(textures, json, &here, &material.name);
     }
-
-    /// `None`, with a warning, when the image's file cannot be found.
-    fn fetch(&self, index: usize, json: &json::Image) -> Result<Option<NamedBytes<'a>>, FileError> {
-        let context = self.buffers.context;
-        let here = format!("/images/{index}");
-        let data_uri = |uri: &str| uri.get(..5).is_some_and(|s| s.eq_ignore_ascii_case("data:"));
-        let name = match &json.uri {
-            _ if !json.name.is_empty() => json.name.clone(),
-            Some(uri) if !data_uri(uri) => uri.clone(),
-            _ => format!("image {index}"),
-        };
-        if let Some(view) = json.buffer_view {
-            let (bytes, _) = self.buffers.view(view, &format!("{here}/bufferView"))?;
-            return Ok(Some((name, bytes.into())));
-        }
-        let Some(uri) = &json.uri else {
-            return Err(context.invalid(pointer(here), "the image has neither a URI nor a buffer view"));
-        };
-        let bytes = match parse(uri) {
-            Ok(Uri::Data(bytes)) => bytes,
-            Ok(Uri::Relative(path)) => match self.buffers.external(&path, pointer(format!("{here}/uri"))) {
-                Ok(bytes) => bytes,
-                Err(FileError::Read { source, .. }) if source.kind() != std::io::ErrorKind::FileTooLarge => {
-                    context.warn(format!("image {source}; the material goes without it"));
-                    return Ok(None);
-                }
-                Err(other) => return Err(other),
-            },
-            // A damaged data URI is a damaged image; an address is one that is not there.
-            Err(reason) if data_uri(uri) => {
-                return Err(context.invalid(pointer(format!("{here}/uri")), reason));
-            }
-            Err(reason) => {
-                context.warn(format!("image {name:?}: {reason}; the material goes without it"));
-                return Ok(None);
-            }
-        };
-        Ok(Some((name, bytes.into())))
-    }
-}
-
-fn wrap(code: Option<usize>) -> Wrap {
-    match code {
-        Some(33071) => Wrap::Clamp,
-        Some(33648) => Wrap::Mirror,
-        _ => Wrap::Repeat,
-    }
-}
-
-fn uv_transform(json: &json::TextureTransform) -> Option<UvTransform> {
-    let (offset, scale) = (json.offset.unwrap_or([0.0; 2]), json.scale.unwrap_or([1.0; 2]));
-    let (offset, scale) = (Vec2::from_array(offset), Vec2::from_array(scale));
-    let finite = offset.is_finite() && scale.is_finite() && json.rotation.is_finite();
-    finite.then_some(UvTransform { offset, rotation: json.rotation, scale })
+    Ok(material)
 }

@@ -17,6 +17,7 @@ mod merge;
 mod parallax;
 mod references;
 mod scene;
+mod textures;
 mod topology;
 mod uri;
 mod write;

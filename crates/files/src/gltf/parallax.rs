@@ -7,7 +7,7 @@
 
 use super::buffers::pointer;
 use super::json::{CutoutSh, ParallaxSh, TextureInfo};
-use super::materials::Reader;
+use super::textures::TextureReader;
 use crate::FileError;
 use crate::context::{Context, Textures};
 use parbake_model::glam::DMat3;
@@ -19,7 +19,7 @@ pub(super) const NAME: &str = "PARBAKE_materials_parallax_sh";
 /// The map that a material's extension describes, its images yet to be decoded; `None`
 /// where pictures are not wanted, or with a warning.
 pub(super) fn read(
-    reader: &mut Reader<'_, '_>,
+    reader: &mut TextureReader<'_, '_>,
     json: &ParallaxSh,
     here: &str,
     material: &str,
@@ -44,7 +44,11 @@ fn reason(error: FileError) -> String {
     }
 }
 
-fn map(reader: &mut Reader<'_, '_>, json: &ParallaxSh, here: &str) -> Result<ShParallaxMap, FileError> {
+fn map(
+    reader: &mut TextureReader<'_, '_>,
+    json: &ParallaxSh,
+    here: &str,
+) -> Result<ShParallaxMap, FileError> {
     let context = reader.buffers.context;
     let refuse = |reason: String| context.invalid(pointer(here.into()), reason);
     let default = ShParallaxMap::default();
@@ -66,7 +70,7 @@ fn map(reader: &mut Reader<'_, '_>, json: &ParallaxSh, here: &str) -> Result<ShP
     // Before any picture is asked for: there may be a million of them.
     map.check_numbers().map_err(|fault| refuse(fault.to_string()))?;
     let mut wrap: Option<[Wrap; 2]> = None;
-    let mut image = |reader: &mut Reader<'_, '_>, info: &TextureInfo, name: String| {
+    let mut image = |reader: &mut TextureReader<'_, '_>, info: &TextureInfo, name: String| {
         let slot = slot(reader, info, &format!("{here}/{name}"))?;
         if *wrap.get_or_insert(slot.wrap) != slot.wrap {
             return Err(refuse("its textures differ in their wrap modes".into()));
@@ -104,7 +108,11 @@ fn cutout(json: &CutoutSh, refuse: impl Fn(String) -> FileError) -> Result<Cutou
 }
 
 /// A texture that must be there.
-fn slot(reader: &mut Reader<'_, '_>, info: &TextureInfo, here: &str) -> Result<TextureSlot, FileError> {
+fn slot(
+    reader: &mut TextureReader<'_, '_>,
+    info: &TextureInfo,
+    here: &str,
+) -> Result<TextureSlot, FileError> {
     let slot = reader.slot(info, here)?;
     slot.ok_or_else(|| reader.buffers.context.invalid(pointer(here.into()), "its picture is not there"))
 }

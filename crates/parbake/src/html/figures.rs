@@ -4,7 +4,8 @@
 //! hence the same figures; but each view is rendered once for all backgrounds.
 
 use super::scenes::Scenes;
-use crate::evaluate::{EvaluateOptions, ViewFigures, compare, mean};
+use crate::evaluate::options::EvaluateOptions;
+use crate::evaluate::{ViewFigures, compare, mean};
 use crate::options::Convention;
 use crate::studio::shown;
 use parbake_model::glam::Vec3;
@@ -18,7 +19,8 @@ pub const VIEWS: usize = 8;
 
 /// Backgrounds: name and linear light, as `evaluate` knows them. The first is the
 /// one that `evaluate` takes unless told otherwise.
-pub const BACKGROUNDS: [(&str, f32); 3] = [("black", 0.0), ("grey", crate::evaluate::GREY), ("white", 1.0)];
+pub const BACKGROUNDS: [(&str, f32); 3] =
+    [("black", 0.0), ("grey", crate::evaluate::options::GREY), ("white", 1.0)];
 
 /// Figures of one kind of texture before each of the [`BACKGROUNDS`].
 pub type Figures = [ViewFigures; BACKGROUNDS.len()];

@@ -2,7 +2,8 @@
 
 use super::figures::{BACKGROUNDS, Evaluated};
 use super::settings::flags;
-use crate::evaluate::{EvaluateOptions, ViewFigures};
+use crate::evaluate::ViewFigures;
+use crate::evaluate::options::EvaluateOptions;
 use crate::report::BakeReport;
 use parbake_page::text::{NOTHING, change, count, decimal, duration, share, verdict};
 use std::fmt::Write;

@@ -20,10 +20,10 @@ mod texture;
 
 pub use options::ImageOptions;
 
+use crate::convergence::Convergence;
 use crate::error::BakeError;
 use crate::message::Watcher;
 use crate::options::{Method, UvMode};
-use crate::report::Convergence;
 use crate::uv_animation::UvMoves;
 use balance::best_share;
 use coarse_to_fine::optimised;

@@ -2,8 +2,9 @@
 //! changed since the one before; viewers that know no animation show the first one.
 
 use super::TurntableOptions;
+use super::layout::Layout;
 use super::reel::Reel;
-use super::sheet::{Layout, Rectangle, Sheet};
+use super::sheet::{Rectangle, Sheet};
 use png::{BitDepth, ColorType, Compression, Writer};
 use std::io::{self, Write};
 

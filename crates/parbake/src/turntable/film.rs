@@ -1,8 +1,9 @@
 //! The set: models, lights and where the camera stands in each frame.
 
 use super::TurntableOptions;
+use super::layout::{Colors, Layout};
 use super::palette::Palette;
-use super::sheet::{Colors, Layout, Sheet, bytes};
+use super::sheet::{Sheet, bytes};
 use crate::error::BakeError;
 use crate::studio::{Studio, Subject};
 use parbake_metric::Rgb;

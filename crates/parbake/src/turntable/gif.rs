@@ -2,9 +2,10 @@
 //! did not change can stay transparent; a frame holds the rectangle that changed.
 
 use super::TurntableOptions;
+use super::layout::Layout;
 use super::palette::{Palette, TRANSPARENT};
 use super::reel::Reel;
-use super::sheet::{Layout, Rectangle, Sheet};
+use super::sheet::{Rectangle, Sheet};
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use rayon::prelude::*;
 use std::borrow::Cow;

@@ -16,6 +16,7 @@ mod apng;
 mod caption;
 mod film;
 mod gif;
+mod layout;
 mod options;
 mod palette;
 mod reel;

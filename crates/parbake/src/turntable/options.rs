@@ -1,9 +1,9 @@
 //! What a turntable is asked for.
 
 use super::FilmFormat;
-use super::sheet::Layout;
+use super::layout::Layout;
 use crate::error::BakeError;
-use crate::evaluate::EvaluateOptions;
+use crate::evaluate::options::EvaluateOptions;
 use crate::options::Convention;
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
 //! 256 colours for a whole film: those of background, gap and text exactly, one that is
 //! transparent, and for the models what NeuQuant (Dekker 1994) finds in some of the frames.
 
-use super::sheet::Colors;
+use super::layout::Colors;
 use color_quant::NeuQuant;
 
 /// The index of pixels that stay as they are.

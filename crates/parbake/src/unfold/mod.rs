@@ -17,11 +17,11 @@ mod surface_signal;
 
 pub use surface_signal::Source;
 
+use crate::convergence::Convergence;
 use crate::error::BakeError;
 use crate::low::texture_coordinates;
 use crate::message::Watcher;
 use crate::options::{BakeOptions, Method, UvMode};
-use crate::report::Convergence;
 use crate::uv_animation::UvMoves;
 use parbake_atlas::{
     Layout, PackOptions, RepairOptions, TutteOptions, UnwrapOptions, check, repair, tutte, unwrap,

@@ -28,6 +28,7 @@ use parbake_metric::Rgb;
 use parbake_model::Model;
 use parbake_render::parallax::ShParallax;
 use parbake_render::parallax_variants::height::{HeightParallax, Variant};
+use parbake_render::parallax_variants::heights::Heights;
 use parbake_render::parallax_variants::neural::NeuralParallax;
 use parbake_render::parallax_variants::shift_map::Unshifted;
 use std::time::Instant;
@@ -62,7 +63,8 @@ pub fn compare_variants(
         let flat = HeightParallax::flat(variant, options.height_size, options.height_scale);
         match &subject.heights {
             Some(measured) => {
-                HeightParallax { heights: measured.heights.clone(), scale: measured.scale, ..flat }
+                let heights = Heights { level: measured.heights.clone(), ..flat.heights };
+                HeightParallax { heights, scale: measured.scale, ..flat }
             }
             None => flat,
         }

@@ -2,7 +2,8 @@
 //! what a pixel has to fetch.
 
 use parbake_render::parallax::ShParallax;
-use parbake_render::parallax_variants::height::{HeightParallax, LAYERS};
+use parbake_render::parallax_variants::height::HeightParallax;
+use parbake_render::parallax_variants::march::LAYERS;
 use parbake_render::parallax_variants::neural::NeuralParallax;
 use parbake_render::parallax_variants::shift_map::{ShiftMap, Unshifted};
 
@@ -51,16 +52,16 @@ impl Stored for HeightParallax {
 
     /// One byte a texel, from the least height to the greatest.
     fn stored(mut self) -> (Self, Cost) {
-        let (least, most) = (self.heights.texels.iter())
+        let (least, most) = (self.heights.level.texels.iter())
             .fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), t| (a.min(t[0]), b.max(t[0])));
         let step = (most - least) / 255.0;
         if step > 0.0 {
-            for texel in &mut self.heights.texels {
+            for texel in &mut self.heights.level.texels {
                 texel[0] = least + ((texel[0] - least) / step).round() * step;
             }
         }
         let places = if self.variant.marches() { LAYERS + 1 } else { 1 };
-        let bytes = self.heights.texels.len();
+        let bytes = self.heights.level.texels.len();
         (self, Cost { bytes, places, fetches: places })
     }
 }
@@ -82,10 +83,10 @@ mod tests {
     fn costs_are_as_kept() {
         assert_eq!(ShParallax::zeros(3, 8).stored().1, Cost { bytes: 8 * 8 * 33, places: 1, fetches: 11 });
         let mut map = HeightParallax::flat(Variant::Steep, 2, 1e-2);
-        map.heights.texels = vec![[0.0], [0.3], [0.5], [1.0]];
+        map.heights.level.texels = vec![[0.0], [0.3], [0.5], [1.0]];
         let (back, cost) = map.clone().stored();
         assert_eq!(cost, Cost { bytes: 4, places: 17, fetches: 17 });
-        for (a, b) in map.heights.texels.iter().zip(&back.heights.texels) {
+        for (a, b) in map.heights.level.texels.iter().zip(&back.heights.level.texels) {
             assert!((a[0] - b[0]).abs() <= 0.5 / 255.0 + 1e-6);
         }
     }

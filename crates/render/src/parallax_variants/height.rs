@@ -13,9 +13,10 @@
 //! Contract: heights are 0 … 1, as an image holds them and as layers divide them; whatever
 //! parameters are set is brought into that range.
 
+use super::heights::Heights;
 use super::march::March;
 use super::shift_map::{ShiftMap, Vantage};
-use crate::texture::{Level, Taps, taps};
+use crate::texture::Level;
 use parbake_model::Wrap;
 use parbake_model::glam::{Vec2, Vec4};
 
@@ -32,8 +33,6 @@ pub enum Variant {
     Occlusion,
 }
 
-/// Layers that marches go through, as in the paper.
-pub const LAYERS: usize = 16;
 /// The paper's height scale, in texture widths.
 pub const SCALE: f32 = 1e-2;
 /// Where marches begin: they have a gradient only below the surface.
@@ -44,14 +43,12 @@ const MARCH_START: f32 = 0.5;
 pub struct HeightParallax {
     /// Which formula.
     pub variant: Variant,
-    /// Heights below the surface in units of the scale, 0 … 1.
-    pub heights: Level<1>,
+    /// Heights in units of the scale.
+    pub heights: Heights,
     /// Texture widths that a height of 1 spans, > 0.
     pub scale: f32,
     /// The least |v_z| that a shift is divided by, > 0.
     pub limit: f32,
-    /// Wrap modes along u and v.
-    pub wrap: [Wrap; 2],
 }
 
 impl HeightParallax {
@@ -59,8 +56,8 @@ impl HeightParallax {
     /// march lies half-way down; a height of 1 spans `scale` texture widths.
     pub fn flat(variant: Variant, size: usize, scale: f32) -> Self {
         let start = if variant.marches() { MARCH_START } else { 0.0 };
-        let heights = Level { width: size, height: size, texels: vec![[start]; size * size] };
-        Self { variant, heights, scale, limit: 0.25, wrap: [Wrap::Clamp; 2] }
+        let level = Level { width: size, height: size, texels: vec![[start]; size * size] };
+        Self { variant, heights: Heights { level, wrap: [Wrap::Clamp; 2] }, scale, limit: 0.25 }
     }
 
     /// Where a height of 1 is met: away from the viewer, in texture widths.
@@ -75,18 +72,8 @@ impl HeightParallax {
         Vec2::new(-v.x, v.y) * (self.scale / divisor)
     }
 
-    #[inline]
-    pub(super) fn taps(&self, uv: Vec2) -> Taps {
-        taps(uv, self.heights.width, self.heights.height, self.wrap)
-    }
-
-    #[inline]
-    pub(super) fn height(&self, uv: Vec2) -> f32 {
-        self.heights.fetch(&self.taps(uv))[0]
-    }
-
     fn march(&self, uv: Vec2, from: &Vantage) -> March {
-        March::new(self, uv, self.lean(from), self.variant == Variant::Occlusion)
+        March::new(&self.heights, uv, self.lean(from), self.variant == Variant::Occlusion)
     }
 }
 
@@ -102,29 +89,30 @@ impl ShiftMap for HeightParallax {
     fn shift(&self, uv: Vec2, from: &Vantage) -> Vec2 {
         match self.variant.marches() {
             true => self.march(uv, from).shift(),
-            false => self.lean(from) * self.height(uv),
+            false => self.lean(from) * self.heights.at(uv),
         }
     }
 
     #[inline]
     fn adjoint_of_maps(&self, uv: Vec2, from: &Vantage, to_shift: Vec2, into: &mut Self) {
         match self.variant.marches() {
-            true => self.march(uv, from).adjoint(self, to_shift, &mut into.heights),
-            false => into.heights.scatter(&self.taps(uv), &[self.lean(from).dot(to_shift)]),
+            true => self.march(uv, from).adjoint(&self.heights, to_shift, &mut into.heights.level),
+            false => into.heights.level.scatter(&self.heights.taps(uv), &[self.lean(from).dot(to_shift)]),
         }
     }
 
     fn zeros_like(&self) -> Self {
-        Self { heights: Level::zeros(self.heights.width, self.heights.height), ..*self }
+        let Heights { level, wrap } = &self.heights;
+        Self { heights: Heights { level: Level::zeros(level.width, level.height), wrap: *wrap }, ..*self }
     }
 
     fn parameters(&self) -> Vec<Vec4> {
         let lane = |t: &[[f32; 1]]| Vec4::from(std::array::from_fn(|k| t.get(k).map_or(0.0, |t| t[0])));
-        self.heights.texels.chunks(4).map(lane).collect()
+        self.heights.level.texels.chunks(4).map(lane).collect()
     }
 
     fn set_parameters(&mut self, lanes: &[Vec4]) {
-        for (texels, lane) in self.heights.texels.chunks_mut(4).zip(lanes) {
+        for (texels, lane) in self.heights.level.texels.chunks_mut(4).zip(lanes) {
             for (texel, x) in texels.iter_mut().zip(lane.to_array()) {
                 *texel = [x.clamp(0.0, 1.0)];
             }
@@ -145,8 +133,9 @@ mod tests {
 
     fn map(variant: Variant) -> HeightParallax {
         let texels = (0..6 * 5).map(|i| [0.5 + 0.3 * noise(7 * i + 2)]).collect();
-        let heights = Level { width: 6, height: 5, texels };
-        HeightParallax { heights, ..HeightParallax::flat(variant, 1, 0.2) }
+        let mut map = HeightParallax::flat(variant, 1, 0.2);
+        map.heights.level = Level { width: 6, height: 5, texels };
+        map
     }
 
     /// Protects the gradients of all four: they are those of the shift, the layer at which a
@@ -157,7 +146,8 @@ mod tests {
             for i in 0..30 {
                 let uv = Vec2::new(0.5 + 0.4 * noise(5 * i), 0.5 + 0.4 * noise(3 * i + 1));
                 let (map, from) = (map(variant), vantage(i));
-                let path = |m: &HeightParallax| variant.marches().then(|| m.march(uv, &from).path(m));
+                let path =
+                    |m: &HeightParallax| variant.marches().then(|| m.march(uv, &from).path(&m.heights));
                 let smooth = |down: &HeightParallax, up: &HeightParallax| path(down) == path(up);
                 let worst = worst_gradient(&map, uv, &from, 1e-3, smooth);
                 assert!(worst < 2e-3, "{variant:?} {i}: {worst}");
@@ -175,7 +165,7 @@ mod tests {
         };
         for variant in [Variant::Parallax, Variant::OffsetLimited, Variant::Steep, Variant::Occlusion] {
             let mut map = HeightParallax::flat(variant, 1, SCALE);
-            map.heights.texels[0] = [1.0];
+            map.heights.level.texels[0] = [1.0];
             let shift = map.shift(Vec2::splat(0.5), &from(0.6, 0.8));
             let want = if variant == Variant::OffsetLimited { -0.006 } else { -0.0075 };
             assert!((shift - Vec2::new(want, 0.0)).length() < 1e-6, "{variant:?} {shift}");

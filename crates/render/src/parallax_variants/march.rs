@@ -13,10 +13,12 @@
 //! Adjoint: n is held, since a shift jumps where it changes; all heights on the way are
 //! differentiated, and so are the places where they were fetched.
 
-use super::height::{HeightParallax, LAYERS};
+use super::heights::Heights;
 use crate::texture::Level;
 use parbake_model::glam::Vec2;
 
+/// Layers that marches go through, as in the paper.
+pub const LAYERS: usize = 16;
 /// Height of a layer.
 const STEP: f32 = 1.0 / LAYERS as f32;
 /// a + b is no less: a line through two layers that nearly agree could lead anywhere.
@@ -38,13 +40,13 @@ pub(super) struct March {
 
 impl March {
     /// Goes from `uv` along `full`.
-    pub fn new(map: &HeightParallax, uv: Vec2, full: Vec2, line: bool) -> Self {
+    pub fn new(map: &Heights, uv: Vec2, full: Vec2, line: bool) -> Self {
         let mut march = Self { full, places: [uv; LAYERS + 1], heights: [0.0; LAYERS + 1], last: 0, line };
-        march.heights[0] = map.height(uv);
+        march.heights[0] = map.at(uv);
         while march.last < LAYERS && march.heights[march.last] > march.last as f32 * STEP {
             let i = march.last;
             march.places[i + 1] = march.places[i] + full * (march.heights[i] * STEP);
-            march.heights[i + 1] = map.height(march.places[i + 1]);
+            march.heights[i + 1] = map.at(march.places[i + 1]);
             march.last += 1;
         }
         march
@@ -68,7 +70,7 @@ impl March {
     }
 
     /// Adds the gradients of the heights.
-    pub fn adjoint(&self, map: &HeightParallax, to_shift: Vec2, into: &mut Level<1>) {
+    pub fn adjoint(&self, map: &Heights, to_shift: Vec2, into: &mut Level<1>) {
         let mut n = self.last;
         let mut to_place = to_shift;
         if let Some((a, b)) = self.ends() {
@@ -81,7 +83,7 @@ impl March {
             let at = map.taps(self.places[n]);
             into.scatter(&at, &[-to_b]);
             // t_n counts by its share in the line, and by where b was fetched.
-            let to_last = to_shift * (a / sum) + map.heights.uv_adjoint(&at, &[-to_b]);
+            let to_last = to_shift * (a / sum) + map.level.uv_adjoint(&at, &[-to_b]);
             to_place = to_shift * (1.0 - a / sum) + to_last;
             let to_height = to_a + self.full.dot(to_last) * STEP;
             n -= 1;
@@ -94,17 +96,10 @@ impl March {
     }
 
     /// Takes the gradient of h(t_i) to the texels and to t_i.
-    fn fetched(
-        &self,
-        map: &HeightParallax,
-        i: usize,
-        to_place: &mut Vec2,
-        to_height: f32,
-        into: &mut Level<1>,
-    ) {
+    fn fetched(&self, map: &Heights, i: usize, to_place: &mut Vec2, to_height: f32, into: &mut Level<1>) {
         let at = map.taps(self.places[i]);
         into.scatter(&at, &[to_height]);
-        *to_place += map.heights.uv_adjoint(&at, &[to_height]);
+        *to_place += map.level.uv_adjoint(&at, &[to_height]);
     }
 }
 
@@ -112,7 +107,7 @@ impl March {
 impl March {
     /// What a small change of heights must leave alone for the shift to be smooth: the layer of
     /// the end, the kinks of the line, and the texels of each fetch.
-    pub fn path(&self, map: &HeightParallax) -> (usize, [bool; 2], Vec<[u32; 4]>) {
+    pub fn path(&self, map: &Heights) -> (usize, [bool; 2], Vec<[u32; 4]>) {
         let kinks = self.ends().map_or([false; 2], |(a, b)| [true, a + b > LEAST]);
         (self.last, kinks, self.places[..=self.last].iter().map(|&t| map.taps(t).index).collect())
     }

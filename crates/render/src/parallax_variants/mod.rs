@@ -9,6 +9,7 @@
 //! ```
 
 pub mod height;
-mod march;
+pub mod heights;
+pub mod march;
 pub mod neural;
 pub mod shift_map;

@@ -1,15 +1,16 @@
 //! Figures 16 and 17: what each thing that moves is worth by itself, and each order of the
 //! spherical harmonics.
 
-use super::lods::gain;
+use super::drawn::Drawn;
 use super::methods::Moves;
 use super::photos::{Plate, row};
-use super::{Drawn, Results};
+use super::scores::gain;
 use crate::catalogue::{Level, ModelFolder};
 use crate::error::ReproduceError;
 use crate::experiment::{Experiment, Subject};
 use crate::outcome::Outcome;
 use crate::paper;
+use crate::results::Results;
 use crate::scope::Scope;
 use parbake::BakeOptions;
 use parbake_page::charts::{Bar, BarChart, BarGroup, LineChart, Series};

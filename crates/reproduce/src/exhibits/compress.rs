@@ -1,11 +1,12 @@
 //! Table 7: a model against itself with a smaller texture.
 
-use super::lods::{gain, score};
-use super::{Drawn, Results};
+use super::drawn::Drawn;
+use super::scores::{gain, score};
 use crate::catalogue::ModelFolder;
 use crate::experiment::{Experiment, Recipe, Subject};
 use crate::outcome::Outcome;
 use crate::paper;
+use crate::results::Results;
 use crate::scope::Scope;
 use crate::table::{Cell, Table};
 use parbake::{BakeOptions, UvMode};

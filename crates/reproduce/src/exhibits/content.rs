@@ -1,11 +1,12 @@
 //! Table 3: the paper's method on pictures of 64² texels, with its content-aware term and with the
 //! image loss alone.
 
-use super::lods::{gain, score};
-use super::{Drawn, Results};
+use super::drawn::Drawn;
+use super::scores::{gain, score};
 use crate::experiment::{Experiment, Recipe, Subject, stem};
 use crate::outcome::Outcome;
 use crate::paper;
+use crate::results::Results;
 use crate::scope::Scope;
 use crate::table::{Cell, Table};
 use parbake::{ImageOptions, Method};

@@ -1,8 +1,10 @@
 //! Figure 15: the paper's method, iteration by iteration.
 
-use super::{Drawn, Results, content};
+use super::content;
+use super::drawn::Drawn;
 use crate::experiment::{Experiment, stem};
 use crate::outcome::{Outcome, Point};
+use crate::results::Results;
 use crate::scope::Scope;
 use parbake_page::charts::{LineChart, Series};
 

@@ -1,14 +1,15 @@
 //! Figures 10 and 18: texture coordinates over pictures with what is left of the error, and
 //! layouts from other starts.
 
-use super::lods::{gain, score};
-use super::{Drawn, Results};
+use super::drawn::Drawn;
+use super::scores::{gain, score};
 use crate::catalogue::{Level, ModelFolder};
 use crate::error::ReproduceError;
 use crate::experiment::{Experiment, Recipe, Subject, stem};
 use crate::outcome::Outcome;
 use crate::perform::MODEL;
 use crate::plane::{as_shown, wanted};
+use crate::results::Results;
 use crate::scope::Scope;
 use crate::table::{Cell, Table};
 use parbake::{BakeOptions, ImageOptions, Limits, UvMode, read_image, read_model};

@@ -1,12 +1,14 @@
 //! Tables 8, 9 and 10: low-polys of three levels, three texture sizes, before black as in the
 //! paper, and before other backgrounds, where carving with black texels shows.
 
+use super::drawn::Drawn;
 use super::methods::Moves;
-use super::{Drawn, Results};
+use super::scores::{gain, score};
 use crate::catalogue::Level;
 use crate::experiment::Experiment;
 use crate::outcome::Outcome;
 use crate::paper;
+use crate::results::Results;
 use crate::scope::Scope;
 use crate::table::{Cell, Table};
 
@@ -25,16 +27,6 @@ pub fn experiments(scope: &Scope, level: Level) -> Vec<Experiment> {
         }
     }
     all
-}
-
-/// The score as a cell.
-pub fn score(outcome: Option<&Outcome>) -> Cell {
-    Cell::or_missing(outcome.map(|o| Cell::Score(o.psnr(), o.ms_ssim())))
-}
-
-/// How much more decibels one has than the other.
-pub fn gain(of: impl Fn(&Outcome) -> f64, better: Option<&Outcome>, base: Option<&Outcome>) -> Option<f64> {
-    Some(of(better?) - of(base?))
 }
 
 /// Draws the tables of a level; `number` is the paper's.

@@ -1,12 +1,13 @@
 //! Table 11: kinds of parallax mapping and of displacement on the coarsest level.
 
-use super::lods::{gain, score};
+use super::drawn::Drawn;
 use super::methods::Moves;
-use super::{Drawn, Results};
+use super::scores::{gain, score};
 use crate::catalogue::{Level, ModelFolder};
 use crate::experiment::{Experiment, Recipe, Subject};
 use crate::outcome::Outcome;
 use crate::paper;
+use crate::results::Results;
 use crate::scope::Scope;
 use crate::table::{Cell, Table};
 use parbake::{BakeOptions, Convention, ShapeMode, VariantFigures, VariantsOptions};

@@ -1,10 +1,11 @@
 //! Table 6: pictures on a plane with smaller textures.
 
-use super::lods::{gain, score};
-use super::{Drawn, Results};
+use super::drawn::Drawn;
+use super::scores::{gain, score};
 use crate::experiment::{Experiment, Recipe, Subject, stem};
 use crate::outcome::Outcome;
 use crate::paper;
+use crate::results::Results;
 use crate::scope::Scope;
 use crate::table::{Cell, Table};
 use parbake::{ImageOptions, UvMode};

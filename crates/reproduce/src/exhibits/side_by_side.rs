@@ -1,11 +1,12 @@
 //! Figures 7 and 8: levels, and texture sizes, side by side.
 
+use super::drawn::Drawn;
 use super::methods::Moves;
 use super::photos::{Plate, row};
-use super::{Drawn, Results};
 use crate::catalogue::{Level, ModelFolder};
 use crate::error::ReproduceError;
 use crate::experiment::Experiment;
+use crate::results::Results;
 use crate::scope::Scope;
 
 /// How to read them.

@@ -1,13 +1,14 @@
 //! Table 2: what it costs. The paper counts milliseconds an iteration; a user counts seconds a
 //! model, which is what stands here beside the product of the paper's two numbers.
 
-use super::lods::score;
+use super::drawn::Drawn;
 use super::methods::Moves;
-use super::{Drawn, Results};
+use super::scores::{gain, score};
 use crate::catalogue::{Level, ModelFolder};
 use crate::experiment::{Experiment, Subject};
 use crate::outcome::Outcome;
 use crate::paper;
+use crate::results::Results;
 use crate::scope::Scope;
 use crate::table::{Cell, Table, median};
 use parbake::{BakeOptions, Method};
@@ -74,7 +75,7 @@ pub fn draw(scope: &Scope, results: &Results) -> Drawn {
         let made = algorithm(scope, model).and_then(|e| results.of(&e));
         let fixed = Moves::Textures.on(scope, model, Level::Three, size).and_then(|e| results.of(&e));
         let papers = |method: &str| paper::figure(10, &model.name, size, method).map(|f| f.psnr);
-        let gain = super::lods::gain(Outcome::psnr, made, fixed);
+        let gain = gain(Outcome::psnr, made, fixed);
         let each = made.map(|o| 1000.0 * o.seconds / o.iterations.max(1) as f64);
         let row = vec![
             score(made.and(fixed)),

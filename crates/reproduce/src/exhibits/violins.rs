@@ -1,11 +1,14 @@
 //! Figures 6 and 9: gains of all models over the fit with fixed coordinates, as violins.
 
+use super::drawn::Drawn;
 use super::methods::Moves;
-use super::{Drawn, Results, compress, lods};
+use super::scores::gain;
+use super::{compress, lods};
 use crate::catalogue::Level;
 use crate::experiment::Experiment;
 use crate::outcome::Outcome;
 use crate::paper;
+use crate::results::Results;
 use crate::scope::Scope;
 use parbake::UvMode;
 use parbake_page::charts::{Violin, ViolinChart, ViolinGroup};
@@ -32,7 +35,7 @@ pub fn draw_levels(scope: &Scope, results: &Results) -> Drawn {
                 let made = |moves: Moves| -> Vec<f64> {
                     let gain = |model| {
                         let made = |moves: Moves| results.of(&moves.on(scope, model, level, size)?);
-                        lods::gain(of, made(moves), made(Moves::Textures))
+                        gain(of, made(moves), made(Moves::Textures))
                     };
                     scope.catalogue.models.iter().filter_map(gain).collect()
                 };
@@ -76,7 +79,7 @@ pub fn draw_compressed(scope: &Scope, results: &Results) -> Drawn {
     let group = |&size: &usize| {
         let ours = |model| {
             let made = |uv| results.of(&compress::run(scope, model, size, uv));
-            lods::gain(Outcome::psnr, made(UvMode::Optimize), made(UvMode::Keep))
+            gain(Outcome::psnr, made(UvMode::Optimize), made(UvMode::Keep))
         };
         let papers = |name: &str, method: &str| {
             let figure = |method| paper::figure(7, name, size, method);

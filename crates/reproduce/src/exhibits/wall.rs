@@ -1,10 +1,11 @@
 //! Figures 11 and 12: every kind of parallax mapping on the built-in brick wall over its plain cube,
 //! with heights that are fitted, and with the wall's own depth.
 
-use super::{Drawn, Results};
+use super::drawn::Drawn;
 use crate::error::ReproduceError;
 use crate::experiment::{Experiment, Recipe, Subject};
 use crate::perform::variant_file;
+use crate::results::Results;
 use crate::scope::Scope;
 use crate::table::{Cell, Table};
 use parbake::{Limits, VariantsOptions, read_image};

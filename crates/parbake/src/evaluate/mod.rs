@@ -1,0 +1,122 @@
+//! Compares two models picture by picture: PSNR, MS-SSIM and FLIP over views spread
+//! around them.
+
+pub mod options;
+
+use crate::error::BakeError;
+use crate::message::{Message, Stage, Watcher};
+use crate::studio::Studio;
+use options::EvaluateOptions;
+use parbake_metric::Rgb;
+use parbake_model::Model;
+use parbake_render::camera::fibonacci_sphere;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Figures of one view.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ViewFigures {
+    /// Decibels, higher is better.
+    pub psnr: f64,
+    /// 0 … 1, higher is better; none below 161 pixels.
+    pub ms_ssim: Option<f64>,
+    /// Mean FLIP, 0 … 1, lower is better; none when left out.
+    pub flip: Option<f64>,
+}
+
+/// Figures of a pair.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Evaluation {
+    /// The conventions.
+    pub options: EvaluateOptions,
+    /// Averages over the views.
+    pub mean: ViewFigures,
+    /// Each view's figures.
+    pub views: Vec<ViewFigures>,
+}
+
+/// FLIP's viewing distance: pixels per degree of its authors' default monitor.
+const PIXELS_PER_DEGREE: f32 = 67.020_64;
+
+/// Compares `low` with `high`.
+///
+/// # Errors
+/// An option out of range; a high-poly without extent.
+pub fn evaluate(
+    high: &Model,
+    low: &Model,
+    options: &EvaluateOptions,
+    watcher: &impl Watcher,
+) -> Result<Evaluation, BakeError> {
+    let mut all = evaluate_before(high, low, options, &[&options.background], watcher)?;
+    Ok(all.remove(0))
+}
+
+/// Compares them before several backgrounds in turn, each as `options.background` has it; a view
+/// is rendered once for all of them.
+///
+/// # Errors
+/// As of [`evaluate`].
+pub fn evaluate_before(
+    high: &Model,
+    low: &Model,
+    options: &EvaluateOptions,
+    backgrounds: &[&str],
+    watcher: &impl Watcher,
+) -> Result<Vec<Evaluation>, BakeError> {
+    let asked: Vec<EvaluateOptions> = backgrounds
+        .iter()
+        .map(|&name| EvaluateOptions { background: name.into(), ..options.clone() })
+        .collect();
+    let colors: Vec<[f32; 3]> =
+        asked.iter().map(EvaluateOptions::checked_background).collect::<Result<_, _>>()?;
+    let studio = Studio::new(high, options)?;
+    let (high, low) = (studio.subject(high), studio.subject(low));
+    let done = AtomicUsize::new(0);
+    let views: Vec<Vec<ViewFigures>> = fibonacci_sphere(options.views, 0.0)
+        .into_par_iter()
+        .map(|direction| {
+            let shots = [&high, &low].map(|subject| studio.shot(subject, direction));
+            let figures = colors.iter().map(|&color| {
+                let [high, low] = shots.each_ref().map(|shot| studio.develop(shot, color));
+                compare(&high, &low, !options.no_flip)
+            });
+            let figures = figures.collect();
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            watcher.message(Message::Progress { stage: Stage::Evaluate, done, total: options.views });
+            figures
+        })
+        .collect();
+    Ok(asked
+        .into_iter()
+        .enumerate()
+        .map(|(k, options)| {
+            let views: Vec<ViewFigures> = views.iter().map(|view| view[k]).collect();
+            Evaluation { options, mean: mean(&views), views }
+        })
+        .collect())
+}
+
+/// All figures of one pair of pictures of equal size.
+pub(crate) fn compare(high: &Rgb, low: &Rgb, with_flip: bool) -> ViewFigures {
+    let error = parbake_metric::mean_squared_error(high, low).unwrap_or(f64::NAN);
+    ViewFigures {
+        psnr: parbake_metric::psnr_from_mse(error),
+        ms_ssim: parbake_metric::ms_ssim(high, low).ok().flatten(),
+        flip: with_flip.then(|| parbake_metric::flip(high, low, PIXELS_PER_DEGREE).ok()).flatten(),
+    }
+}
+
+pub(crate) fn mean(views: &[ViewFigures]) -> ViewFigures {
+    let count = views.len().max(1) as f64;
+    let optional = |of: fn(&ViewFigures) -> Option<f64>| {
+        let all: Option<Vec<f64>> = views.iter().map(of).collect();
+        all.map(|all| all.iter().sum::<f64>() / count)
+    };
+    ViewFigures {
+        psnr: views.iter().map(|v| v.psnr).sum::<f64>() / count,
+        ms_ssim: optional(|v| v.ms_ssim),
+        flip: optional(|v| v.flip),
+    }
+}
