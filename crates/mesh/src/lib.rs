@@ -1,10 +1,11 @@
 //! Parbake's geometry: what is done to meshes before, around and after rendering.
 //!
 //! ```text
-//! normals → tangents            what a surface needs before it can be shaded
+//! normals → facing → tangents   what a surface needs before it can be shaded
 //! charts, texel_map             which point of the surface a texel shows
 //! projection                    where that point lies on the detailed model
 //! simplify, subdivide           coarser and finer copies of a mesh
+//! deviation                     how far two surfaces are apart
 //! weld, vertices, union_find    what these share
 //! demo                          the built-in pairs of models
 //! ```
@@ -16,6 +17,8 @@
 mod bvh;
 pub mod charts;
 pub mod demo;
+pub mod deviation;
+pub mod facing;
 pub mod normals;
 pub mod projection;
 pub mod simplify;
@@ -28,6 +31,7 @@ pub mod weld;
 
 pub use charts::{charts, texel_charts};
 pub use demo::{demo_low, demo_model, wall_low, wall_model};
+pub use facing::face_outwards;
 pub use normals::{ensure_normals, smooth_normals};
 pub use projection::{HighSurface, SurfacePoint};
 pub use simplify::{SimplifyOptions, simplify};

@@ -19,14 +19,18 @@ pub fn smooth_normals(mesh: &Mesh) -> Vec<Vec3> {
         let corners = mesh.corners(index).map(|p| p.as_dvec3());
         let face = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
         for k in 0..3 {
-            let to_next = corners[(k + 1) % 3] - corners[k];
-            let to_last = corners[(k + 2) % 3] - corners[k];
-            // Exact for small angles too, unlike the arc cosine.
-            let angle = to_next.cross(to_last).length().atan2(to_next.dot(to_last));
-            sums[welded[triangle[k] as usize] as usize] += face * angle;
+            sums[welded[triangle[k] as usize] as usize] += face * corner_angle(mesh, index, k);
         }
     }
     welded.iter().map(|&v| sums[v as usize].normalize_or(DVec3::Y).as_vec3()).collect()
+}
+
+/// A triangle's angle at its corner `k`, in radians.
+pub(crate) fn corner_angle(mesh: &Mesh, triangle: usize, k: usize) -> f64 {
+    let corners = mesh.corners(triangle).map(Vec3::as_dvec3);
+    let (to_next, to_last) = (corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]);
+    // Exact for small angles too, unlike the arc cosine.
+    to_next.cross(to_last).length().atan2(to_next.dot(to_last))
 }
 
 /// Gives the mesh V unit normals: smooth ones where it has none at all, repaired

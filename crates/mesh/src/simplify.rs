@@ -3,17 +3,22 @@
 //!
 //! Vertices are split by material first: the triangles' materials can then be told
 //! from their vertices afterwards, and meshoptimizer keeps the two sides of a
-//! material's border together as it does those of a texture seam. Models that
-//! resist are tried again, each time with less to preserve; see `Attempt`.
+//! material's border together as it does those of a texture seam. Whatever is
+//! preserved holds the surface in its way, so several are tried (`Attempt`), and the
+//! deviation of what comes out decides (`deviation.rs`).
 //!
-//! Contract: the result uses only the input's vertices, is not empty unless the
-//! input is, and has no tangents.
+//! Contract: the result's corners are the input's but for normals that would look to
+//! their face's back (`facing.rs`); it is not empty unless the input is, and has no
+//! tangents.
 
+use crate::deviation::deviation;
+use crate::facing::face_outwards;
 use crate::normals::smooth_normals;
+use crate::projection::HighSurface;
 use crate::vertices::drop_unused;
 use crate::weld::{ordered_bits, weld_by};
 use meshopt::SimplifyOptions as Flags;
-use parbake_model::glam::{Vec2, Vec3};
+use parbake_model::glam::{DVec3, Vec2, Vec3};
 use parbake_model::{Bounds, Mesh};
 
 /// How far, and what to preserve.
@@ -38,7 +43,7 @@ impl Default for SimplifyOptions {
     }
 }
 
-/// What a try preserves, in the order in which they are made.
+/// What a try preserves.
 #[derive(Clone, Copy, PartialEq)]
 enum Attempt {
     /// Seams of texture and normals alike.
@@ -54,37 +59,59 @@ enum Attempt {
     Clustered,
 }
 
-/// A coarser mesh: of the attempts the first with a half to one and a half of the
-/// wanted triangles, else the one that comes nearest.
+/// A coarser mesh: of the attempts that come to a half to one and a half of the wanted triangles the
+/// one whose surface deviates least, what each gives up taken into account; where none does, the one
+/// that comes nearest.
 pub fn simplify(mesh: &Mesh, options: SimplifyOptions) -> Mesh {
     let target = options.target_triangles.max(1);
-    let off = |mesh: &Mesh| (mesh.triangles.len() as f64 / target as f64).ln().abs();
-    let mut best: Option<Mesh> = None;
-    if mesh.triangles.len() > target {
-        use Attempt::*;
-        for attempt in [AllSeams, TextureSeams, CrossingSeams, ShapeOnly, Clustered] {
-            let coarse = attempt.run(mesh, target, &options);
+    let mut best = Mesh { tangents: Vec::new(), ..mesh.clone() };
+    if let Some(unit) = UnitBox::of(mesh).filter(|_| mesh.triangles.len() > target) {
+        let original = unit.bare(mesh);
+        let surface = HighSurface::new(&original);
+        let mut least = (true, f64::INFINITY);
+        for attempt in Attempt::ALL {
+            let coarse = attempt.run(mesh, &unit, target, &options);
             let count = coarse.triangles.len();
             if count == 0 || count >= mesh.triangles.len() {
                 continue;
             }
-            if best.as_ref().is_none_or(|best| off(&coarse) < off(best)) {
-                best = Some(coarse);
-            }
-            if (target..=3 * target).contains(&(2 * count)) {
-                break;
+            let misses = !(target..=3 * target).contains(&(2 * count));
+            let cost = if misses {
+                (count as f64 / target as f64).ln().abs()
+            } else {
+                let coarse = unit.bare(&coarse);
+                attempt.price() * deviation((&original, &surface), (&coarse, &HighSurface::new(&coarse)))
+            };
+            if (misses, cost) < least {
+                (least, best) = ((misses, cost), coarse);
             }
         }
     }
-    let mut best = best.unwrap_or_else(|| Mesh { tangents: Vec::new(), ..mesh.clone() });
     drop_unused(&mut best);
+    if !best.normals.is_empty() {
+        face_outwards(&mut best);
+    }
     best
 }
 
 impl Attempt {
-    fn run(self, mesh: &Mesh, target: usize, options: &SimplifyOptions) -> Mesh {
+    const ALL: [Attempt; 5] =
+        [Self::AllSeams, Self::TextureSeams, Self::CrossingSeams, Self::ShapeOnly, Self::Clustered];
+
+    /// What a deviation counts, so that looks are given up only for a shape that is as much better.
+    fn price(self) -> f64 {
+        match self {
+            Self::AllSeams => 1.0,
+            Self::TextureSeams => 1.25,
+            Self::CrossingSeams => 1.5,
+            Self::ShapeOnly => 3.0,
+            Self::Clustered => 4.0,
+        }
+    }
+
+    fn run(self, mesh: &Mesh, unit: &UnitBox, target: usize, options: &SimplifyOptions) -> Mesh {
         let (mut work, materials) = self.welded(mesh);
-        let positions = in_unit_box(&work);
+        let positions: Vec<[f32; 3]> = work.positions.iter().map(|&p| unit.place(p).to_array()).collect();
         let indices: Vec<u32> = work.triangles.iter().flatten().copied().collect();
         let (count, error) = (3 * target, options.max_error.max(0.0));
         let simplified = match self {
@@ -183,13 +210,33 @@ impl Attempt {
     }
 }
 
-/// Positions moved and scaled so that the longest side of the box is 1, whatever
-/// the file's unit: meshoptimizer's own scaling would overflow.
-fn in_unit_box(mesh: &Mesh) -> Vec<[f32; 3]> {
-    let Some(bounds) = Bounds::of(mesh) else { return Vec::new() };
-    let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-    let longest = (high - low).max_element().max(f64::MIN_POSITIVE);
-    mesh.positions.iter().map(|p| ((p.as_dvec3() - low) / longest).as_vec3().to_array()).collect()
+/// Where the longest side of a mesh's box is 1, whatever the file's unit: meshoptimizer's own scaling
+/// would overflow.
+struct UnitBox {
+    low: DVec3,
+    longest: f64,
+}
+
+impl UnitBox {
+    fn of(mesh: &Mesh) -> Option<Self> {
+        let bounds = Bounds::of(mesh)?;
+        let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        Some(Self { low, longest: (high - low).max_element().max(f64::MIN_POSITIVE) })
+    }
+
+    fn place(&self, p: Vec3) -> Vec3 {
+        ((p.as_dvec3() - self.low) / self.longest).as_vec3()
+    }
+
+    /// A mesh's surface in this box, and nothing else of it.
+    fn bare(&self, mesh: &Mesh) -> Mesh {
+        Mesh {
+            positions: mesh.positions.iter().map(|&p| self.place(p)).collect(),
+            triangles: mesh.triangles.clone(),
+            triangle_materials: vec![0; mesh.triangles.len()],
+            ..Mesh::default()
+        }
+    }
 }
 
 /// Per vertex: the texture coordinate, in units of the surface's length so that

@@ -12,7 +12,7 @@ use crate::bridge::{Bridge, Clock};
 use crate::check::{check_mesh, warning};
 use crate::depth::{DepthMaps, fit_depth};
 use crate::error::BakeError;
-use crate::low::LowPoly;
+use crate::low::{LowPoly, lit};
 use crate::message::{Message, Stage, Watcher};
 use crate::options::{BakeOptions, UvMode};
 use crate::pair::{common_frame, placed};
@@ -90,6 +90,10 @@ pub(crate) fn bake_pair(
     let bridge = Bridge::new(watcher, begin, options.time_budget);
     let mut clock = Clock::new(begin);
     let frame = common_frame(high)?;
+    // One model twice keeps its vertices, whatever they are like.
+    let (turned, warnings) = (!same).then(|| lit(low)).unzip();
+    let low = turned.as_ref().unwrap_or(low);
+    let mut warnings = warnings.unwrap_or_default();
     let mesh = placed(high, &frame);
     let (scene, surface) = rayon::join(
         || Scene::new(mesh.clone(), &high.materials, &high.images, convention.interpretation()),
@@ -128,7 +132,8 @@ pub(crate) fn bake_pair(
         unfolded = Some(moved);
     }
     let low = unfolded.as_ref().map_or(low, |u| &u.model);
-    let LowPoly { written, placed, map, atlas, mut warnings } = LowPoly::new(low, &frame, size)?;
+    let LowPoly { written, placed, map, atlas, warnings: of_low } = LowPoly::new(low, &frame, size)?;
+    warnings.extend(of_low);
     warnings.extend(
         unfolded.iter().flat_map(|u| u.report.mended.iter().map(|done| format!("{}: {done}", low.name))),
     );

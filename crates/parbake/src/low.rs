@@ -2,7 +2,7 @@
 
 use crate::error::BakeError;
 use parbake_fit::atlas::Atlas;
-use parbake_mesh::{TexelMap, charts, compute_tangents, ensure_normals, texel_map};
+use parbake_mesh::{TexelMap, charts, compute_tangents, ensure_normals, face_outwards, texel_map};
 use parbake_model::glam::Vec2;
 use parbake_model::{Bounds, Material, Mesh, Model, Placement};
 
@@ -25,6 +25,28 @@ pub struct LowPoly {
     pub atlas: Atlas,
     /// What the user should know of it.
     pub warnings: Vec<String>,
+}
+
+/// A copy of a model whose vertex normals are of unit length and look away from none of their faces,
+/// and what the user should know of it.
+pub fn lit(model: &Model) -> (Model, Vec<String>) {
+    let mut model = model.clone();
+    let had = !model.mesh.normals.is_empty();
+    let repaired = ensure_normals(&mut model.mesh);
+    let turned = face_outwards(&mut model.mesh);
+    let mut warnings = Vec::new();
+    if had && repaired > 0 {
+        warnings.push(format!("{}: repaired {repaired} unusable normals", model.name));
+    }
+    if had && turned > 0 {
+        warnings.push(format!(
+            "{}: {turned} of {} triangles had a normal that looks to their back, where light makes them \
+             black; it was turned",
+            model.name,
+            model.mesh.triangles.len()
+        ));
+    }
+    (model, warnings)
 }
 
 impl LowPoly {

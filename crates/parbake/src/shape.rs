@@ -17,7 +17,7 @@ use parbake_fit::reference::{Reference, Sampling, render_references};
 use parbake_fit::start::project;
 use parbake_fit::views::{Rig, View, view_pool};
 use parbake_fit::watch::Watch;
-use parbake_mesh::{HighSurface, TexelMap};
+use parbake_mesh::{HighSurface, TexelMap, face_outwards};
 use parbake_model::glam::{Mat3, Vec3};
 use parbake_model::{Material, Mesh, Model, Placement};
 use parbake_render::display::Display;
@@ -130,12 +130,14 @@ pub(crate) fn smooth_references(
     render_references(target.scene, &Lambert, &pool, &sampling, 1, watch)
 }
 
-/// Moves a mesh as its copy in the common frame has moved, its normals with it.
+/// Moves a mesh as its copy in the common frame has moved, its normals with it; vertices are split
+/// where a normal would end up on its face's back.
 pub(crate) fn move_vertices(mesh: &mut Mesh, placed: &Mesh, positions: &[Vec3], frame: &Placement) {
     for ((written, before), after) in mesh.positions.iter_mut().zip(&placed.positions).zip(positions) {
         *written += (*after - *before) / frame.scale;
     }
     mesh.normals = turned_normals(&placed.positions, positions, &mesh.normals, &mesh.triangles);
+    face_outwards(mesh);
 }
 
 /// Tangent-space normals turned into world space, texel by texel.
