@@ -5,10 +5,16 @@
 //! [`Shading`] is the one replaceable piece: another BRDF implements it.
 //! Adjoint: `dL/dC = k g`; `dL/dk = C·g`, zero where the clamp holds.
 //!
-//! Contract: `map_normal` need not be of unit length but must not be zero.
+//! Contract: `map_normal` need not be of unit length. Where what it maps to is shorter than
+//! [`SHORTEST`], as between vertex normals that look away from each other, directions say nothing:
+//! light fades to black there, and derivatives stay finite.
 
 use crate::frame::TangentLight;
 use glam::Vec3;
+
+/// Length of a mapped normal below which it fades: about what 16 bits leave of a frame
+/// (`parbake_fit::samples`).
+pub const SHORTEST: f32 = 1e-2;
 
 /// Gradients of a shaded sample's inputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -50,19 +56,26 @@ fn gram_product(gram: &[f32; 6], m: Vec3) -> (f32, Vec3) {
     (gm.dot(m), gm)
 }
 
+/// One over a length, given its square.
+#[inline]
+fn inverse_length(square: f32) -> f32 {
+    1.0 / square.max(SHORTEST * SHORTEST).sqrt()
+}
+
 /// Cosine between light and mapped normal, before the clamp at zero.
 #[inline]
 pub fn cosine(surface: &TangentLight, map_normal: Vec3) -> f32 {
     let (square, _) = gram_product(&surface.gram, map_normal);
-    surface.light.dot(map_normal) / square.max(1e-20).sqrt()
+    // Where the frame was rounded, the quotient may be more than 1.
+    (surface.light.dot(map_normal) * inverse_length(square)).clamp(-1.0, 1.0)
 }
 
 /// The cosine and its derivative with respect to the map's normal.
 #[inline]
 pub fn cosine_with_derivative(surface: &TangentLight, map_normal: Vec3) -> (f32, Vec3) {
     let (square, gm) = gram_product(&surface.gram, map_normal);
-    let inverse = 1.0 / square.max(1e-20).sqrt();
-    let k = surface.light.dot(map_normal) * inverse;
+    let inverse = inverse_length(square);
+    let k = (surface.light.dot(map_normal) * inverse).clamp(-1.0, 1.0);
     (k, (surface.light - gm * (k * inverse)) * inverse)
 }
 
@@ -88,12 +101,13 @@ impl Shading for Lambert {
         let (square, _) = gram_product(&surface.gram, map_normal);
         let m = map_normal;
         // k = l·m / √q: dk/dl = m / √q, dk/dq = −k / (2q), dq/dgram = m mᵀ.
-        let to_q = -0.5 * k * to_k / square.max(1e-20);
+        let inverse = inverse_length(square);
+        let to_q = -0.5 * k * to_k * inverse * inverse;
         ShadeGradient {
             color: gradient * k,
             map_normal: dk_dm * to_k,
             surface: TangentLight {
-                light: m * (to_k / square.max(1e-20).sqrt()),
+                light: m * (to_k * inverse),
                 gram: [m.x * m.x, m.y * m.y, m.z * m.z, 2.0 * m.x * m.y, 2.0 * m.x * m.z, 2.0 * m.y * m.z]
                     .map(|d| d * to_q),
             },
@@ -147,6 +161,18 @@ mod tests {
             };
             let numeric = (shifted(h) - shifted(-h)) / (2.0 * h);
             assert!((numeric - a.surface.gram[k]).abs() < 1e-3, "{k}: {numeric} {}", a.surface.gram[k]);
+        }
+    }
+
+    /// Protects every fit: one degenerate frame must not outweigh all others, nor make light.
+    #[test]
+    fn degenerate_frames_stay_finite() {
+        for gram in [[0.0; 6], [1e-12; 6], [1.0, 1.0, -1e-5, 0.0, 1e-5, 0.0]] {
+            for light in [Vec3::ZERO, Vec3::splat(1e-4), Vec3::Z] {
+                let (k, by_normal) = cosine_with_derivative(&TangentLight { light, gram }, Vec3::Z);
+                assert!(k.abs() <= 1.0 && by_normal.length() <= 3.0 / SHORTEST, "{k} {by_normal}");
+                assert_eq!(k, cosine(&TangentLight { light, gram }, Vec3::Z));
+            }
         }
     }
 
