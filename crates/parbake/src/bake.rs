@@ -3,8 +3,8 @@
 //! ```text
 //! high ─ placed ─┬ Scene ──────┬ reference views ──────────────┬───────┐
 //!                └ HighSurface ┴ projection ────────┐          │       │
-//! low ─ mend ─ shape ─ unfold ─ LowPoly ────────── start ─── depth ─ samples ─ fit ─ Model
-//!            (vertices) (coordinates) (texel map, charts)  (cutout, parallax)
+//! low ─ lit ─ mend ─ shape ─ unfold ─ LowPoly ───── start ─── depth ─ samples ─ fit ─ Model
+//!   (normals)    (vertices) (coordinates) (texel map, charts)  (cutout, parallax)
 //! ```
 
 use crate::algorithm_one::algorithm_one;
@@ -90,7 +90,7 @@ pub(crate) fn bake_pair(
     let bridge = Bridge::new(watcher, begin, options.time_budget);
     let mut clock = Clock::new(begin);
     let frame = common_frame(high)?;
-    // One model twice keeps its vertices, whatever they are like.
+    // One model twice keeps its vertices, whatever their normals are like.
     let (turned, warnings) = (!same).then(|| lit(low)).unzip();
     let low = turned.as_ref().unwrap_or(low);
     let mut warnings = warnings.unwrap_or_default();

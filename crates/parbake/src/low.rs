@@ -27,10 +27,12 @@ pub struct LowPoly {
     pub warnings: Vec<String>,
 }
 
-/// A copy of a model whose vertex normals are of unit length and look away from none of their faces,
-/// and what the user should know of it.
+/// A copy of a model without its images, whose vertex normals are of unit length and look to no face's
+/// back, and what the user should know of it.
 pub fn lit(model: &Model) -> (Model, Vec<String>) {
-    let mut model = model.clone();
+    let Model { name, mesh, materials, .. } = model;
+    let mut model =
+        Model { name: name.clone(), mesh: mesh.clone(), materials: materials.clone(), images: Vec::new() };
     let had = !model.mesh.normals.is_empty();
     let repaired = ensure_normals(&mut model.mesh);
     let turned = face_outwards(&mut model.mesh);
