@@ -22,40 +22,36 @@ use std::collections::BTreeMap;
 /// Turns them; returns how many triangles had such corners.
 pub fn face_outwards(mesh: &mut Mesh) -> usize {
     let faces: Vec<DVec3> = (0..mesh.triangles.len()).map(|i| unit_normal(mesh, i)).collect();
-    let opposed = |mesh: &Mesh, triangle: usize, k: usize| {
+    let looks_back = |&(triangle, k): &(usize, usize)| {
         let normal = mesh.normals[mesh.triangles[triangle][k] as usize].as_dvec3();
         faces[triangle] != DVec3::ZERO && normal.dot(faces[triangle]) <= 0.0
     };
-    let of_triangle = |triangle: usize| (0..3).any(|k| opposed(mesh, triangle, k));
-    let turned: Vec<usize> = (0..mesh.triangles.len()).filter(|&triangle| of_triangle(triangle)).collect();
-    if turned.is_empty() {
+    let corners = |triangle| (0..3).map(move |k| (triangle, k));
+    let back: Vec<(usize, usize)> = (0..faces.len()).flat_map(corners).filter(looks_back).collect();
+    if back.is_empty() {
         return 0;
     }
     let welded = weld_by_position(&mesh.positions);
     let mut around: BTreeMap<u32, Vec<(usize, usize)>> = BTreeMap::new();
-    for (index, triangle) in mesh.triangles.iter().enumerate() {
-        for (k, &vertex) in triangle.iter().enumerate() {
-            around.entry(welded[vertex as usize]).or_default().push((index, k));
-        }
+    for (triangle, k) in (0..faces.len()).flat_map(corners) {
+        around.entry(welded[mesh.triangles[triangle][k] as usize]).or_default().push((triangle, k));
     }
     let mut split: BTreeMap<(u32, [u32; 3]), u32> = BTreeMap::new();
-    for &triangle in &turned {
-        for k in (0..3).filter(|&k| opposed(mesh, triangle, k)).collect::<Vec<_>>() {
-            let vertex = mesh.triangles[triangle][k];
-            let normal = around[&welded[vertex as usize]]
-                .iter()
-                .filter(|(other, _)| faces[*other].dot(faces[triangle]) > 0.0)
-                .map(|&(other, corner)| faces[other] * corner_angle(mesh, other, corner))
-                .sum::<DVec3>()
-                .normalize_or(faces[triangle])
-                .as_vec3();
-            let key = (vertex, normal.to_array().map(f32::to_bits));
-            let own = *split.entry(key).or_insert_with(|| copied(mesh, vertex, normal));
-            mesh.triangles[triangle][k] = own;
-        }
+    for &(triangle, k) in &back {
+        let vertex = mesh.triangles[triangle][k];
+        let normal = around[&welded[vertex as usize]]
+            .iter()
+            .filter(|(other, _)| faces[*other].dot(faces[triangle]) > 0.0)
+            .map(|&(other, corner)| faces[other] * corner_angle(mesh, other, corner))
+            .sum::<DVec3>()
+            .normalize_or(faces[triangle])
+            .as_vec3();
+        let key = (vertex, normal.to_array().map(f32::to_bits));
+        let own = *split.entry(key).or_insert_with(|| copied(mesh, vertex, normal));
+        mesh.triangles[triangle][k] = own;
     }
     drop_unused(mesh);
-    turned.len()
+    back.chunk_by(|a, b| a.0 == b.0).count()
 }
 
 fn unit_normal(mesh: &Mesh, triangle: usize) -> DVec3 {

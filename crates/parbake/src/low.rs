@@ -156,4 +156,22 @@ mod tests {
         assert_eq!(texture_coordinates(&second_alone, &materials), wanted);
         assert!(texture_coordinates(&Mesh { uvs1: Vec::new(), ..second_alone }, &materials).is_empty());
     }
+
+    /// Protects low-polys of other tools: what would be black is turned and told of, and what is sound
+    /// or was never given is not worth a word.
+    #[test]
+    fn normals_that_look_back_are_turned() {
+        let (_, sound) = crate::demo_pair();
+        assert!(lit(&sound).1.is_empty());
+        let mut turned = sound.clone();
+        ensure_normals(&mut turned.mesh);
+        turned.mesh.normals.iter_mut().for_each(|n| *n = -*n);
+        let (mended, warnings) = lit(&turned);
+        assert!(warnings.len() == 1 && warnings[0].contains("looks to their back"), "{warnings:?}");
+        for (index, triangle) in mended.mesh.triangles.iter().enumerate() {
+            let face = mended.mesh.area_normal(index);
+            let looks_back = |&v: &u32| mended.mesh.normals[v as usize].dot(face) < 0.0;
+            assert!(!triangle.iter().any(looks_back), "triangle {index}");
+        }
+    }
 }
