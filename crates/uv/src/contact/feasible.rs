@@ -4,7 +4,7 @@
 use super::Contact;
 use super::boundary::Boundary;
 use super::grid::{Bounds, Grid};
-use super::limits::OWN_MINIMUM;
+use super::limits::{OWN_MINIMUM, ROUNDING};
 use super::pair::Relative;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -73,21 +73,27 @@ impl Contact {
     ///
     /// Says nothing about triangles: [`crate::inversion::all_upright`] does.
     pub fn is_feasible(&self, points: &[DVec2]) -> bool {
+        self.is_feasible_with(points, 0.0)
+    }
+
+    /// The same with distances that are larger by `room`.
+    fn is_feasible_with(&self, points: &[DVec2], room: f64) -> bool {
         if !self.is_finite(points) || !self.border_is_kept(points) {
             return false;
         }
-        let grid = self.grid(points, self.limits.others.minimum.max(OWN_MINIMUM));
+        let grid = self.grid(points, self.limits.others.minimum.max(OWN_MINIMUM) + room);
         let vertices = 0..self.boundary.vertices.len();
         let edges = 0..self.boundary.edges.len();
-        vertices.into_par_iter().with_min_len(64).all(|v| self.distances_are_kept(v, points, &grid))
+        vertices.into_par_iter().with_min_len(64).all(|v| self.distances_are_kept(v, points, &grid, room))
             && edges.into_par_iter().with_min_len(64).all(|e| self.crosses_nothing(e, points, &grid))
     }
 
-    /// The points rounded to what a file can hold (`f32`), if they are feasible then;
-    /// otherwise the caller takes a shorter step.
+    /// The points rounded to what a file can hold (`f32`), if they are feasible then, with gaps
+    /// that the next step can leave a tenth of without running into rounding; else the caller takes a
+    /// shorter step.
     pub fn feasible_after_rounding(&self, points: &[DVec2]) -> Option<Vec<DVec2>> {
         let rounded: Vec<DVec2> = points.iter().map(|p| p.as_vec2().as_dvec2()).collect();
-        self.is_feasible(&rounded).then_some(rounded)
+        self.is_feasible_with(&rounded, ROUNDING).then_some(rounded)
     }
 
     /// Fixed coordinates are where they began, and the others inside.
@@ -101,8 +107,8 @@ impl Contact {
         })
     }
 
-    /// A boundary vertex keeps its distance from all edges.
-    fn distances_are_kept(&self, vertex: usize, points: &[DVec2], grid: &Grid) -> bool {
+    /// A boundary vertex keeps its distance from all edges, and `room` besides.
+    fn distances_are_kept(&self, vertex: usize, points: &[DVec2], grid: &Grid, room: f64) -> bool {
         let v = self.boundary.vertices[vertex];
         let at = points[v as usize];
         let mut kept = true;
@@ -112,7 +118,7 @@ impl Contact {
             }
             if let Some(limits) = self.limits.of(&self.boundary, vertex, edge) {
                 let closest = Relative::new(at, self.boundary.ends(edge, points)).closest();
-                kept = closest.distance > limits.minimum;
+                kept = closest.distance > limits.minimum + room;
             }
         });
         kept

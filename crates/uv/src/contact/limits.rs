@@ -18,6 +18,10 @@ pub(super) const TOUCHING: f64 = 1.0 / (1 << 22) as f64;
 /// rounding can carry a vertex across an edge.
 pub(super) const OWN_MINIMUM: f64 = 1.0 / (1 << 23) as f64;
 
+/// What rounding to `f64` may do to a distance, with room to spare: each coordinate in the square is
+/// off by 1e-16 after a step. A gap that a step leaves a tenth of must be larger than that.
+pub(super) const ROUNDING: f64 = 1e-13;
+
 /// Share of its distance at the start that a pair nearer than the gutter keeps.
 const KEPT_OF_START: f64 = 0.9;
 
@@ -36,7 +40,7 @@ impl Limits {
         if start < TOUCHING {
             return None;
         }
-        if start > self.minimum {
+        if start > self.minimum + ROUNDING {
             return Some(self);
         }
         let minimum = KEPT_OF_START * start;
