@@ -55,6 +55,19 @@ impl Relative {
         Closest { offset, distance: offset.length(), along }
     }
 
+    /// The unit vector from the closest point of the edge to the vertex. Beside the edge it is the
+    /// edge's perpendicular: a short offset's own direction is off by its rounding over its length, and
+    /// that, times the way to a far end, can be more than the gap.
+    #[inline]
+    fn normal(&self, closest: &Closest) -> DVec2 {
+        let across = (self.b - self.a).perp().normalize_or_zero();
+        if closest.along > 0.0 && closest.along < 1.0 && across != DVec2::ZERO {
+            across * across.dot(closest.offset).signum()
+        } else {
+            closest.offset / closest.distance
+        }
+    }
+
     /// The largest t in [0, `limit`] up to which the distance stays at or above
     /// `minimum` plus [`KEPT`] times the gap at the start. Zero where there is no gap
     /// and they do not part. Conservative: it may be shorter, never longer.
@@ -71,7 +84,7 @@ impl Relative {
             if closest.distance == 0.0 {
                 return time;
             }
-            let normal = closest.offset / closest.distance;
+            let normal = at.normal(&closest);
             let mut step = at.step_along(normal, velocity, keep);
             if time + step < limit {
                 step = step.max(at.step_along_tilted(normal, velocity, keep));
@@ -146,6 +159,21 @@ mod tests {
         assert_eq!(distance(dvec2(5.0, 4.0), a, b).distance, 5.0);
         assert_eq!(distance(dvec2(-3.0, 4.0), a, b).along, 0.0);
         assert_eq!(distance(dvec2(3.0, 4.0), a, a).distance, 5.0);
+    }
+
+    /// Protects gaps that are far smaller than a long edge's rounding suggests: the vertex must not
+    /// get through although one end of the edge parts from it.
+    #[test]
+    fn a_small_gap_to_a_long_edge_that_turns() {
+        let place = Relative {
+            a: dvec2(2.384185791015625e-7, 0.06250017881393433),
+            b: dvec2(2.980232238769531e-7, -0.06249964237213135),
+        };
+        let velocity = Relative { a: dvec2(1.46050292, 11.62775822), b: dvec2(-3.33090313, 18.63217952) };
+        let minimum = 2.682209014892578e-7;
+        let time = place.time_of_impact(&velocity, minimum, 1e-3);
+        let there = Relative { a: place.a + time * velocity.a, b: place.b + time * velocity.b };
+        assert!(time > 0.0 && there.closest().distance > minimum, "{time:e} {:e}", there.closest().distance);
     }
 
     /// Protects the time of impact by ways on which it can be counted: it stops with a
