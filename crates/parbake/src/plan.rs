@@ -85,7 +85,7 @@ impl BakeOptions {
     /// How cutout and parallax map are fitted; none where there are none.
     pub(crate) fn depth_plan(&self) -> Option<DepthPlan> {
         let (views, cutout_steps, steps) = match self.preset {
-            Preset::Fast => (240, 200, [100, 60]),
+            Preset::Fast => (240, 120, [100, 60]),
             Preset::Balanced => (480, 300, [300, 150]),
             Preset::Best => (960, 500, [600, 400]),
         };
