@@ -10,6 +10,8 @@
 //!
 //! The textures that are fitted along are small and are thrown away: what is written is
 //! solved for afterwards, with the cutout and the shifts that a reader of the file will see.
+//! What shifts mended with a coarse texture may have been its blur rather than depth: a map
+//! that hardly betters the next, finer texture begins anew with it.
 //!
 //! Contract: maps are as they come back from 8 bits.
 
@@ -43,8 +45,8 @@ pub struct DepthPlan {
     pub cutout: Option<CutoutOptions>,
     /// How the parallax map is fitted, but for what passes say.
     pub parallax: ParallaxOptions,
-    /// With which textures, from coarse to fine.
-    pub passes: [ParallaxPass; 2],
+    /// With which textures, from coarse to fine; passes without steps are left out.
+    pub passes: [ParallaxPass; 3],
 }
 
 /// One pass of the parallax map's fit.
@@ -88,6 +90,9 @@ pub struct DepthReport {
     pub strayed: [f64; 2],
     /// Steps that the parallax map took.
     pub steps: usize,
+    /// Passes that began anew, because the coarser pass's map did too little for their textures.
+    #[serde(default)]
+    pub begun_anew: usize,
     /// For each pass over the textures' sizes, the mean squared display difference of its first
     /// steps' views and of its last ones'.
     pub mean_square: Vec<[f64; 2]>,
@@ -111,7 +116,11 @@ const TERRITORY: usize = 256;
 /// Rounds of the solve for the small textures: they only have to begin well.
 const ROUNDS: usize = 2;
 
-/// One view in so many tells what rounding costs.
+/// A coarser pass's map is kept where it leaves less than this share of the squared differences,
+/// 0.5 dB: below that, what it does for the finer texture is less than what it does not.
+const WORTH_KEEPING: f64 = 0.89;
+
+/// One view in so many tells what a map is worth, and what rounding costs.
 const JUDGED: usize = 12;
 
 /// Steps at either end whose mean the report gives.
@@ -148,15 +157,26 @@ pub fn fit_depth(
     let mut map = ShParallax::zeros(plan.parallax.order, plan.parallax.size);
     let mut losses = Vec::new();
     let mut textures = None;
-    for pass in &plan.passes {
+    let judged: Vec<_> = views.iter().step_by(JUDGED).cloned().collect();
+    for pass in plan.passes.iter().filter(|pass| pass.steps > 0) {
         let LowPoly { placed, map: texels, atlas, .. } = LowPoly::new(low, frame, pass.texture_size)?;
         let start = project(&placed, &texels, &atlas, target.scene, target.surface, target.reach);
-        let samples = collect_samples(&walker, references, pass.texture_size, Some(&map), watch);
-        let schedule = Schedule { rounds: ROUNDS, final_steps: 0, ..Schedule::default() };
-        let begin = fit_textures(&samples, &atlas, &start, target.display, srgb, &schedule, watch);
-        drop(samples);
-        let (color, normal) = (color_canvas(&begin.color, srgb), normal_canvas(&begin.normal));
-        let mut state = State { map, color, normal };
+        let solved_with = |map: ShParallax| {
+            let samples = collect_samples(&walker, references, pass.texture_size, Some(&map), watch);
+            let schedule = Schedule { rounds: ROUNDS, final_steps: 0, ..Schedule::default() };
+            let begin = fit_textures(&samples, &atlas, &start, target.display, srgb, &schedule, watch);
+            let (color, normal) = (color_canvas(&begin.color, srgb), normal_canvas(&begin.normal));
+            State { map, color, normal }
+        };
+        let mut state = solved_with(map);
+        if !losses.is_empty() {
+            let anew = solved_with(ShParallax::zeros(plan.parallax.order, plan.parallax.size));
+            let [with, without] = [&state, &anew].map(|state| mean_square(&judged, state, &display));
+            if with > WORTH_KEEPING * without {
+                state = anew;
+                report.begun_anew += 1;
+            }
+        }
         let options = ParallaxOptions { steps: pass.steps, rate: pass.rate, ..plan.parallax };
         losses.push(fit_parallax(&views, &mut state, &display, &options, watch));
         map = state.map;
@@ -176,7 +196,6 @@ pub fn fit_depth(
     let packed = map.pack(&mut images);
     let parallax = ShParallax::unpack(&packed, &images).unwrap_or_else(|| map.clone());
     if let Some((color, normal)) = textures {
-        let judged: Vec<_> = views.into_iter().step_by(JUDGED).collect();
         let mut state = State { map, color, normal };
         report.rounding[0] = mean_square(&judged, &state, &display);
         state.map = parallax.clone();
