@@ -258,4 +258,18 @@ mod tests {
         let [exact, rounded] = report.rounding;
         assert!(exact > 0.0 && rounded < 1.1 * exact, "8 bits do: {exact} {rounded}");
     }
+
+    /// Protects textures from maps that only mend a coarse one's blur: where high-poly and low-poly
+    /// are the same there is no depth to show, and each pass begins anew; where they are not, what
+    /// the coarse pass found is kept.
+    #[test]
+    fn a_map_without_depth_to_show_begins_anew() {
+        let (high, low) = demo_pair();
+        let begun_anew = |high: &Model, low: &Model| {
+            let baked = baked(high, low, Parallax::Sh, 2);
+            baked.report.depth.unwrap().begun_anew
+        };
+        assert_eq!(begun_anew(&high, &low), 0);
+        assert_eq!(begun_anew(&low, &low), 1);
+    }
 }
