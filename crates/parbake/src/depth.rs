@@ -116,8 +116,9 @@ const TERRITORY: usize = 256;
 /// Rounds of the solve for the small textures: they only have to begin well.
 const ROUNDS: usize = 2;
 
-/// A coarser pass's map is kept where it leaves less than this share of the squared differences,
-/// 0.5 dB: below that, what it does for the finer texture is less than what it does not.
+/// A coarser pass's map is kept where it leaves less than this share of the squared differences
+/// that the finer texture has without one (0.5 dB): one that is worth less is mostly the coarse
+/// texture's blur (lemon, LOD-1), one that shows depth is worth 1.4 dB and more.
 const WORTH_KEEPING: f64 = 0.89;
 
 /// One view in so many tells what a map is worth, and what rounding costs.
@@ -157,6 +158,7 @@ pub fn fit_depth(
     let mut map = ShParallax::zeros(plan.parallax.order, plan.parallax.size);
     let mut losses = Vec::new();
     let mut textures = None;
+    let mut coarser = None;
     let judged: Vec<_> = views.iter().step_by(JUDGED).cloned().collect();
     for pass in plan.passes.iter().filter(|pass| pass.steps > 0) {
         let LowPoly { placed, map: texels, atlas, .. } = LowPoly::new(low, frame, pass.texture_size)?;
@@ -169,7 +171,7 @@ pub fn fit_depth(
             State { map, color, normal }
         };
         let mut state = solved_with(map);
-        if !losses.is_empty() {
+        if coarser.is_some_and(|size| size < pass.texture_size) {
             let anew = solved_with(ShParallax::zeros(plan.parallax.order, plan.parallax.size));
             let [with, without] = [&state, &anew].map(|state| mean_square(&judged, state, &display));
             if with > WORTH_KEEPING * without {
@@ -179,6 +181,7 @@ pub fn fit_depth(
         }
         let options = ParallaxOptions { steps: pass.steps, rate: pass.rate, ..plan.parallax };
         losses.push(fit_parallax(&views, &mut state, &display, &options, watch));
+        coarser = Some(pass.texture_size);
         map = state.map;
         textures = Some((state.color, state.normal));
     }
@@ -260,13 +263,15 @@ mod tests {
     }
 
     /// Protects textures from maps that only mend a coarse one's blur: where high-poly and low-poly
-    /// are the same there is no depth to show, and each pass begins anew; where they are not, what
-    /// the coarse pass found is kept.
+    /// are the same there is no depth to show, and the finer pass begins anew; where they are not,
+    /// what the coarse pass found is kept.
     #[test]
     fn a_map_without_depth_to_show_begins_anew() {
         let (high, low) = demo_pair();
+        // More than the first pass's 128 texels, so that there is a finer texture.
+        let options = BakeOptions { texture_size: 256, ..quick(Parallax::Sh) };
         let begun_anew = |high: &Model, low: &Model| {
-            let baked = baked(high, low, Parallax::Sh, 2);
+            let baked = bake(high, low, &options, &()).unwrap();
             baked.report.depth.unwrap().begun_anew
         };
         assert_eq!(begun_anew(&high, &low), 0);
