@@ -115,12 +115,55 @@ pub struct State<M = ShParallax> {
     pub normal: Canvas,
 }
 
-/// Loss and gradients of one view.
+/// Loss and gradients of some views, in buffers that are used again in every step.
 struct Part<M> {
     loss: f64,
     map: M,
     color: Vec<Vec4>,
     normal: Vec<Vec4>,
+}
+
+/// Texels of one task.
+const BAND: usize = 4096;
+
+impl<M: ShiftMap> Part<M> {
+    fn zeros(state: &State<M>) -> Self {
+        let texels = vec![Vec4::ZERO; state.color.texels.len()];
+        Self { loss: 0.0, map: state.map.zeros_like(), color: texels.clone(), normal: texels }
+    }
+
+    fn clear(&mut self, state: &State<M>) {
+        self.loss = 0.0;
+        self.map = state.map.zeros_like();
+        self.color.fill(Vec4::ZERO);
+        self.normal.fill(Vec4::ZERO);
+    }
+
+    /// Adds the textures' gradients of other parts, one after the other.
+    fn gather_textures(&mut self, others: &[Self]) {
+        let add = |into: &mut [Vec4], of: fn(&Self) -> &[Vec4]| {
+            into.par_chunks_mut(BAND).enumerate().for_each(|(band, into)| {
+                for other in others {
+                    let from = of(other).get(band * BAND..).unwrap_or_default();
+                    into.iter_mut().zip(from).for_each(|(into, from)| *into += *from);
+                }
+            });
+        };
+        add(&mut self.color, |part| &part.color);
+        add(&mut self.normal, |part| &part.normal);
+    }
+}
+
+/// Bytes of gradients beyond which views share buffers: more do not stay in a cache, and then
+/// clearing and summing them costs more than the views do.
+const BUFFERS: usize = 16 << 20;
+/// Buffers at least, however large: as many tasks as there are.
+const LEAST_BUFFERS: usize = 4;
+
+/// How many views share a buffer. It depends on sizes alone, and so does the order of sums.
+fn views_in_part(texels: usize, views: usize) -> usize {
+    let parts = (BUFFERS / (texels * size_of::<[Vec4; 2]>()).max(1)).max(LEAST_BUFFERS);
+    views.div_ceil(parts).max(1)
 }
 
 /// The gradient of a bilinear fetch by its coordinate.
@@ -131,16 +174,10 @@ fn by_coordinate(canvas: &Canvas, at: &Taps, gradient: Vec4) -> Vec2 {
     Vec2::new((b - a) * (1.0 - at.fy) + (d - c) * at.fy, (c - a) * (1.0 - at.fx) + (d - b) * at.fx) * size
 }
 
-/// Half the gradient of the squared differences of one view.
-fn view_gradient<M: ShiftMap>(samples: &[Sighted], state: &State<M>, display: &DisplayTable) -> Part<M> {
+/// Adds half the gradient of the squared differences of one view.
+fn add_view<M: ShiftMap>(samples: &[Sighted], state: &State<M>, display: &DisplayTable, part: &mut Part<M>) {
     let State { map, color, normal } = state;
     let size = color.size;
-    let mut part = Part {
-        loss: 0.0,
-        map: map.zeros_like(),
-        color: vec![Vec4::ZERO; size * size],
-        normal: vec![Vec4::ZERO; size * size],
-    };
     for sample in samples {
         let light = unpacked(sample.light);
         let from = Vantage::under_headlight(sample.sight(), &light);
@@ -165,13 +202,16 @@ fn view_gradient<M: ShiftMap>(samples: &[Sighted], state: &State<M>, display: &D
         let to_shift = by_coordinate(color, &at, to_color) + by_coordinate(normal, &at, to_normal);
         map.adjoint_of_maps(sample.uv, &from, to_shift, &mut part.map);
     }
-    part
 }
 
 /// The mean squared difference of these views as they are.
 pub fn mean_square<M: ShiftMap>(views: &[Vec<Sighted>], state: &State<M>, display: &DisplayTable) -> f64 {
-    let losses: Vec<f64> =
-        views.par_iter().map(|samples| view_gradient(samples, state, display).loss).collect();
+    let loss_of = |samples: &Vec<Sighted>| {
+        let mut part = Part::zeros(state);
+        add_view(samples, state, display, &mut part);
+        part.loss
+    };
+    let losses: Vec<f64> = views.par_iter().map(loss_of).collect();
     let count: usize = views.iter().map(Vec::len).sum();
     losses.iter().sum::<f64>() / (3 * count.max(1)) as f64
 }
@@ -210,6 +250,9 @@ pub fn fit_parallax<M: ShiftMap>(
     let mut adam_color = Adam::new(texels, at_rate(options.texture_rate));
     let mut adam_normal = Adam::new(texels, at_rate(options.texture_rate));
     let mut losses = Vec::with_capacity(options.steps);
+    let together = views_in_part(texels, options.views_per_step);
+    let mut parts: Vec<Part<M>> = Vec::new();
+    parts.resize_with(options.views_per_step.div_ceil(together), || Part::zeros(state));
     for step in 0..options.steps {
         watch.progress(Stage::Parallax, step, options.steps);
         if views.is_empty() || watch.should_stop() {
@@ -219,23 +262,25 @@ pub fn fit_parallax<M: ShiftMap>(
         let chosen: Vec<&[Sighted]> = (0..options.views_per_step)
             .map(|i| views[(step * options.views_per_step + i) % views.len()].as_slice())
             .collect();
-        let parts: Vec<Part<M>> =
-            chosen.par_iter().map(|samples| view_gradient(samples, state, display)).collect();
+        parts.par_iter_mut().zip(chosen.par_chunks(together)).for_each(|(part, views)| {
+            part.clear(state);
+            views.iter().for_each(|samples| add_view(samples, state, display, part));
+        });
         let count: usize = chosen.iter().map(|samples| samples.len()).sum();
         losses.push(parts.iter().map(|p| p.loss).sum::<f64>() / (3 * count.max(1)) as f64);
         let share = rate_at(step, options.steps);
-        let sum = |of: fn(&Part<M>) -> &[Vec4]| -> Vec<Vec4> {
-            (0..texels).into_par_iter().map(|i| parts.iter().map(|p| of(p)[i]).sum()).collect()
-        };
-        adam_color.step(&mut state.color.texels, &sum(|p| &p.color), share);
-        adam_normal.step(&mut state.normal.texels, &sum(|p| &p.normal), share);
-        for texel in &mut state.color.texels {
-            *texel = texel.clamp(Vec4::ZERO, Vec4::ONE);
+        if let [first, others @ ..] = parts.as_mut_slice() {
+            first.gather_textures(others);
+            adam_color.step(&mut state.color.texels, &first.color, share);
+            adam_normal.step(&mut state.normal.texels, &first.normal, share);
         }
-        for texel in &mut state.normal.texels {
+        state.color.texels.par_iter_mut().with_min_len(BAND).for_each(|texel| {
+            *texel = texel.clamp(Vec4::ZERO, Vec4::ONE);
+        });
+        state.normal.texels.par_iter_mut().with_min_len(BAND).for_each(|texel| {
             let [x, y, z, _] = texel.to_array();
             *texel = Vec3::new(x, y, z.max(0.02)).normalize().extend(0.0);
-        }
+        });
         let to_maps: Vec<Vec<Vec4>> = parts.iter().map(|p| p.map.parameters()).collect();
         let stride = |i: usize| strides.get(i).copied().unwrap_or(Vec4::ONE);
         let to_map: Vec<Vec4> = (0..moving.len())

@@ -113,8 +113,10 @@ pub struct Depth {
 /// Texels along a side of the map that says which chart is nearest.
 const TERRITORY: usize = 256;
 
-/// Rounds of the solve for the small textures: they only have to begin well.
+/// Rounds of the solve for the small textures, and views that it is made of: they only have to
+/// begin well. With all 480 views instead of 160 maps are 0.03 dB better, and take a third longer.
 const ROUNDS: usize = 2;
+const BEGIN_VIEWS: usize = 160;
 
 /// A coarser pass's map is kept where it leaves less than this share of the squared differences
 /// that the finer texture has without one (0.5 dB): one that is worth less is mostly the coarse
@@ -164,7 +166,8 @@ pub fn fit_depth(
         let LowPoly { placed, map: texels, atlas, .. } = LowPoly::new(low, frame, pass.texture_size)?;
         let start = project(&placed, &texels, &atlas, target.scene, target.surface, target.reach);
         let solved_with = |map: ShParallax| {
-            let samples = collect_samples(&walker, references, pass.texture_size, Some(&map), watch);
+            let some = &references[..references.len().min(BEGIN_VIEWS)];
+            let samples = collect_samples(&walker, some, pass.texture_size, Some(&map), watch);
             let schedule = Schedule { rounds: ROUNDS, final_steps: 0, ..Schedule::default() };
             let begin = fit_textures(&samples, &atlas, &start, target.display, srgb, &schedule, watch);
             let (color, normal) = (color_canvas(&begin.color, srgb), normal_canvas(&begin.normal));
