@@ -245,7 +245,7 @@ pub struct BakeOptions {
     )]
     pub reach: f32,
 
-    /// Training views, 1 to 4096 [default: by preset 240, 640, 1280]
+    /// Training views, 1 to 4096 [default: by preset 240, 960, 1280]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
     pub views: Option<usize>,
 

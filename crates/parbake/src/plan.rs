@@ -87,7 +87,7 @@ impl BakeOptions {
         let (views, cutout_steps, steps) = match self.preset {
             Preset::Fast => (240, 120, [100, 60, 0]),
             Preset::Balanced => (960, 300, [400, 250, 400]),
-            Preset::Best => (1280, 500, [800, 500, 600]),
+            Preset::Best => (960, 500, [800, 500, 600]),
         };
         let own = ParallaxOptions::default();
         let pass = |texture_size: usize, steps, rate| ParallaxPass {
