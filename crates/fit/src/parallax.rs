@@ -296,3 +296,27 @@ pub fn fit_parallax<M: ShiftMap>(
     watch.progress(Stage::Parallax, options.steps, options.steps);
     losses
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parbake_render::parallax_variants::shift_map::Unshifted;
+
+    fn part(texels: usize, value: f32) -> Part<Unshifted> {
+        let (color, normal) = (vec![Vec4::splat(value); texels], vec![Vec4::splat(-value); texels]);
+        Part { loss: 0.0, map: Unshifted, color, normal }
+    }
+
+    /// Protects gradients: none is lost at the seams of bands, and no view is left without a buffer.
+    #[test]
+    fn parts_add_up_and_hold_all_views() {
+        let texels = 2 * BAND + 7;
+        let mut first = part(texels, 1.0);
+        first.gather_textures(&[part(texels, 2.0), part(texels, 4.0)]);
+        assert!(first.color.iter().all(|g| *g == Vec4::splat(7.0)));
+        assert!(first.normal.iter().all(|g| *g == Vec4::splat(-7.0)));
+        for (size, together) in [(16, 1), (128, 1), (512, 3), (4096, 3)] {
+            assert_eq!(views_in_part(size * size, 12), together, "{size}²");
+        }
+    }
+}
