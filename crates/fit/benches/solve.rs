@@ -13,6 +13,7 @@ use parbake_fit::color::{Problem, color_step, footprint, loss};
 use parbake_fit::conjugate_gradient::{Effort, solve};
 use parbake_fit::membrane::Membrane;
 use parbake_fit::normal::normal_step;
+use parbake_fit::outliers::Cauchy;
 use parbake_fit::reference::{Reference, Sampling, render_references};
 use parbake_fit::samples::{SampleSet, collect_samples};
 use parbake_fit::stencil::{Block, Diagonal, Row, Stencil, Symmetric, add_diagonal, add_symmetric};
@@ -84,7 +85,7 @@ fn collect(low: &Mesh, references: &[Reference]) -> SampleSet {
 impl Bench {
     fn problem(&self, membrane: Membrane) -> Problem<'_> {
         let Self { samples, atlas, display, .. } = self;
-        Problem { samples, atlas, display, membrane, effort: EFFORT }
+        Problem { samples, atlas, display, membrane, effort: EFFORT, outliers: Cauchy::new(1.0) }
     }
 
     fn count(&self) -> ItemsCount {

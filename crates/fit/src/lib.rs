@@ -24,6 +24,7 @@ pub mod cutout;
 pub mod gutter;
 pub mod membrane;
 pub mod normal;
+pub mod outliers;
 pub mod parallax;
 pub mod quantise;
 pub mod reference;

@@ -12,6 +12,7 @@ use crate::canvas::{Canvas, gather};
 use crate::color::{Problem, footprint, local_places};
 use crate::conjugate_gradient::{Outcome, solve};
 use crate::membrane::{add_membrane, mean_pull};
+use crate::outliers::Loss;
 use crate::stencil::{Block, Row, Stencil, Symmetric, add_symmetric};
 use parbake_model::glam::{Vec3, Vec4};
 use parbake_render::shade::cosine_with_derivative;
@@ -33,20 +34,19 @@ pub fn normal_step(
     start: &Canvas,
     damping: f32,
     rows: &mut Vec<Row<Symmetric>>,
-) -> (f64, Outcome) {
+) -> (Loss, Outcome) {
     let size = problem.samples.size;
     let losses = gather(
         size,
         rows,
         |band, first, local| {
-            let mut loss = 0.0;
+            let mut loss = Loss::default();
             for s in &problem.samples.bands[band] {
                 let (texels, w) = footprint(s, size);
                 let albedo = color.fetch(texels, w);
                 let (k, per_normal) = cosine_with_derivative(&s.light(), normal.fetch(texels, w).truncate());
-                let (response, share) = problem.respond(albedo * k.max(0.0), s);
+                let (response, weight, share) = problem.respond(albedo * k.max(0.0), s);
                 loss += share;
-                let weight = s.weight();
                 let j = response.slope * albedo;
                 let curvature = j.length_squared() * weight;
                 let pull = -j.dot(response.residual) * weight;
@@ -74,7 +74,7 @@ pub fn normal_step(
         *m = upright(*m + *step * limit);
     });
     *rows = matrix.rows;
-    (losses.iter().sum(), outcome)
+    (losses.into_iter().sum(), outcome)
 }
 
 /// Unit length, and on the outer side of the surface.

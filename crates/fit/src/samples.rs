@@ -74,6 +74,16 @@ impl Sample {
     }
 }
 
+#[cfg(test)]
+impl Sample {
+    /// A pixel that sees one texel from straight above.
+    pub(crate) fn facing(texel: u32, target: f32) -> Self {
+        let straight = TangentLight { light: Vec3::Z, gram: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0] };
+        let target = [(target * 65535.0) as u16; 3];
+        Self { texel, fraction: [0; 2], light: packed(&straight), target, weight: u16::MAX }
+    }
+}
+
 impl SampleSet {
     /// How many samples there are.
     pub fn len(&self) -> usize {

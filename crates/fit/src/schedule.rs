@@ -12,6 +12,7 @@ use crate::conjugate_gradient::Effort;
 use crate::gutter;
 use crate::membrane::Membrane;
 use crate::normal::normal_step;
+use crate::outliers::{Cauchy, Loss};
 use crate::quantise::{color_canvas, color_image, normal_canvas, normal_image};
 use crate::samples::SampleSet;
 use crate::start::Start;
@@ -43,6 +44,9 @@ pub struct Schedule {
     pub normal_membrane: Membrane,
     /// First damping of the normals, a share of the samples' mean pull.
     pub damping: f32,
+    /// Length of a pixel's display differences at which it counts half ([`Cauchy`]), more than 0;
+    /// infinity for least squares.
+    pub outlier: f32,
 }
 
 impl Default for Schedule {
@@ -57,6 +61,7 @@ impl Default for Schedule {
             color_membrane: Membrane { stiffness: 1e-2, tether: 1e-5 },
             normal_membrane: Membrane { stiffness: 0.2, tether: 1e-3 },
             damping: 6.0,
+            outlier: f32::INFINITY,
         }
     }
 }
@@ -111,11 +116,11 @@ struct Log {
 
 impl Log {
     /// Notes the loss of this state, and the state itself if it is the best so far.
-    fn note(&mut self, moved: Move, loss: f64, color: &Canvas, normal: &Canvas) {
+    fn note(&mut self, moved: Move, loss: Loss, color: &Canvas, normal: &Canvas) {
         let seconds = self.begin.elapsed().as_secs_f64();
-        self.losses.push(LossPoint { moved, seconds, mean_square: loss / self.terms });
-        if self.best.as_ref().is_none_or(|b| loss < b.0) {
-            self.best = Some((loss, color.clone(), normal.clone()));
+        self.losses.push(LossPoint { moved, seconds, mean_square: loss.square / self.terms });
+        if self.best.as_ref().is_none_or(|b| loss.minimised < b.0) {
+            self.best = Some((loss.minimised, color.clone(), normal.clone()));
         }
     }
 }
@@ -134,7 +139,8 @@ pub fn fit_textures(
     let mut log =
         Log { begin: Instant::now(), terms: (3.0 * weight).max(1e-9), losses: Vec::new(), best: None };
     let display = &DisplayTable::new(&display);
-    let problem = |membrane| Problem { samples, atlas, display, membrane, effort: schedule.effort };
+    let outliers = Cauchy::new(schedule.outlier);
+    let problem = |membrane| Problem { samples, atlas, display, membrane, effort: schedule.effort, outliers };
     let color_problem = problem(schedule.color_membrane);
     let normal_problem = problem(schedule.normal_membrane);
     let final_problem = Problem { effort: schedule.final_effort, ..problem(schedule.color_membrane) };
@@ -173,13 +179,13 @@ pub fn fit_textures(
             last = Move::Normal;
             match previous {
                 // The step before made it worse: take it back and tread more carefully.
-                Some((was, ref kept)) if loss > was => {
+                Some((was, ref kept)) if loss.minimised > was => {
                     normal = kept.clone();
                     damping *= 8.0;
                 }
                 _ => {
                     damping *= 0.5;
-                    previous = Some((loss, before));
+                    previous = Some((loss.minimised, before));
                 }
             }
         }

@@ -237,6 +237,13 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long))]
     pub keep_normals: bool,
 
+    /// Length of a pixel's display difference (three channels from 0 to 1) at which it counts half in
+    /// the textures, since no texture can please it, 0.01 to 1000: less keeps surfaces clean where
+    /// views contradict each other, 1000 is plain least squares [default: 1, with parallax maps 0.5,
+    /// with --method paper 1000]
+    #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "DIFFERENCE"))]
+    pub outlier: Option<f32>,
+
     /// How far to either side of the low-poly projection looks for the high-poly, as a share of
     /// the high-poly's longest side, 0 to 1
     #[cfg_attr(
@@ -293,6 +300,7 @@ impl Default for BakeOptions {
             backdrop: Backdrop::Black,
             silhouette: None,
             keep_normals: false,
+            outlier: None,
             reach: 0.05,
             views: None,
             view_size: None,
@@ -322,6 +330,7 @@ impl BakeOptions {
         within("texture-size", self.texture_size as f64, 16.0, 8192.0)?;
         within("reach", f64::from(self.reach), 0.0, 1.0)?;
         within("silhouette", f64::from(self.silhouette.unwrap_or(0.0)), 0.0, 1.0)?;
+        within("outlier", f64::from(self.outlier.unwrap_or(1.0)), 0.01, 1000.0)?;
         within("views", self.views.unwrap_or(1) as f64, 1.0, 4096.0)?;
         within("view-size", self.view_size.unwrap_or(32) as f64, 32.0, 2048.0)?;
         within("rounds", self.rounds.unwrap_or(0) as f64, 0.0, 100.0)?;

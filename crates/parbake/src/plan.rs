@@ -144,6 +144,18 @@ impl BakeOptions {
         self.silhouette.unwrap_or(if self.cuts() { 0.0 } else { 0.5 })
     }
 
+    /// Length of a pixel's display difference at which it counts half. What contradicts itself in a
+    /// texel that is shifted is a stray pixel, and is worth little; without shifts it is most
+    /// of what views show of depth, and to count it less costs decibels.
+    fn outlier(&self) -> f32 {
+        let own = match (self.method, self.parallax) {
+            (Method::Paper, _) => 1000.0,
+            (Method::Fit, Parallax::Sh) => 0.5,
+            (Method::Fit, Parallax::None) => 1.0,
+        };
+        self.outlier.unwrap_or(own)
+    }
+
     /// What to do with texture coordinates in another mode.
     pub(crate) fn unfold_as(&self, mode: UvMode) -> UnfoldOptions {
         UnfoldOptions { mode, ..self.unfold() }
@@ -198,6 +210,7 @@ impl BakeOptions {
                 rounds,
                 normal_steps: if self.keep_normals { 0 } else { Schedule::default().normal_steps },
                 final_steps: if rounds == 0 { 0 } else { final_steps },
+                outlier: self.outlier(),
                 ..Schedule::default()
             },
         }
