@@ -17,7 +17,7 @@ use parbake_render::scene::Scene;
 use std::time::Instant;
 
 /// Here texture coordinates are all that takes time, and may take more steps than in a bake.
-const STEPS_FACTOR: usize = 3;
+const STEPS_FACTOR: usize = 8;
 
 /// Bakes a model onto itself with a smaller texture.
 ///

@@ -61,13 +61,17 @@ pub struct Solve {
     /// Weight ε of the differences of neighbours, relative to the mean weight that a
     /// texel has of samples.
     pub smoothness: f32,
+    /// Also stops once a step takes less than this from the error, as samples weigh it.
+    pub least_gain: f64,
 }
 
 impl Solve {
-    /// While texture coordinates move.
-    pub const MOVING: Self = Self { tolerance: 1e-3, steps: 30, smoothness: 1e-5 };
+    /// To see what a layout is about.
+    pub const ROUGH: Self = Self { tolerance: 1e-3, steps: 30, smoothness: 1e-5, least_gain: 0.0 };
+    /// While texture coordinates move: until an objective's own `least_gain`.
+    pub const MOVING: Self = Self { tolerance: 1e-6, steps: 300, smoothness: 1e-5, least_gain: 0.0 };
     /// For the texture that is written.
-    pub const FINAL: Self = Self { tolerance: 1e-6, steps: 100, smoothness: 1e-6 };
+    pub const FINAL: Self = Self { tolerance: 1e-6, steps: 100, smoothness: 1e-6, least_gain: 0.0 };
 }
 
 /// The best texture; begins at `start`.
@@ -198,6 +202,7 @@ impl System {
                 .map(|(p, q)| p.iter().zip(q).map(|(a, b)| *a * *b).sum())
                 .collect();
             let alpha = ratio(rho, sum(&dots));
+            let gain = f64::from((alpha * rho).element_sum());
             let dots: Vec<Vec4> = (x.par_chunks_mut(size).zip(r.par_chunks_mut(size)))
                 .enumerate()
                 .map(|(row, (x, r))| {
@@ -210,6 +215,9 @@ impl System {
                     sum
                 })
                 .collect();
+            if gain < solve.least_gain {
+                break;
+            }
             let next = sum(&dots);
             let beta = ratio(next, rho);
             p.par_iter_mut().zip(&r).zip(&self.inverse).for_each(|((p, r), m)| *p = *r * *m + *p * beta);

@@ -56,8 +56,9 @@ impl Default for DescentOptions {
 const FEASIBLE_SHARE: f64 = 0.8;
 /// First Wolfe condition: a step must bring this share of what the slope promises.
 const SUFFICIENT: f64 = 1e-4;
-/// Halvings before a direction is given up.
-const HALVINGS: usize = 14;
+/// Halvings before a direction is given up: to the rounding of coordinates, since a first step
+/// next to a nearly closed triangle may have to be that short.
+const HALVINGS: usize = 26;
 
 /// What a descent did.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -19,7 +19,7 @@ use crate::region::Feasible;
 use crate::residual::residual;
 use crate::runs::Runs;
 use crate::signal::Signal;
-use crate::variable_projection::VariableProjection;
+use crate::variable_projection::{Best, VariableProjection};
 use glam::{DMat2, DVec2, Vec4};
 use parbake_atlas::Layout;
 
@@ -43,7 +43,9 @@ pub struct UvOptions {
     pub shape_steps: usize,
     /// Steps of variable projection.
     pub refine_steps: usize,
-    /// μ: weight of the symmetric Dirichlet energy against the error.
+    /// μ: weight of the symmetric Dirichlet energy against the error. Less lets triangles close
+    /// nearly, and one of those shortens every step for all: with a thirtieth pictures gain 0.3 to
+    /// 0.6 dB less.
     pub distortion_weight: f64,
     /// Weight of the barrier between charts.
     pub contact_weight: f64,
@@ -54,9 +56,9 @@ pub struct UvOptions {
 impl Default for UvOptions {
     fn default() -> Self {
         Self {
-            shape_steps: 40,
-            refine_steps: 40,
-            distortion_weight: 1e-4,
+            shape_steps: 100,
+            refine_steps: 80,
+            distortion_weight: 3e-3,
             contact_weight: 1e-4,
             tolerance: 1e-4,
         }
@@ -90,7 +92,7 @@ impl Balance {
         };
         let first = Mapped { showings: &problem.showings[..1], ..whole };
         let start = Texture::solid(problem.texture_size, Vec4::splat(0.5));
-        let texture = best_texture(&first, start, &Solve { steps: 60, tolerance: 1e-4, ..Solve::MOVING });
+        let texture = best_texture(&first, start, &Solve { steps: 60, tolerance: 1e-4, ..Solve::ROUGH });
         let mut unused = vec![DVec2::ZERO; layout.points.len()];
         let left = residual(&whole, &texture, &mut unused);
         // A picture that fits perfectly leaves nothing to gain; 8 bits leave more than this.
@@ -156,7 +158,7 @@ pub fn tensors(problem: &Problem, layout: &Layout) -> Vec<DMat2> {
     let mapped =
         Mapped { points: &layout.points, triangles: &layout.triangles, showings: signal, runs: &runs };
     let start = Texture::solid(size, Vec4::splat(0.5));
-    let texture = best_texture(&mapped, start, &Solve { smoothness: 1e-3, ..Solve::MOVING });
+    let texture = best_texture(&mapped, start, &Solve { smoothness: 1e-3, ..Solve::ROUGH });
     structure_tensors(&mapped, &texture, problem.rest)
 }
 
@@ -219,6 +221,7 @@ pub fn refine(
         contact_weight: options.contact_weight,
         solve: Solve::MOVING,
         scale: 1.0 / balance.weights.iter().sum::<f64>(),
+        best: Best::default(),
     };
     let descent = DescentOptions {
         steps: options.refine_steps,
@@ -227,9 +230,8 @@ pub fn refine(
     };
     let points = &mut layout.points;
     let descent = descend(points, &mut objective, &region, &preconditioner, &descent, step);
-    // The texture of the last evaluation may belong to a step that was not taken.
+    let texture = objective.texture;
     let mapped = Mapped { points, ..mapped };
-    let texture = best_texture(&mapped, objective.texture, &Solve::MOVING);
     let mut unused = vec![DVec2::ZERO; points.len()];
     let left = residual(&mapped, &texture, &mut unused);
     let relative = left.iter().zip(&balance.weights).map(|(r, weight)| r.error / weight).collect();

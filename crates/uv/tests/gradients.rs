@@ -16,12 +16,12 @@ use parbake_uv::metric::{signal_specialised, structure_tensors};
 use parbake_uv::residual::residual;
 use parbake_uv::runs::Runs;
 use parbake_uv::signal::Signal;
-use parbake_uv::variable_projection::VariableProjection;
+use parbake_uv::variable_projection::{Best, VariableProjection};
 
 const SIZE: usize = 16;
 
 /// As exact as `f32` allows.
-const EXACT: Solve = Solve { tolerance: 1e-7, steps: 600, smoothness: 1e-7 };
+const EXACT: Solve = Solve { tolerance: 1e-7, steps: 600, smoothness: 1e-7, least_gain: 0.0 };
 
 /// A smooth picture that does not fit into the texture.
 fn waves(place: DVec2) -> Vec4 {
@@ -129,6 +129,7 @@ fn the_whole_objective() {
             contact_weight,
             solve: EXACT,
             scale,
+            best: Best::default(),
         };
         let mut gradient = vec![DVec2::ZERO; layout.points.len()];
         objective.evaluate(&layout.points, &mut gradient);

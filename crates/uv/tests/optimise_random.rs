@@ -15,7 +15,7 @@ use parbake_uv::optimise::{Balance, Problem, UvOptions, refine, shape, tensors};
 use parbake_uv::region::Feasible;
 use parbake_uv::runs::Runs;
 use parbake_uv::signal::Signal;
-use parbake_uv::variable_projection::VariableProjection;
+use parbake_uv::variable_projection::{Best, VariableProjection};
 use proptest::prelude::*;
 
 /// Texels a side.
@@ -116,6 +116,7 @@ proptest! {
             contact_weight: 0.0,
             solve: Solve::MOVING,
             scale: 1e6,
+            best: Best::default(),
         };
         let options =
             DescentOptions { steps: STEPS, longest_move: 1e6, tolerance: 0.0, ..DescentOptions::default() };

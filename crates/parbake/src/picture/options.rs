@@ -32,7 +32,7 @@ pub struct ImageOptions {
     pub no_content_aware: bool,
 
     /// Steps that texture coordinates take on each of the grids, coarse to fine, or with
-    /// --method paper on the one it has, 0 to 10000 [default: 40, with --method paper 800]
+    /// --method paper on the one it has, 0 to 10000 [default: 80, with --method paper 800]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
     pub steps: Option<usize>,
 
@@ -59,7 +59,7 @@ impl ImageOptions {
     /// Steps as asked, or those of the method.
     pub fn settled_steps(&self) -> usize {
         self.steps.unwrap_or(match self.method {
-            Method::Fit => 40,
+            Method::Fit => 80,
             Method::Paper => PaperOptions::default().rounds,
         })
     }

@@ -216,8 +216,7 @@ fn contact(asked: &UnfoldOptions, activation_texels: f64) -> ContactOptions {
 /// sizes at once where `all_sizes` says so, else for the full one.
 fn errors(problem: &Problem, layout: &Layout, all_sizes: bool) -> Vec<f64> {
     let solved = if all_sizes { problem.showings } else { &problem.showings[..1] };
-    let texture =
-        surface_texture(layout, solved, problem.texture_size, &Solve { steps: 40, ..Solve::MOVING });
+    let texture = surface_texture(layout, solved, problem.texture_size, &Solve { steps: 40, ..Solve::ROUGH });
     shown_errors(&mapped(layout, problem.showings, &runs(layout, problem.showings)), &texture)
 }
 
