@@ -49,6 +49,8 @@ pub struct UvOptions {
     pub distortion_weight: f64,
     /// Weight of the barrier between charts.
     pub contact_weight: f64,
+    /// How exactly refinement solves for textures, at most.
+    pub solve: Solve,
     /// A refinement ends when three steps in a row each gain less than this share.
     pub tolerance: f64,
 }
@@ -60,6 +62,7 @@ impl Default for UvOptions {
             refine_steps: 80,
             distortion_weight: 3e-3,
             contact_weight: 1e-4,
+            solve: Solve::MOVING,
             tolerance: 1e-4,
         }
     }
@@ -219,7 +222,7 @@ pub fn refine(
         distortion_weight: options.distortion_weight,
         contact: Some(region.contact()),
         contact_weight: options.contact_weight,
-        solve: Solve::MOVING,
+        solve: options.solve,
         scale: 1.0 / balance.weights.iter().sum::<f64>(),
         best: Best::default(),
     };

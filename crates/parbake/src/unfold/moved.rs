@@ -13,6 +13,7 @@ use crate::message::{Message, Stage, Watcher};
 use parbake_atlas::{ChartScale, Layout, PackOptions, pack};
 use parbake_model::Mesh;
 use parbake_model::glam::{DMat2, DVec2};
+use parbake_uv::best_texture::Solve;
 use parbake_uv::metric::chart_scales;
 use parbake_uv::optimise::{Balance, Problem, UvOptions, refine, shape, tensors};
 
@@ -78,8 +79,9 @@ pub fn moved(
         layout = before;
     }
     // A bake's last thousandths lie in parallax and outlines, not in coordinates.
-    let tolerance = if all_sizes { options.tolerance } else { 1e-3 };
-    let turn = UvOptions { refine_steps: options.refine_steps.div_ceil(TURNS), tolerance, ..*options };
+    let (tolerance, solve) =
+        if all_sizes { (options.tolerance, options.solve) } else { (1e-3, Solve::ROUGH) };
+    let turn = UvOptions { refine_steps: options.refine_steps.div_ceil(TURNS), tolerance, solve, ..*options };
     let mut texture = texture;
     let mut best: Option<(f64, Layout, Vec<f64>)> = None;
     for _ in 0..TURNS {
