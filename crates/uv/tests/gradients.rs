@@ -12,6 +12,7 @@ use parbake_atlas::Layout;
 use parbake_uv::best_texture::{Mapped, Solve, Texture, best_texture};
 use parbake_uv::contact::{Contact, ContactOptions};
 use parbake_uv::descent::Objective;
+use parbake_uv::distortion::Distortion;
 use parbake_uv::metric::{signal_specialised, structure_tensors};
 use parbake_uv::residual::residual;
 use parbake_uv::runs::Runs;
@@ -137,4 +138,36 @@ fn the_whole_objective() {
         let mut unused = gradient.clone();
         compare(&layout.points, &gradient, tolerance, |points| objective.evaluate(points, &mut unused));
     }
+}
+
+/// Protects line searches: after a look at a place that is much worse, a short step down the
+/// gradient still looks better than the place it starts from, though textures are not exact.
+#[test]
+fn a_short_step_looks_better_after_a_bad_one() {
+    let (layout, showings) = scene();
+    let runs = Runs::new(&layout.points, &layout.triangles, &showings[0]);
+    let mapped =
+        Mapped { points: &layout.points, triangles: &layout.triangles, showings: &showings, runs: &runs };
+    let distortion = Distortion::symmetric_dirichlet(&layout.rest, 1.0, |_| 1.0);
+    let mut objective = VariableProjection {
+        mapped,
+        texture: Texture::solid(SIZE, Vec4::splat(0.5)),
+        distortion: &distortion,
+        distortion_weight: 1e-4,
+        contact: None,
+        contact_weight: 0.0,
+        solve: Solve::MOVING,
+        scale: 1.0,
+        best: Best::default(),
+    };
+    let mut gradient = vec![DVec2::ZERO; layout.points.len()];
+    let start = objective.evaluate(&layout.points, &mut gradient);
+    let longest = gradient.iter().map(|g| g.length()).fold(0.0, f64::max);
+    let mut unused = gradient.clone();
+    let mut at = |length: f64| {
+        let moved = layout.points.iter().zip(&gradient).map(|(p, g)| *p - *g * (length / longest));
+        objective.evaluate(&moved.collect::<Vec<_>>(), &mut unused)
+    };
+    let (far, near) = (at(-0.05), at(1e-6));
+    assert!(far > start && near < start, "{far} {start} {near}");
 }
