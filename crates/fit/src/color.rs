@@ -39,17 +39,17 @@ pub struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// Compares the light at a sample with what it wants: the answer, how much it counts in a
-    /// step of least squares, and its part of the loss.
+    /// Compares the light at a sample with what it wants: the answer, how much each channel of it
+    /// counts in a step of least squares, and its part of the loss.
     #[inline]
-    pub fn respond(&self, light: Vec4, sample: &Sample) -> (Response, f32, Loss) {
+    pub fn respond(&self, light: Vec4, sample: &Sample) -> (Response, Vec4, Loss) {
         let response = respond(self.display, light, sample.target());
-        let (square, weight) = (response.residual.length_squared(), sample.weight());
+        let ((judged, weights), weight) = (self.outliers.judge(response.residual), sample.weight());
         let loss = Loss {
-            minimised: f64::from(self.outliers.loss(square) * weight),
-            square: f64::from(square * weight),
+            minimised: f64::from(judged * weight),
+            square: f64::from(response.residual.length_squared() * weight),
         };
-        (response, self.outliers.weight(square) * weight, loss)
+        (response, weights * weight, loss)
     }
 }
 
@@ -134,11 +134,11 @@ pub fn color_step(
             for s in &problem.samples.bands[band] {
                 let (texels, w) = footprint(s, size);
                 let k = cosine(&s.light(), normal.fetch(texels, w).truncate()).max(0.0);
-                let (response, weight, share) = problem.respond(color.fetch(texels, w) * k, s);
+                let (response, weights, share) = problem.respond(color.fetch(texels, w) * k, s);
                 loss += share;
                 let j = response.slope * k;
-                let right = j * response.residual * -weight;
-                add_diagonal(local, local_places(texels, first, size), w, j * j * weight, right);
+                let right = j * response.residual * -weights;
+                add_diagonal(local, local_places(texels, first, size), w, j * j * weights, right);
             }
             loss
         },

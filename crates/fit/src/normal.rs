@@ -45,11 +45,11 @@ pub fn normal_step(
                 let (texels, w) = footprint(s, size);
                 let albedo = color.fetch(texels, w);
                 let (k, per_normal) = cosine_with_derivative(&s.light(), normal.fetch(texels, w).truncate());
-                let (response, weight, share) = problem.respond(albedo * k.max(0.0), s);
+                let (response, weights, share) = problem.respond(albedo * k.max(0.0), s);
                 loss += share;
                 let j = response.slope * albedo;
-                let curvature = j.length_squared() * weight;
-                let pull = -j.dot(response.residual) * weight;
+                let curvature = j.dot(j * weights);
+                let pull = -j.dot(response.residual * weights);
                 if k <= 0.0 && pull <= 0.0 {
                     continue;
                 }

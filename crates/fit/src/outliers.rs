@@ -2,13 +2,17 @@
 //! not, because depth, an outline or another part of the model got in between.
 //!
 //! Least squares bend a texel halfway towards them, and surfaces look mottled. Cauchy's loss
-//! `ρ(r²) = s² ln(1 + r² / s²)`, r the length of a pixel's three display differences, is the
-//! square for small differences and grows slower and slower beyond the scale s. It is minimised
-//! by least squares with weights `ρ' = 1 / (1 + r² / s²)` that follow the differences from step
-//! to step (Holland and Welsch 1977).
+//! `ρ(r²) = s² ln(1 + r² / s²)` is the square for small differences and grows slower and slower
+//! beyond the scale s. It is minimised by least squares with weights `ρ' = 1 / (1 + r² / s²)` that
+//! follow the differences from step to step (Holland and Welsch 1977).
+//!
+//! Of a pixel's three display differences those that are too bright make up one r, those that are
+//! too dark another, whose scale is twice as large: one dark speck on a bright surface disturbs
+//! more than a bright one, so a texel goes dark for a majority only.
 //!
 //! Contract: an infinite scale is plain least squares, to the bit.
 
+use parbake_model::glam::Vec4;
 use std::iter::Sum;
 use std::ops::AddAssign;
 
@@ -19,24 +23,34 @@ pub struct Cauchy {
 }
 
 impl Cauchy {
-    /// Where a difference of `scale` counts half, as display values, more than 0; infinity for squares.
+    /// Where a difference of `scale` too much counts half, as display values, more than 0; infinity
+    /// for squares.
     pub fn new(scale: f32) -> Self {
         Self { inverse_square: 1.0 / (scale * scale) }
     }
 
-    /// The weight of a pixel whose differences have this squared length.
+    /// The loss of a pixel that shows this much more than it should, and each channel's weight.
     #[inline]
-    pub fn weight(&self, square: f32) -> f32 {
+    pub fn judge(&self, residual: Vec4) -> (f32, Vec4) {
+        let bright = residual.max(Vec4::ZERO).length_squared();
+        let dark = residual.min(Vec4::ZERO).length_squared();
+        let weights = [bright, DARK * dark].map(|square| Vec4::splat(self.weight(square)));
+        let loss = self.loss(bright) + self.loss(DARK * dark) * (1.0 / DARK);
+        (loss, Vec4::select(residual.cmpgt(Vec4::ZERO), weights[0], weights[1]))
+    }
+
+    fn weight(&self, square: f32) -> f32 {
         1.0 / (1.0 + square * self.inverse_square)
     }
 
-    /// The loss of such a pixel.
-    #[inline]
-    pub fn loss(&self, square: f32) -> f32 {
+    fn loss(&self, square: f32) -> f32 {
         let ratio = square * self.inverse_square;
         if ratio > 0.0 { square * (ratio.ln_1p() / ratio) } else { square }
     }
 }
+
+/// 1 / 2²: what is too dark has twice the scale.
+const DARK: f32 = 0.25;
 
 /// What differences sum up to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -71,19 +85,34 @@ mod tests {
     #[test]
     fn weights_are_the_losss_derivative() {
         let cauchy = Cauchy::new(0.5);
-        for square in [1e-4_f32, 0.01, 0.25, 1.0, 3.0] {
-            let step = 1e-2 * square;
-            let slope = (cauchy.loss(square + step) - cauchy.loss(square - step)) / (2.0 * step);
-            assert!((slope - cauchy.weight(square)).abs() < 1e-3, "{square}: {slope}");
+        let residual = Vec4::new(0.4, -0.7, 0.2, 0.0);
+        let (_, weights) = cauchy.judge(residual);
+        for lane in 0..3 {
+            let at = |step: f32| {
+                let mut moved = residual;
+                moved[lane] += step;
+                cauchy.judge(moved).0
+            };
+            let slope = (at(1e-2) - at(-1e-2)) / 2e-2;
+            let wanted = 2.0 * weights[lane] * residual[lane];
+            assert!((slope - wanted).abs() < 1e-3, "{lane}: {slope} {wanted}");
         }
+    }
+
+    /// Protects from dark specks: what is too dark keeps its weight for longer.
+    #[test]
+    fn too_dark_counts_more_than_too_bright() {
+        let weight = |x: f32| Cauchy::new(0.5).judge(Vec4::new(x, 0.0, 0.0, 0.0)).1.x;
+        assert!((weight(0.5) - 0.5).abs() < 1e-6 && (weight(-1.0) - 0.5).abs() < 1e-6);
     }
 
     /// Protects plain least squares where they are asked for.
     #[test]
     fn an_infinite_scale_is_the_square() {
         let plain = Cauchy::new(f32::INFINITY);
-        for square in [0.0, 1e-6, 0.3, 3.0] {
-            assert_eq!((plain.loss(square), plain.weight(square)), (square, 1.0));
+        for x in [0.0, 1e-3, -0.5, 1.0] {
+            let (loss, weights) = plain.judge(Vec4::new(x, 0.0, 0.0, 0.0));
+            assert_eq!((loss, weights), (x * x, Vec4::ONE));
         }
     }
 }

@@ -44,7 +44,8 @@ pub struct Schedule {
     pub normal_membrane: Membrane,
     /// First damping of the normals, a share of the samples' mean pull.
     pub damping: f32,
-    /// Length of a pixel's display differences at which it counts half ([`Cauchy`]), more than 0;
+    /// Length of a pixel's display differences at which it counts half where it is too bright
+    /// ([`Cauchy`]), more than 0;
     /// infinity for least squares.
     pub outlier: f32,
 }

@@ -238,7 +238,7 @@ pub struct BakeOptions {
     pub keep_normals: bool,
 
     /// Length of a pixel's display difference (three channels from 0 to 1) at which it counts half in
-    /// the textures, since no texture can please it, 0.01 to 1000: less keeps surfaces clean where
+    /// the textures, since no texture can please it, twice that where it is too dark, 0.01 to 1000: less keeps surfaces clean where
     /// views contradict each other, 1000 is plain least squares [default: 1, with parallax maps 0.5,
     /// with --method paper 1000]
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "DIFFERENCE"))]
