@@ -29,7 +29,8 @@ impl Cauchy {
         Self { inverse_square: 1.0 / (scale * scale) }
     }
 
-    /// The loss of a pixel that shows this much more than it should, and each channel's weight.
+    /// The loss of a pixel whose display values are this much higher than wanted, three channels in
+    /// -1 … 1 and a zero, and each channel's weight, 0 … 1.
     #[inline]
     pub fn judge(&self, residual: Vec4) -> (f32, Vec4) {
         let bright = residual.max(Vec4::ZERO).length_squared();

@@ -3,7 +3,8 @@
 //! those, so that rounding costs as little as it can.
 //!
 //! Every step first measures the loss of the state that it found; the best state is
-//! kept, so a run that is stopped, or a step that goes wrong, never ends worse.
+//! kept, so a run that is stopped, or a step that goes wrong, never ends worse. Best is by
+//! the loss that is minimised (`outliers.rs`); plain squares are what is reported.
 
 use crate::atlas::{Atlas, NO_CHART};
 use crate::canvas::{Canvas, block};
@@ -45,8 +46,7 @@ pub struct Schedule {
     /// First damping of the normals, a share of the samples' mean pull.
     pub damping: f32,
     /// Length of a pixel's display differences at which it counts half where it is too bright
-    /// ([`Cauchy`]), more than 0;
-    /// infinity for least squares.
+    /// ([`Cauchy`]), more than 0; infinity for least squares.
     pub outlier: f32,
 }
 

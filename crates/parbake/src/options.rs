@@ -238,9 +238,9 @@ pub struct BakeOptions {
     pub keep_normals: bool,
 
     /// Length of a pixel's display difference (three channels from 0 to 1) at which it counts half in
-    /// the textures, since no texture can please it, twice that where it is too dark, 0.01 to 1000: less keeps surfaces clean where
-    /// views contradict each other, 1000 is plain least squares [default: 1, with parallax maps 0.5,
-    /// with --method paper 1000]
+    /// the textures, since no texture can please it, 0.01 to 1000; twice as much where it is too dark.
+    /// Less keeps surfaces clean where views contradict each other, 1000 is as good as plain least
+    /// squares [default: 1, with parallax maps 0.5, with --method paper 1000]
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "DIFFERENCE"))]
     pub outlier: Option<f32>,
 
@@ -372,5 +372,17 @@ mod tests {
         assert_eq!(options.unfold().steps, 7);
         let picture = crate::ImageOptions { no_content_aware: true, ..crate::ImageOptions::default() };
         assert!(picture.check().is_err());
+    }
+
+    /// Protects the paper's method from our loss, and what a user asks for from defaults.
+    #[test]
+    fn outliers_count_as_the_method_says() {
+        let scale = |options: BakeOptions| options.plan().schedule.outlier;
+        let own = BakeOptions::default;
+        assert_eq!(scale(own()), 1.0);
+        assert_eq!(scale(BakeOptions { parallax: Parallax::Sh, ..own() }), 0.5);
+        assert_eq!(scale(BakeOptions { parallax: Parallax::Sh, method: Method::Paper, ..own() }), 1000.0);
+        assert_eq!(scale(BakeOptions { parallax: Parallax::Sh, outlier: Some(0.2), ..own() }), 0.2);
+        assert!(BakeOptions { outlier: Some(0.0), ..own() }.check().is_err());
     }
 }
