@@ -100,7 +100,7 @@ pub fn bake_image(
             // What was moved for fewer samples is judged by all of them.
             .and_then(|found| best_share(&start, found, &all, &kept_errors)),
         Method::Paper if moving => {
-            let layout = paper::moved(&picture, options, &contact, &mut moves, watcher);
+            let layout = paper::moved(&picture, options, &mut moves, watcher);
             let texture = written_texture(&layout, &all[..1], kept_texture.clone());
             Some((layout, texture))
         }

@@ -1,11 +1,12 @@
-//! The paper's method on a picture: one grid, from the identity, for the full size alone
-//! (`parbake_uv::paper`).
+//! The paper's method on a picture: one grid, for the full size alone (`parbake_uv::paper`).
 //!
-//! The picture is halved until its shorter side is at most 512 pixels, the size of the
-//! paper's pictures. The energy's scale is s = texels / pixels along a side: triangles with
-//! errors want as many texels as they have pixels. The sides of the square slide and there
-//! is one chart, whose triangles stay upright: no barrier is needed. The paper has 50 cells
-//! along a side.
+//! As in section 4.4 the plane begins as the box [0.01, 0.99]² of the texture, and a barrier
+//! five texels wide (section 4.5) keeps it from the texture's border. The energy's scale is s² =
+//! texels / pixels of the whole texture and of the whole picture: triangles with errors want as many
+//! texels as they have pixels, which is how we read section 4.5's “the same number of texels”. Without the
+//! content-aware term s says how stiff distortion makes the plane, so both readings matter
+//! to Table 3 (docs/figures.md). Samples are those of the picture halved until its shorter side is
+//! at most 512 pixels. The paper has 50 cells along a side.
 //!
 //! Contract: the best round's layout, which is sound; it is returned even where it shows
 //! the picture worse than it was.
@@ -19,13 +20,15 @@ use crate::picture::ImageOptions;
 use parbake_atlas::Layout;
 use parbake_model::glam::Vec2;
 use parbake_uv::best_texture::Mapped;
-use parbake_uv::contact::ContactOptions;
+use parbake_uv::contact::{Border, ContactOptions};
 use parbake_uv::paper::{PaperOptions, paper_method};
 use parbake_uv::region::Feasible;
 use parbake_uv::runs::Runs;
 
 /// Longest shorter side of the picture that samples are taken from.
 const SIDE: usize = 512;
+/// The box in which the plane begins, from and to, along both axes.
+const BOX: [f64; 2] = [0.01, 0.99];
 /// λ_uv for pictures on a plane.
 const DISTORTION_WEIGHT: f64 = 1e-5;
 
@@ -33,19 +36,16 @@ const DISTORTION_WEIGHT: f64 = 1e-5;
 const FRAME_ROUNDS: usize = 10;
 
 /// The moved layout of the grid asked for.
-pub fn moved(
-    picture: &Picture,
-    options: &ImageOptions,
-    contact: &ContactOptions,
-    moves: &mut Moves,
-    watcher: &impl Watcher,
-) -> Layout {
+pub fn moved(picture: &Picture, options: &ImageOptions, moves: &mut Moves, watcher: &impl Watcher) -> Layout {
+    let own = paper_options(picture, options);
     let mut picture = picture.clone();
     while picture.width.min(picture.height) > SIDE {
         picture = picture.halved();
     }
     let plane = Plane { cells: options.grid };
-    let mut layout = plane.layout(as_f64(&plane.points()));
+    let [from, to] = BOX;
+    let points = as_f64(&plane.points()).into_iter().map(|p| (p * (to - from) + from).as_vec2().as_dvec2());
+    let mut layout = plane.layout(points.collect());
     let showings = showings(&picture, plane, usize::MAX);
     let runs = Runs::new(&layout.points, &layout.triangles, &showings[0]);
     let mapped = Mapped {
@@ -54,16 +54,10 @@ pub fn moved(
         showings: &showings[..1],
         runs: &runs,
     };
-    let own = PaperOptions {
-        rounds: options.settled_steps(),
-        guide: Method::guide(options.no_content_aware),
-        distortion_weight: DISTORTION_WEIGHT,
-        scale: options.texture_size as f64 / picture.width.min(picture.height) as f64,
-        ..PaperOptions::default()
-    };
-    let region = Feasible::new(&layout, contact);
+    let region = Feasible::new(&layout, &contact(options, own.contact_texels));
     let total = own.rounds;
-    let found = paper_method(&mapped, &plane.rest(), options.texture_size, &region, None, &own, |progress| {
+    let (size, barrier) = (options.texture_size, Some(region.contact()));
+    let found = paper_method(&mapped, &plane.rest(), size, &region, barrier, &own, |progress| {
         if progress.round == 1 || progress.round.is_multiple_of(FRAME_ROUNDS) {
             moves.frames.push(progress.points.iter().map(|p| p.as_vec2()).collect::<Vec<Vec2>>());
         }
@@ -77,19 +71,42 @@ pub fn moved(
     layout
 }
 
+fn paper_options(picture: &Picture, options: &ImageOptions) -> PaperOptions {
+    let pixels = (picture.width * picture.height) as f64;
+    PaperOptions {
+        rounds: options.settled_steps(),
+        guide: Method::guide(options.no_content_aware),
+        distortion_weight: DISTORTION_WEIGHT,
+        scale: options.texture_size as f64 / pixels.sqrt(),
+        ..PaperOptions::default()
+    }
+}
+
+/// One chart that its barrier alone keeps from the border.
+fn contact(options: &ImageOptions, activation_texels: f64) -> ContactOptions {
+    ContactOptions {
+        texture_size: options.texture_size as u32,
+        gutter_texels: 0.0,
+        activation_texels,
+        border: Border::Margin { margin_texels: 0.0 },
+        ..ContactOptions::default()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use crate::options::Method;
     use crate::picture::{ImageOptions, bake_image};
     use parbake_model::Image;
+    use parbake_model::glam::Vec2;
 
     /// A picture with all its detail in one corner.
     fn picture() -> Image {
-        let side = 48;
+        let side = 192;
         let pixels = (0..side * side)
             .map(|i| {
                 let (x, y) = (i % side, i / side);
-                let value = if x < 16 && y < 16 { 60 + 140 * ((x / 2 + y / 2) % 2) } else { 2 * x + y };
+                let value = if x < 64 && y < 64 { 60 + 140 * ((x / 2 + y / 2) % 2) } else { (2 * x + y) / 4 };
                 [value as u8, value as u8, 90, 255]
             })
             .collect();
@@ -102,11 +119,11 @@ mod tests {
     fn coordinates_move_and_stay_sound() {
         let run = |no_content_aware| {
             let options = ImageOptions {
-                texture_size: 16,
+                texture_size: 64,
                 grid: 8,
                 method: Method::Paper,
                 no_content_aware,
-                steps: Some(20),
+                steps: Some(60),
                 ..ImageOptions::default()
             };
             bake_image(&picture(), &options, &()).expect("options are in range")
@@ -115,8 +132,17 @@ mod tests {
         for baked in [&with, &without] {
             assert!(baked.report.uv.is_bijective());
             assert!(!baked.report.left_as_is);
-            assert_eq!(baked.report.steps, 20);
-            assert!(baked.report.written[0] > baked.report.kept[0], "{:?}", baked.report.written);
+            // Off the border, which its barrier repels.
+            let uvs = &baked.model.mesh.uvs;
+            let gap = |p: &Vec2| p.min_element().min(1.0 - p.max_element());
+            assert!(uvs.iter().all(|p| gap(p) > 0.0), "{:?}", uvs.iter().map(gap).reduce(f32::min));
+            assert_eq!(baked.report.steps, 60);
+            assert!(
+                baked.report.written[0] > baked.report.kept[0],
+                "{:?} {:?}",
+                baked.report.kept,
+                baked.report.written
+            );
         }
         assert_ne!(with.model.mesh.uvs, without.model.mesh.uvs);
     }
