@@ -36,7 +36,8 @@ pub trait Region {
 pub struct DescentOptions {
     /// At most so many steps.
     pub steps: usize,
-    /// Pairs of changes that L-BFGS remembers.
+    /// Pairs of changes that L-BFGS remembers; none for Newton's method, whose preconditioner knows
+    /// the curvature.
     pub memory: usize,
     /// Ends once a step improves the value by less than this share…
     pub tolerance: f64,
@@ -44,11 +45,13 @@ pub struct DescentOptions {
     pub patience: usize,
     /// No point moves farther than this in a step, in units of the square.
     pub longest_move: f64,
+    /// Steps after which the preconditioner is made anew where the descent is; 0 keeps the first.
+    pub renewal: usize,
 }
 
 impl Default for DescentOptions {
     fn default() -> Self {
-        Self { steps: 60, memory: 8, tolerance: 1e-4, patience: 3, longest_move: 0.1 }
+        Self { steps: 60, memory: 8, tolerance: 1e-4, patience: 3, longest_move: 0.1, renewal: 0 }
     }
 }
 
@@ -69,13 +72,13 @@ pub struct Descent {
     pub evaluations: usize,
 }
 
-/// Descends from `points`. `step` sees every accepted layout and its value, and may end
+/// Descends from `points`; `preconditioner` makes one for a layout. `step` sees every accepted layout and its value, and may end
 /// the descent by returning false.
-pub fn descend(
+pub fn descend<P: Preconditioner>(
     points: &mut Vec<DVec2>,
     objective: &mut impl Objective,
     region: &impl Region,
-    preconditioner: &impl Preconditioner,
+    preconditioner: impl Fn(&[DVec2]) -> P,
     options: &DescentOptions,
     mut step: impl FnMut(&[DVec2], f64) -> bool,
 ) -> Descent {
@@ -83,9 +86,13 @@ pub fn descend(
     let mut memory = Lbfgs::new(options.memory);
     let mut values = vec![place.value];
     let mut idle = 0;
-    for _ in 0..options.steps {
+    let mut current = preconditioner(&place.points);
+    for done in 0..options.steps {
+        if options.renewal > 0 && done > 0 && done % options.renewal == 0 {
+            current = preconditioner(&place.points);
+        }
         let before = place.value;
-        match place.step(&mut memory, objective, region, preconditioner, options.longest_move) {
+        match place.step(&mut memory, objective, region, &current, options.longest_move) {
             Step::Stuck => break,
             Step::Forgot => continue,
             Step::Moved => values.push(place.value),

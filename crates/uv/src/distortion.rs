@@ -58,6 +58,24 @@ impl Element {
             j * (2.0 * self.growth) + slope * squared - cofactor * (2.0 * stretch * squared / determinant);
         (value, by_j * self.rest_inverse.transpose() * self.area)
     }
+
+    /// The energy's Hessian for the two edges, by pairs of them, made positive definite
+    /// (`curvature.rs`); zero where the triangle has no say or no area left.
+    pub fn curvature(&self, edges: DMat2) -> [[DMat2; 2]; 2] {
+        if self.area == 0.0 || edges.determinant() <= 0.0 {
+            return [[DMat2::ZERO; 2]; 2];
+        }
+        let (inverse, rest) = (edges.inverse(), self.rest_inverse);
+        let by_rest = (edges * rest).inverse();
+        let shrinking = by_rest.transpose() * self.shrinking * by_rest * (6.0 * self.area);
+        let growing = 2.0 * self.area * self.growth;
+        let (now, start) = (inverse * inverse.transpose(), rest * rest.transpose());
+        [0, 1].map(|i| {
+            [0, 1].map(|j| {
+                shrinking * now.col(j)[i] + DMat2::from_diagonal(DVec2::splat(growing * start.col(j)[i]))
+            })
+        })
+    }
 }
 
 /// Sum of the products of entries.

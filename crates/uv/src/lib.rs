@@ -7,13 +7,15 @@
 //! residual, shown                     what it leaves: as minimised, and as seen
 //! distortion, metric                  energies of triangles; the signal's structure tensors
 //! contact, inversion, region          what keeps a layout bijective
-//! laplacian, lbfgs, descent           feasible descent
+//! laplacian, curvature                how a step is scaled
+//! lbfgs, descent                      feasible descent
 //! variable_projection, optimise       the default method
 //! paper                               the paper's method
 //! ```
 
 pub mod best_texture;
 pub mod contact;
+pub mod curvature;
 pub mod descent;
 pub mod distortion;
 pub mod footprint;

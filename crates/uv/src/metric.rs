@@ -53,15 +53,13 @@ fn tensor_in_texture(mapped: &Mapped, texture: &Texture, t: usize) -> DMat2 {
 /// How strongly the start follows the signal's direction, from 0 to 1: above, the other
 /// direction would be squeezed to nothing.
 const ANISOTROPY: f64 = 0.95;
-/// What a triangle weighs that shows no signal at all, relative to the mean.
-const FLAT: f64 = 1e-3;
 /// Weight of growth, relative to that of shrinking; without any the start has no minimum.
 const GROWTH: f64 = 0.002;
 
 /// The energy of the signal-specialised start: triangles grow with their signal,
-/// `M = (w + FLAT) ((1 − a) I + 2 a S / tr S)`, `w = tr S` relative to its mean by area,
-/// `α = GROWTH · w + FLAT`. Rest shapes are taken with a total area of 1.
-pub fn signal_specialised(tensors: &[DMat2], rest: &[DMat2]) -> Distortion {
+/// `M = (w + flat) ((1 − a) I + 2 a S / tr S)`, `w = tr S` relative to its mean by area,
+/// `α = GROWTH · w + flat`. Rest shapes are taken with a total area of 1.
+pub fn signal_specialised(tensors: &[DMat2], rest: &[DMat2], flat: f64) -> Distortion {
     let total = total_area(rest);
     let trace = |m: &DMat2| m.x_axis.x + m.y_axis.y;
     let mean = rest.iter().zip(tensors).map(|(r, m)| 0.5 * r.determinant() * trace(m)).sum::<f64>() / total;
@@ -73,7 +71,7 @@ pub fn signal_specialised(tensors: &[DMat2], rest: &[DMat2]) -> Distortion {
             let weight = if mean > 0.0 { own / mean } else { 1.0 };
             let direction = if own > 0.0 { *tensor * (1.0 / own) } else { DMat2::IDENTITY * 0.5 };
             let shape = DMat2::IDENTITY * (1.0 - ANISOTROPY) + direction * (2.0 * ANISOTROPY);
-            Element::new(*rest * (1.0 / total.sqrt()), 1.0, GROWTH * weight + FLAT, shape * (weight + FLAT))
+            Element::new(*rest * (1.0 / total.sqrt()), 1.0, GROWTH * weight + flat, shape * (weight + flat))
         })
         .collect();
     Distortion { elements }

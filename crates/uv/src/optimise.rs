@@ -3,7 +3,7 @@
 //! 1. [`Balance::new`]: what the start's coordinates leave with their best texture, for each
 //!    size at which the surface is shown.
 //! 2. [`shape`]: the signal-specialised start (`metric.rs`): triangles grow with their
-//!    signal, along its direction. No texture is solved for.
+//!    signal, along its direction, and charts into what is free. No texture is solved for.
 //! 3. [`refine`]: variable projection (`variable_projection.rs`): what the best texture
 //!    leaves is reduced itself.
 //!
@@ -11,7 +11,8 @@
 
 use crate::best_texture::{Mapped, Solve, Texture, best_texture};
 use crate::contact::ContactOptions;
-use crate::descent::{Descent, DescentOptions, Objective, descend};
+use crate::curvature::Curvature;
+use crate::descent::{Descent, DescentOptions, Objective, Region, descend};
 use crate::distortion::{Distortion, total_area};
 use crate::laplacian::Laplacian;
 use crate::metric::{signal_specialised, structure_tensors};
@@ -41,6 +42,12 @@ pub struct Problem<'a> {
 pub struct UvOptions {
     /// Steps of the signal-specialised start.
     pub shape_steps: usize,
+    /// How they are taken.
+    pub shape_by: ShapeBy,
+    /// What a triangle weighs in the start that shows no signal at all, relative to the mean. More
+    /// keeps plain regions larger and rounder, which their looks from afar ask for: trilinear fetches
+    /// blur what is drawn out.
+    pub flat: f64,
     /// Steps of variable projection.
     pub refine_steps: usize,
     /// μ: weight of the symmetric Dirichlet energy against the error. Less lets triangles close
@@ -55,10 +62,23 @@ pub struct UvOptions {
     pub tolerance: f64,
 }
 
+/// How the start takes its steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShapeBy {
+    /// Newton's: charts push each other out of the way until nearly all of the square is used
+    /// (lemon at 512²: 96 % instead of 71 %).
+    Newton,
+    /// L-BFGS, as far as it comes: for a picture that fills the square anyway, where nothing is
+    /// pushed, it takes a tenth of the time and refinement ends up to 0.2 dB better.
+    QuasiNewton,
+}
+
 impl Default for UvOptions {
     fn default() -> Self {
         Self {
             shape_steps: 100,
+            shape_by: ShapeBy::Newton,
+            flat: 0.1,
             refine_steps: 80,
             distortion_weight: 3e-3,
             contact_weight: 1e-4,
@@ -130,7 +150,7 @@ impl Balance {
 
 /// The distortion alone, with the barrier.
 struct Shaping<'a> {
-    distortion: Distortion,
+    distortion: &'a Distortion,
     triangles: &'a [[u32; 3]],
     region: &'a Feasible,
     contact_weight: f64,
@@ -174,15 +194,24 @@ pub fn shape(
     step: impl FnMut(&[DVec2], f64) -> bool,
 ) -> Descent {
     let region = Feasible::new(layout, problem.contact);
-    let preconditioner = Laplacian::new(layout.points.len(), &layout.triangles, 0.01);
-    let mut objective = Shaping {
-        distortion: signal_specialised(tensors, problem.rest),
-        triangles: &layout.triangles,
-        region: &region,
-        contact_weight: options.contact_weight,
-    };
-    let descent = DescentOptions { steps: options.shape_steps, ..DescentOptions::default() };
-    descend(&mut layout.points, &mut objective, &region, &preconditioner, &descent, step)
+    let distortion = signal_specialised(tensors, problem.rest, options.flat);
+    let triangles = &layout.triangles;
+    let contact_weight = options.contact_weight;
+    let mut objective = Shaping { distortion: &distortion, triangles, region: &region, contact_weight };
+    let quasi = DescentOptions { steps: options.shape_steps, ..DescentOptions::default() };
+    let points = &mut layout.points;
+    match options.shape_by {
+        ShapeBy::Newton => {
+            let newton = DescentOptions { memory: 0, renewal: 1, ..quasi };
+            let contact = (region.contact(), contact_weight);
+            let curvature = |at: &[DVec2]| Curvature::new(&distortion, triangles, contact, at, region.free());
+            descend(points, &mut objective, &region, curvature, &newton, step)
+        }
+        ShapeBy::QuasiNewton => {
+            let laplacian = |at: &[DVec2]| Laplacian::new(at.len(), triangles, 0.01);
+            descend(points, &mut objective, &region, laplacian, &quasi, step)
+        }
+    }
 }
 
 /// What a refinement found.
@@ -207,7 +236,6 @@ pub fn refine(
     step: impl FnMut(&[DVec2], f64) -> bool,
 ) -> Refined {
     let region = Feasible::new(layout, problem.contact);
-    let preconditioner = Laplacian::new(layout.points.len(), &layout.triangles, 0.05);
     // No distortion is a copy of the rest shapes at the layout's mean scale.
     let scale = (total_area(problem.rest) / layout_area(layout)).sqrt();
     let distortion = Distortion::symmetric_dirichlet(problem.rest, scale, |_| 1.0);
@@ -232,7 +260,8 @@ pub fn refine(
         ..DescentOptions::default()
     };
     let points = &mut layout.points;
-    let descent = descend(points, &mut objective, &region, &preconditioner, &descent, step);
+    let laplacian = |at: &[DVec2]| Laplacian::new(at.len(), &layout.triangles, 0.05);
+    let descent = descend(points, &mut objective, &region, laplacian, &descent, step);
     let texture = objective.texture;
     let mapped = Mapped { points, ..mapped };
     let mut unused = vec![DVec2::ZERO; points.len()];

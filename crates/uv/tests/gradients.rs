@@ -114,7 +114,8 @@ fn the_whole_objective() {
     let mapped =
         Mapped { points: &layout.points, triangles: &layout.triangles, showings: &showings, runs: &runs };
     let start = best_texture(&mapped, Texture::solid(SIZE, Vec4::splat(0.5)), &EXACT);
-    let distortion = signal_specialised(&structure_tensors(&mapped, &start, &layout.rest), &layout.rest);
+    let distortion =
+        signal_specialised(&structure_tensors(&mapped, &start, &layout.rest), &layout.rest, 1e-3);
     let options =
         ContactOptions { texture_size: SIZE as u32, gutter_texels: 0.5, ..ContactOptions::default() };
     let contact = Contact::new(&layout, &options);

@@ -79,3 +79,25 @@ fn the_same_for_any_number_of_threads() {
         assert!(bits(1) == bits(3));
     }
 }
+
+/// Protects growth: four charts that take less than half of what gutter and margin leave, 28 of 32
+/// texels along each side, take nearly all of it in the end.
+#[test]
+fn charts_grow_into_what_is_free() {
+    let contact =
+        ContactOptions { texture_size: SIZE as u32, gutter_texels: 2.0, ..ContactOptions::default() };
+    let mut start = quarters(4, 4, 3.0 / SIZE as f64, 2);
+    let area =
+        |layout: &Layout| -> f64 { (0..layout.triangles.len()).map(|t| 0.5 * layout.doubled_area(t)).sum() };
+    // Smaller, and not in the middle.
+    start.points.iter_mut().for_each(|p| *p = (*p * 0.7 + 0.02).as_vec2().as_dvec2());
+    assert_sound(&start, SIZE, contact.gutter_texels);
+    let showings = [signal(&start, 12, checkered_corner)];
+    let problem = Problem { rest: &start.rest, showings: &showings, texture_size: SIZE, contact: &contact };
+    let found = tensors(&problem, &start);
+    let mut layout = start.clone();
+    shape(&problem, &mut layout, &found, &UvOptions::default(), |_, _| true);
+    assert_sound(&layout, SIZE, contact.gutter_texels);
+    let most = (28.0 / SIZE as f64).powi(2);
+    assert!(area(&start) < 0.5 * most && area(&layout) > 0.95 * most, "{} of {most}", area(&layout));
+}

@@ -13,7 +13,7 @@ use parbake_atlas::Layout;
 use parbake_model::glam::{DVec2, Vec2};
 use parbake_uv::best_texture::Texture;
 use parbake_uv::contact::ContactOptions;
-use parbake_uv::optimise::{Balance, Problem, UvOptions, refine, shape, tensors};
+use parbake_uv::optimise::{Balance, Problem, ShapeBy, UvOptions, refine, shape, tensors};
 
 /// Samples of a showing that texture coordinates are moved for, relative to the texels:
 /// more settle details that the texture cannot hold anyway.
@@ -38,7 +38,13 @@ pub fn optimised(
         grids.insert(0, grids[0] / 2);
     }
     let total = grids.len() * steps;
-    let own = UvOptions { refine_steps: steps, ..UvOptions::default() };
+    let own = UvOptions {
+        refine_steps: steps,
+        // A plane fills its square; what is plain in it may close.
+        shape_by: ShapeBy::QuasiNewton,
+        flat: 1e-3,
+        ..UvOptions::default()
+    };
     let mut state: Option<(Layout, Texture, Balance)> = None;
     for (turn, &cells) in grids.iter().enumerate() {
         let plane = Plane { cells };

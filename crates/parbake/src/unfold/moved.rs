@@ -25,6 +25,12 @@ const ROOM: f64 = 0.25;
 const MINIFIED: f64 = 0.975;
 /// Turns of the refinement; in between showings are weighted anew.
 const TURNS: usize = 3;
+/// Steps of the start times triangles at most, some two seconds: charts by the dozen need a hundred
+/// steps to fill their square, and a step is Newton's, 4 µs a triangle…
+const SHAPE_WORK: usize = 500_000;
+/// …but so many steps at least, for meshes of any size, and never more than so many.
+const LEAST_SHAPE_STEPS: usize = 20;
+const MOST_SHAPE_STEPS: usize = 200;
 /// A moved layout must be better than the one before by this much.
 const WORTH_IT: f64 = 0.98;
 /// Width of the barrier between charts: the paper's 5 texels would keep packed charts from
@@ -48,19 +54,24 @@ pub fn moved(
         texture_size: asked.texture_size,
         contact: &contact,
     };
-    let options =
-        &UvOptions { refine_steps: asked.steps, shape_steps: 2 * asked.steps, ..UvOptions::default() };
+    let most_steps = (SHAPE_WORK / mesh.triangles.len().max(1)).clamp(LEAST_SHAPE_STEPS, MOST_SHAPE_STEPS);
+    let shape_steps = most_steps.min(10 * asked.steps);
+    let options = &UvOptions { refine_steps: asked.steps, shape_steps, ..UvOptions::default() };
     // A low-poly's texture is fitted to views, which reads its first level alone.
     let all_sizes = source.surface.is_none();
-    let errors = |layout: &Layout| errors(problem, layout, all_sizes);
-    let kept = errors(start);
+    let kept = errors(problem, start, all_sizes);
+    let relative = |layout: &Layout| -> Vec<f64> {
+        errors(problem, layout, all_sizes).iter().zip(&kept).map(|(a, b)| a / b.max(1e-12)).collect()
+    };
+    // The error that counts is that of all sizes.
+    let total = |layout: &Layout| relative(layout).iter().sum::<f64>();
     let (mut balance, texture) = Balance::new(problem, start);
     // Views see a surface under all angles: half of it is minified.
     balance.weights.fill(1.0);
     let tensors = tensors(problem, start);
     let mut layout = start.clone();
     if let Some(packed) = packed(problem, start, &packing(asked), &tensors)
-        && errors(&packed)[0] < kept[0]
+        && total(&packed) < kept.len() as f64
     {
         layout = packed;
         report.packed = true;
@@ -68,14 +79,15 @@ pub fn moved(
     let mut frames = vec![as_f32(&start.points), as_f32(&layout.points)];
     let mut step = |points: &[DVec2]| {
         frames.push(as_f32(points));
-        let total = options.refine_steps + options.shape_steps;
-        watcher.message(Message::Progress { stage: Stage::Unfold, done: frames.len().min(total), total });
+        let most = options.refine_steps + options.shape_steps;
+        let done = frames.len().min(most);
+        watcher.message(Message::Progress { stage: Stage::Unfold, done, total: most });
         !watcher.stopped()
     };
     let before = layout.clone();
     shape(problem, &mut layout, &tensors, options, |points, _| step(points));
     // The signal-specialised start is a guess; where it is a bad one, none is better.
-    if errors(&layout)[0] > errors(&before)[0] {
+    if total(&layout) > total(&before) {
         layout = before;
     }
     // A bake's last thousandths lie in parallax and outlines, not in coordinates.
@@ -87,11 +99,10 @@ pub fn moved(
     for _ in 0..TURNS {
         let refined = refine(problem, &balance, &mut layout, texture, &turn, |points, _| step(points));
         texture = refined.texture;
-        let relative: Vec<f64> = errors(&layout).iter().zip(&kept).map(|(a, b)| a / b.max(1e-12)).collect();
+        let relative = relative(&layout);
         // By what the texture that will be solved for leaves.
         balance.update(&relative);
         let sound = relative[0] < WORTH_IT && relative[1..].iter().all(|r| *r < MINIFIED);
-        // The error that counts is that of both sizes.
         let sum: f64 = relative.iter().sum();
         if sound && best.as_ref().is_none_or(|(least, ..)| sum < *least) {
             best = Some((sum, layout.clone(), relative));

@@ -9,10 +9,12 @@
 //! there is no gap. The paper's form is d₀ times this one; divided so, pairs of
 //! different activation press with the same force when half of their room is gone, and
 //! weight 1 means about one unit of energy for each texel that a vertex is pressed in.
+//!
+//! The second derivative, which Newton's method needs (`curvature.rs`), is given pair by pair.
 
 use super::Contact;
 use super::grid::{Bounds, Grid};
-use super::limits::Limits;
+use super::limits::{Limits, PairLimits};
 use super::pair::Relative;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -28,6 +30,24 @@ struct Part {
     forces: Vec<(u32, DVec2)>,
 }
 
+/// A boundary vertex with an edge, or with a side of the square, that are near each other.
+struct Active {
+    distance: f64,
+    limits: Limits,
+    /// The distance's gradient for the vertex; without direction where the distance is zero.
+    normal: DVec2,
+    /// The vertex, the edge's ends, and how much of that gradient each has…
+    shares: [(u32, f64); 3],
+    /// …or the vertex alone: so many of them count.
+    count: usize,
+}
+
+impl Active {
+    fn parts(&self) -> &[(u32, f64)] {
+        &self.shares[..self.count]
+    }
+}
+
 impl Contact {
     /// The barrier's energy, in texels, over all pairs of a boundary vertex and a
     /// boundary edge and over the border; its gradient (P, by texture coordinate) is
@@ -39,9 +59,7 @@ impl Contact {
         if !self.is_finite(points) {
             return f64::INFINITY;
         }
-        let reach = self.limits.others.minimum + self.limits.others.activation;
-        let reach = reach.max(self.limits.own.minimum + self.limits.own.activation);
-        let grid = self.grid(points, reach);
+        let grid = self.grid(points, self.reach());
         let bands: Vec<usize> = (0..self.boundary.vertices.len()).step_by(BAND).collect();
         let parts: Vec<Part> = bands.par_iter().map(|&first| self.part(points, &grid, first)).collect();
         let mut energy = 0.0;
@@ -59,41 +77,65 @@ impl Contact {
         let mut part = Part::default();
         let last = (first + BAND).min(self.boundary.vertices.len());
         for vertex in first..last {
-            let index = self.boundary.vertices[vertex];
-            let at = points[index as usize];
-            let mut own_force = DVec2::ZERO;
-            grid.for_each(&Bounds::of(at, at, 0.0), |edge| {
-                let ends = self.boundary.edges[edge];
-                if ends.contains(&index) {
-                    return;
-                }
-                let closest = Relative::new(at, ends.map(|i| points[i as usize])).closest();
-                // Most pairs end here; the exceptions are all nearer than the rest.
-                if closest.distance >= reach_of(self, vertex, edge) {
-                    return;
-                }
-                let Some(limits) = self.limits.of(&self.boundary, vertex, edge) else { return };
-                let (energy, slope) = self.barrier(closest.distance, limits);
+            self.for_each_active(points, grid, vertex, |active| {
+                let (energy, slope) = self.barrier(active.distance, active.limits);
                 part.energy += energy;
                 if slope != 0.0 {
-                    let force = slope / closest.distance * closest.offset;
-                    own_force += force;
-                    part.forces.push((ends[0], -(1.0 - closest.along) * force));
-                    part.forces.push((ends[1], -closest.along * force));
+                    let force = slope * active.normal;
+                    part.forces.extend(active.parts().iter().map(|(point, share)| (*point, *share * force)));
                 }
             });
-            for (side, limits) in self.border.sides[vertex].iter().enumerate() {
-                let Some(limits) = limits else { continue };
-                let (normal, distance) = super::border::inwards(at, side);
-                let (energy, slope) = self.barrier(distance, *limits);
-                part.energy += energy;
-                own_force += slope * normal;
-            }
-            if own_force != DVec2::ZERO {
-                part.forces.push((index, own_force));
-            }
         }
         part
+    }
+
+    /// Gives `visit`, for each pair that the barrier repels, the energy's second derivative by the
+    /// distance (texels over squared texture coordinates), the distance's gradient for the boundary
+    /// vertex, and which points have which share of that gradient.
+    pub fn for_each_curvature(&self, points: &[DVec2], mut visit: impl FnMut(f64, DVec2, &[(u32, f64)])) {
+        let grid = self.grid(points, self.reach());
+        for vertex in 0..self.boundary.vertices.len() {
+            self.for_each_active(points, &grid, vertex, |active| {
+                let curvature = self.curvature(active.distance, active.limits);
+                if curvature > 0.0 {
+                    visit(curvature, active.normal, active.parts());
+                }
+            });
+        }
+    }
+
+    /// The distance from which on any pair is free.
+    fn reach(&self) -> f64 {
+        let PairLimits { own, others, .. } = &self.limits;
+        (others.minimum + others.activation).max(own.minimum + own.activation)
+    }
+
+    /// Pairs of this boundary vertex that are near enough to be repelled, with edges and with
+    /// the border.
+    fn for_each_active(&self, points: &[DVec2], grid: &Grid, vertex: usize, mut visit: impl FnMut(&Active)) {
+        let index = self.boundary.vertices[vertex];
+        let at = points[index as usize];
+        grid.for_each(&Bounds::of(at, at, 0.0), |edge| {
+            let ends = self.boundary.edges[edge];
+            if ends.contains(&index) {
+                return;
+            }
+            let closest = Relative::new(at, ends.map(|i| points[i as usize])).closest();
+            // Most pairs end here; the exceptions are all nearer than the rest.
+            if closest.distance >= reach_of(self, vertex, edge) {
+                return;
+            }
+            let Some(limits) = self.limits.of(&self.boundary, vertex, edge) else { return };
+            let normal = closest.offset / closest.distance;
+            let shares = [(index, 1.0), (ends[0], closest.along - 1.0), (ends[1], -closest.along)];
+            visit(&Active { distance: closest.distance, limits, normal, shares, count: 3 });
+        });
+        for (side, limits) in self.border.sides[vertex].iter().enumerate() {
+            let Some(limits) = *limits else { continue };
+            let (normal, distance) = super::border::inwards(at, side);
+            let shares = [(index, 1.0); 3];
+            visit(&Active { distance, limits, normal, shares, count: 1 });
+        }
     }
 
     /// Energy in texels and its derivative by the distance in texture coordinates.
@@ -110,6 +152,19 @@ impl Contact {
         let (rest, log) = (ratio - 1.0, ratio.ln());
         let width = limits.activation * self.texture_size;
         (-width * rest * rest * log, -self.texture_size * rest * (2.0 * log + rest / ratio))
+    }
+}
+
+impl Contact {
+    /// The energy's second derivative by the distance; 0 where it has none, or no gap.
+    fn curvature(&self, distance: f64, limits: Limits) -> f64 {
+        let gap = distance - limits.minimum;
+        if gap >= limits.activation || gap <= 0.0 {
+            return 0.0;
+        }
+        let ratio = gap / limits.activation;
+        let rest = (ratio - 1.0) / ratio;
+        -self.texture_size / limits.activation * (2.0 * ratio.ln() + rest + rest * (2.0 + 1.0 / ratio))
     }
 }
 
