@@ -18,7 +18,7 @@ use crate::options::{BakeOptions, UvMode};
 use crate::pair::{common_frame, placed};
 use crate::report::BakeReport;
 use crate::shape::{Target, shape};
-use crate::unfold::{Source, mend, unfold};
+use crate::unfold::{Source, mend_with_room, unfold};
 use crate::uv_animation::UvMoves;
 use parbake_fit::quantise::{color_image, normal_image};
 use parbake_fit::reference::render_references;
@@ -105,10 +105,10 @@ pub(crate) fn bake_pair(
     let target = Target { scene: &scene, surface: &surface, reach, display, rig: RIG };
     let shape_plan = options.shape_plan().filter(|_| !same);
     let algorithm_plan = options.algorithm_plan().filter(|_| !same);
-    let unfold_options = options.unfold();
+    let mut unfold_options = options.unfold();
     let mut map_of_paper = None;
     if options.uv != UvMode::Keep || shape_plan.is_some() || algorithm_plan.is_some() {
-        let mut low = mend(low, &unfold_options)?;
+        let mut low = mend_with_room(low, &mut unfold_options)?;
         clock.lap(Stage::Prepare);
         if let Some(plan) = &shape_plan {
             let share = bridge.share(SHAPE_SHARE);

@@ -176,6 +176,7 @@ impl BakeOptions {
             texture_size: self.texture_size,
             gutter: self.gutter_texels(),
             gutter_asked: self.gutter.is_some(),
+            parallax_size: (self.parallax != Parallax::None).then_some(self.parallax_size),
             steps: self.uv_steps.unwrap_or(steps),
         }
     }

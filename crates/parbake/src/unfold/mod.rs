@@ -56,6 +56,8 @@ pub struct UnfoldOptions {
     /// Whether the user asked for that gutter: otherwise a sound layout with a smaller one
     /// is not packed again for it.
     pub gutter_asked: bool,
+    /// Texels along a side of the parallax map that is to come, if one is.
+    pub parallax_size: Option<usize>,
     /// Steps of the refinement, or rounds of the paper's method at most.
     pub steps: usize,
 }
@@ -180,6 +182,41 @@ pub fn mend(low: &Model, options: &UnfoldOptions) -> Result<Mended, BakeError> {
     Ok(Mended { name: low.name.clone(), mesh, mended })
 }
 
+/// Gutter that a parallax map wants, in its texels: as far as what is fetched at a chart's border
+/// blends in, from either side.
+const PARALLAX_GUTTER: f64 = 2.0;
+/// Share of the square that such gutters may take, with charts that are squares of one size.
+const PARALLAX_ROOM: f64 = 0.25;
+
+impl UnfoldOptions {
+    /// The same with a parallax map's gutter; None where none is to come, where the layout or the
+    /// gutter is the user's, or where charts are too many for it.
+    fn with_room(&self, mesh: &Mesh) -> Option<Self> {
+        let made_here = matches!(self.mode, UvMode::Optimize | UvMode::Unwrap);
+        let size =
+            self.parallax_size.filter(|_| made_here && !self.gutter_asked && self.method == Method::Fit)?;
+        let charts = Layout::new(mesh).charts.iter().max().map_or(0, |last| last + 1);
+        let wide = PARALLAX_GUTTER / size as f64;
+        let gutter = wide * self.texture_size as f64;
+        let fits = 2.0 * f64::from(charts).sqrt() * wide <= PARALLAX_ROOM;
+        (fits && gutter > self.gutter).then_some(Self { gutter, gutter_asked: true, ..*self })
+    }
+}
+
+/// [`mend`], with room for a parallax map where charts are few: near another chart's a fetch blends in that
+/// one's coefficients, which costs 0.1 to 0.4 dB. The gutter becomes that of `options`.
+///
+/// # Errors
+/// As of [`mend`].
+pub fn mend_with_room(low: &Model, options: &mut UnfoldOptions) -> Result<Mended, BakeError> {
+    let mended = mend(low, options)?;
+    let Some(wide) = options.with_room(&mended.mesh) else { return Ok(mended) };
+    // What does not fit so goes without it.
+    let Ok(roomy) = mend(low, &wide) else { return Ok(mended) };
+    *options = wide;
+    Ok(roomy)
+}
+
 fn packing(options: &UnfoldOptions) -> PackOptions {
     PackOptions {
         texture_size: options.texture_size,
@@ -264,4 +301,51 @@ pub fn solve_on_surface(mesh: &Mesh, source: &Source, size: usize) -> Option<Sur
 
 fn as_f32(points: &[DVec2]) -> Vec<Vec2> {
     points.iter().map(|p| p.as_vec2()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::Parallax;
+    use parbake_model::glam::vec2;
+
+    fn with_parallax(gutter: Option<f64>) -> UnfoldOptions {
+        BakeOptions { texture_size: 256, parallax: Parallax::Sh, gutter, ..BakeOptions::default() }.unfold()
+    }
+
+    /// Right triangles in rows of four, each a chart, seven and a half texels of 256 apart.
+    fn sheet(charts: u32) -> Model {
+        let corner = |i: u32| vec2((i % 3 % 2) as f32, (i % 3 / 2) as f32);
+        let place = |i: u32| vec2((i / 3 % 4) as f32, (i / 12) as f32);
+        let mesh = Mesh {
+            positions: (0..3 * charts).map(|i| (place(i) * 2.0 + corner(i)).extend(0.0)).collect(),
+            uvs: (0..3 * charts).map(|i| place(i) * 0.2 + corner(i) * 0.17 + 0.01).collect(),
+            triangles: (0..charts).map(|c| [3 * c, 3 * c + 1, 3 * c + 2]).collect(),
+            triangle_materials: vec![0; charts as usize],
+            ..Mesh::default()
+        };
+        Model { name: "sheet".into(), mesh, materials: vec![Material::default()], images: Vec::new() }
+    }
+
+    /// Protects parallax maps from their neighbours: two of the map's texels lie between charts,
+    /// unless a gutter was asked for.
+    #[test]
+    fn few_charts_get_room_for_a_parallax_map() {
+        for (asked, wanted) in [(None, 8.0), (Some(3.0), 3.0)] {
+            let mut options = with_parallax(asked);
+            let mended = mend_with_room(&sheet(4), &mut options).expect("four charts fit");
+            assert_eq!(options.gutter, wanted);
+            let gutter = check(&Layout::new(&mended.mesh), 256).gutter.expect("several charts").texels;
+            assert!(gutter >= wanted, "{gutter} of {wanted}");
+        }
+        assert!(BakeOptions::default().unfold().parallax_size.is_none());
+    }
+
+    /// Protects texels: gutters of many charts would leave none.
+    #[test]
+    fn many_charts_stay_close() {
+        let options = with_parallax(None);
+        let with_room = |charts| options.with_room(&sheet(charts).mesh);
+        assert!(with_room(16).is_some() && with_room(17).is_none());
+    }
 }
