@@ -210,7 +210,8 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long))]
     pub no_content_aware: bool,
 
-    /// Least distance between charts in texels, 0 to 64 [default: 1, from 512 on a 256th of the side]
+    /// Least distance between charts in texels, 0 to 64 [default: 1, from 512 on a 256th of the side;
+    /// with a parallax map two of its texels where charts are few: 16 for a map of 64²]
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "TEXELS"))]
     pub gutter: Option<f64>,
 

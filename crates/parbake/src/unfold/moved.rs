@@ -12,7 +12,7 @@ use super::{Moved, UnfoldOptions, UnfoldReport, as_f32, contact, errors, packing
 use crate::message::{Message, Stage, Watcher};
 use parbake_atlas::{ChartScale, Layout, PackOptions, pack};
 use parbake_model::Mesh;
-use parbake_model::glam::{DMat2, DVec2};
+use parbake_model::glam::{DMat2, DVec2, Vec2};
 use parbake_uv::best_texture::Solve;
 use parbake_uv::metric::chart_scales;
 use parbake_uv::optimise::{Balance, Problem, UvOptions, refine, shape, tensors};
@@ -82,24 +82,27 @@ pub fn moved(
         report.packed = true;
     }
     let mut frames = vec![as_f32(&start.points), as_f32(&layout.points)];
-    let mut step = |points: &[DVec2]| {
-        frames.push(as_f32(points));
-        let most = options.refine_steps + FLAT.len() * options.shape_steps;
-        let done = frames.len().min(most);
+    let most = options.refine_steps + FLAT.len() * options.shape_steps;
+    let mut done = 0;
+    let mut step = |way: &mut Vec<Vec<Vec2>>, points: &[DVec2]| {
+        way.push(as_f32(points));
+        done = most.min(done + 1);
         watcher.message(Message::Progress { stage: Stage::Unfold, done, total: most });
         !watcher.stopped()
     };
     // The signal-specialised start is a guess: how plain the plain is depends on the texture's size, and
     // where both guesses are bad, none is better.
-    let (before, mut least) = (layout.clone(), total(&layout));
+    let (before, mut least, mut shaped) = (layout.clone(), total(&layout), Vec::new());
     for flat in FLAT {
-        let mut guess = before.clone();
-        shape(problem, &mut guess, &tensors, &UvOptions { flat, ..*options }, |points, _| step(points));
+        let (mut guess, mut way) = (before.clone(), Vec::new());
+        let own = UvOptions { flat, ..*options };
+        shape(problem, &mut guess, &tensors, &own, |points, _| step(&mut way, points));
         let left = total(&guess);
         if left < least {
-            (layout, least) = (guess, left);
+            (layout, least, shaped) = (guess, left, way);
         }
     }
+    frames.extend(shaped);
     // A bake's last thousandths lie in parallax and outlines, not in coordinates.
     let (tolerance, solve) =
         if all_sizes { (options.tolerance, options.solve) } else { (1e-3, Solve::ROUGH) };
@@ -107,7 +110,8 @@ pub fn moved(
     let mut texture = texture;
     let mut best: Option<(f64, Layout, Vec<f64>)> = None;
     for _ in 0..TURNS {
-        let refined = refine(problem, &balance, &mut layout, texture, &turn, |points, _| step(points));
+        let refined =
+            refine(problem, &balance, &mut layout, texture, &turn, |points, _| step(&mut frames, points));
         texture = refined.texture;
         let relative = relative(&layout);
         // By what the texture that will be solved for leaves.
