@@ -44,7 +44,7 @@ pub struct UvOptions {
     pub shape_steps: usize,
     /// How they are taken.
     pub shape_by: ShapeBy,
-    /// What a triangle weighs in the start that shows no signal at all, relative to the mean. More
+    /// What a triangle weighs in the start that shows no signal at all, relative to the mean, > 0. More
     /// keeps plain regions larger and rounder, which their looks from afar ask for: trilinear fetches
     /// blur what is drawn out.
     pub flat: f64,

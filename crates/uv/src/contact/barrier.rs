@@ -153,9 +153,7 @@ impl Contact {
         let width = limits.activation * self.texture_size;
         (-width * rest * rest * log, -self.texture_size * rest * (2.0 * log + rest / ratio))
     }
-}
 
-impl Contact {
     /// The energy's second derivative by the distance; 0 where it has none, or no gap.
     fn curvature(&self, distance: f64, limits: Limits) -> f64 {
         let gap = distance - limits.minimum;
