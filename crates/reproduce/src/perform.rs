@@ -176,7 +176,7 @@ impl<O: Observer> Run<'_, O> {
     /// The paper's baseline: the picture scaled down, shown with bilinear filtering.
     fn downsample(&self, path: &Path, size: usize) -> Result<Outcome, BakeError> {
         let picture = read_image(path, &Limits::default())?;
-        let plain = ImageOptions { texture_size: size, uv: UvMode::Keep, grid: 4, ..ImageOptions::default() };
+        let plain = ImageOptions { texture_size: size, uv: UvMode::Keep, ..ImageOptions::default() };
         let mut plane = bake_image(&picture, &plain, &self.stop)?.model;
         for image in &mut plane.images {
             *image = scaled(&picture, size);

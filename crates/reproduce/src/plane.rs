@@ -61,8 +61,7 @@ mod tests {
                 })
                 .collect();
             let picture = Image { name: "p".into(), width, height, pixels };
-            let options =
-                ImageOptions { texture_size: 16, grid: 8, uv: UvMode::Keep, ..ImageOptions::default() };
+            let options = ImageOptions { texture_size: 16, uv: UvMode::Keep, ..ImageOptions::default() };
             let baked = bake_image(&picture, &options, &()).unwrap();
             let shown = as_shown(&baked.model, &picture).unwrap();
             let psnr = psnr_from_mse(mean_squared_error(&wanted(&picture), &shown).unwrap());

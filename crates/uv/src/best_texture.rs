@@ -14,11 +14,11 @@
 //! The derivative for texture coordinates is in `residual.rs`. Results do not depend on the
 //! number of threads.
 
-use crate::footprint::{Footprint, pixel, shares};
-use crate::normal_matrix::{NormalMatrix, Patch, Row, add_sample};
+use crate::footprint::{Footprint, OnLevel, pixel, shares};
+use crate::normal_matrix::{NormalMatrix, Patch};
 use crate::pyramid::{gather, level_count, levels};
 use crate::runs::Runs;
-use crate::signal::Signal;
+use crate::signal::{Sample, Signal};
 use glam::{DVec2, Vec4};
 use rayon::prelude::*;
 
@@ -121,10 +121,8 @@ struct System {
 impl System {
     fn assemble(mapped: &Mapped, size: usize, smoothness: f32) -> Self {
         let count = level_count(size);
-        let runs: Vec<Vec<Patch>> = (0..mapped.runs.count())
-            .into_par_iter()
-            .map(|run| (0..count).map(|level| patch(mapped, run, size, count, level)).collect())
-            .collect();
+        let runs: Vec<Vec<Patch>> =
+            (0..mapped.runs.count()).into_par_iter().map(|run| patches(mapped, run, size, count)).collect();
         let used = (0..count)
             .rev()
             .find(|&level| runs.iter().any(|patches| !patches[level].rows.is_empty()))
@@ -135,8 +133,7 @@ impl System {
         let weight: f64 = mapped.showings.iter().map(Signal::weight).sum();
         let mean = weight as f32 / (size * size) as f32;
         levels[0].add_smoothness((smoothness * mean).max(1e-20));
-        let mut rights: Vec<Vec<Vec4>> =
-            levels.iter().map(|m| m.rows.par_iter().map(|r| r.right).collect()).collect();
+        let mut rights: Vec<Vec<Vec4>> = levels.iter_mut().map(|m| std::mem::take(&mut m.right)).collect();
         gather(&mut rights, size);
         let inverse = (0..size * size)
             .into_par_iter()
@@ -236,39 +233,51 @@ fn sum(rows: &[Vec4]) -> Vec4 {
     rows.iter().map(|v| v.as_dvec4()).sum::<glam::DVec4>().as_vec4()
 }
 
-/// What a run of triangles adds to a level's matrix.
-fn patch(mapped: &Mapped, run: usize, size: usize, count: usize, level: usize) -> Patch {
-    let own = size >> level;
-    let mut parts = Vec::new();
-    let (mut low, mut high) = ([own; 2], [0; 2]);
+/// What a run of triangles adds to the matrices of the `count` levels.
+fn patches(mapped: &Mapped, run: usize, size: usize, count: usize) -> Vec<Patch> {
+    let mut parts: Vec<Vec<Part>> = vec![Vec::new(); count];
     for t in mapped.runs.triangles(run) {
         let footprint = Footprint::new(mapped.points, mapped.triangles[t]);
         for signal in mapped.showings {
-            if signal.of(t).is_empty() {
-                continue;
+            let samples = signal.of(t);
+            if !samples.is_empty() {
+                let shown = footprint.level(pixel(signal, t), size, count);
+                for (level, share) in shares(&shown) {
+                    parts[level].push(Part { place: footprint.on(size >> level), samples, share });
+                }
             }
-            let shown = footprint.level(pixel(signal, t), size, count);
-            let Some((_, share)) = shares(&shown).find(|(l, _)| *l == level) else { continue };
-            let place = footprint.on(own);
-            let [from, to] = place.bounds();
-            for k in 0..2 {
-                low[k] = low[k].min(from[k]);
-                high[k] = high[k].max(to[k]);
-            }
-            parts.push((place, signal.of(t), share));
         }
     }
+    parts.into_iter().enumerate().map(|(level, parts)| patch(&parts, size >> level)).collect()
+}
+
+/// A triangle's samples on one level, of whose error this share counts.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    place: OnLevel,
+    samples: &'a [Sample],
+    share: f32,
+}
+
+/// What these parts add to the matrix of a level of `size`² texels.
+fn patch(parts: &[Part], size: usize) -> Patch {
     if parts.is_empty() {
         return Patch::default();
     }
-    let width = high[0] - low[0];
-    let mut rows = vec![Row::default(); width * (high[1] - low[1])];
-    for (footprint, samples, share) in parts {
-        for sample in samples {
-            let ([x, y], fractions, _) = footprint.place(sample);
-            let place = (y - low[1]) * width + x - low[0];
-            add_sample(&mut rows, width, place, fractions, sample.weight * share, sample.target);
+    let (mut low, mut high) = ([size; 2], [0; 2]);
+    for part in parts {
+        let [from, to] = part.place.bounds();
+        for k in 0..2 {
+            low[k] = low[k].min(from[k]);
+            high[k] = high[k].max(to[k]);
         }
     }
-    Patch { origin: low, width, rows }
+    let mut patch = Patch::new(low, high);
+    for part in parts {
+        for sample in part.samples {
+            let (texel, fractions, _) = part.place.place(sample);
+            patch.add_sample(texel, fractions, sample.weight * part.share, sample.target);
+        }
+    }
+    patch
 }

@@ -9,8 +9,9 @@
 use glam::DVec2;
 use std::collections::VecDeque;
 
-/// An approximation of the inverse Hessian that is symmetric and positive definite.
-pub trait Preconditioner {
+/// An approximation of the inverse Hessian that is symmetric and positive definite; shared by
+/// threads.
+pub trait Preconditioner: Sync {
     /// Applies it in place.
     fn apply(&self, vector: &mut [DVec2]);
 }
@@ -68,17 +69,19 @@ impl Lbfgs {
             *factor = change.scale * dot(&change.points, &q);
             add(&mut q, &change.gradient, -*factor);
         }
-        preconditioner.apply(&mut q);
+        let Some(last) = self.changes.back() else {
+            preconditioner.apply(&mut q);
+            mask(&mut q, free);
+            return q;
+        };
+        // The preconditioner's own scale, from the last step.
+        let mut y = last.gradient.clone();
+        rayon::join(|| preconditioner.apply(&mut q), || preconditioner.apply(&mut y));
         mask(&mut q, free);
-        if let Some(last) = self.changes.back() {
-            // The preconditioner's own scale, from the last step.
-            let mut y = last.gradient.clone();
-            preconditioner.apply(&mut y);
-            mask(&mut y, free);
-            let gamma = 1.0 / (last.scale * dot(&last.gradient, &y)).max(f64::MIN_POSITIVE);
-            for q in &mut q {
-                *q *= gamma;
-            }
+        mask(&mut y, free);
+        let gamma = 1.0 / (last.scale * dot(&last.gradient, &y)).max(f64::MIN_POSITIVE);
+        for q in &mut q {
+            *q *= gamma;
         }
         for (change, factor) in self.changes.iter().zip(&factors) {
             let back = change.scale * dot(&change.gradient, &q);

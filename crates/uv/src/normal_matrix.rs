@@ -6,7 +6,7 @@
 use glam::Vec4;
 use rayon::prelude::*;
 
-/// A texel's row: with itself and the neighbours that come later, and the right-hand side.
+/// A texel's coupling with itself and with the neighbours that come later.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Row {
     /// Coupling with itself.
@@ -19,8 +19,6 @@ pub struct Row {
     pub south: f32,
     /// With the one below to the right.
     pub south_east: f32,
-    /// Right-hand side.
-    pub right: Vec4,
 }
 
 impl Row {
@@ -30,32 +28,7 @@ impl Row {
         self.south_west += other.south_west;
         self.south += other.south;
         self.south_east += other.south_east;
-        self.right += other.right;
     }
-}
-
-/// Adds a sample of weight `weight` at `place` with fractions `f` to rows of `width`.
-#[inline]
-pub fn add_sample(rows: &mut [Row], width: usize, place: usize, f: [f32; 2], weight: f32, target: Vec4) {
-    let [fx, fy] = f;
-    let (gx, gy) = (1.0 - fx, 1.0 - fy);
-    let w = [gx * gy, fx * gy, gx * fy, fx * fy];
-    let s = w.map(|w| w * weight);
-    let (upper, lower) = rows[place..].split_at_mut(width);
-    upper[0].centre += s[0] * w[0];
-    upper[0].east += s[0] * w[1];
-    upper[0].south += s[0] * w[2];
-    upper[0].south_east += s[0] * w[3];
-    upper[0].right += target * s[0];
-    upper[1].centre += s[1] * w[1];
-    upper[1].south_west += s[1] * w[2];
-    upper[1].south += s[1] * w[3];
-    upper[1].right += target * s[1];
-    lower[0].centre += s[2] * w[2];
-    lower[0].east += s[2] * w[3];
-    lower[0].right += target * s[2];
-    lower[1].centre += s[3] * w[3];
-    lower[1].right += target * s[3];
 }
 
 /// A rectangle of rows that one run of triangles fills.
@@ -67,34 +40,82 @@ pub struct Patch {
     pub width: usize,
     /// Its rows, one after another.
     pub rows: Vec<Row>,
+    /// Their right-hand sides.
+    pub right: Vec<Vec4>,
 }
 
-/// The matrix of one level.
+impl Patch {
+    /// Nothing yet, from the texel `low` to `high` (exclusive).
+    pub fn new(low: [usize; 2], high: [usize; 2]) -> Self {
+        let width = high[0] - low[0];
+        let texels = width * (high[1] - low[1]);
+        Self { origin: low, width, rows: vec![Row::default(); texels], right: vec![Vec4::ZERO; texels] }
+    }
+
+    /// Adds a sample of weight `weight` whose upper left texel is `texel`, with fractions `f`.
+    #[inline]
+    pub fn add_sample(&mut self, texel: [usize; 2], f: [f32; 2], weight: f32, target: Vec4) {
+        let [fx, fy] = f;
+        let (gx, gy) = (1.0 - fx, 1.0 - fy);
+        let w = [gx * gy, fx * gy, gx * fy, fx * fy];
+        let s = w.map(|w| w * weight);
+        let place = (texel[1] - self.origin[1]) * self.width + texel[0] - self.origin[0];
+        let (upper, lower) = self.rows[place..].split_at_mut(self.width);
+        upper[0].centre += s[0] * w[0];
+        upper[0].east += s[0] * w[1];
+        upper[0].south += s[0] * w[2];
+        upper[0].south_east += s[0] * w[3];
+        upper[1].centre += s[1] * w[1];
+        upper[1].south_west += s[1] * w[2];
+        upper[1].south += s[1] * w[3];
+        lower[0].centre += s[2] * w[2];
+        lower[0].east += s[2] * w[3];
+        lower[1].centre += s[3] * w[3];
+        let (upper, lower) = self.right[place..].split_at_mut(self.width);
+        upper[0] += target * s[0];
+        upper[1] += target * s[1];
+        lower[0] += target * s[2];
+        lower[1] += target * s[3];
+    }
+}
+
+/// The matrix of one level and its right-hand side.
 #[derive(Clone, Debug, Default)]
 pub struct NormalMatrix {
     /// Texels along a side, ≥ 2.
     pub size: usize,
     /// size² rows.
     pub rows: Vec<Row>,
+    /// size² right-hand sides.
+    pub right: Vec<Vec4>,
 }
+
+/// Rows of texels that one task looks at.
+const BAND: usize = 16;
 
 impl NormalMatrix {
     /// The sum of patches, added in their order.
     pub fn sum<'a>(size: usize, patches: impl Iterator<Item = &'a Patch> + Clone + Sync) -> Self {
         let patches: Vec<&Patch> = patches.filter(|p| !p.rows.is_empty()).collect();
         let mut rows = vec![Row::default(); size * size];
-        rows.par_chunks_mut(size).enumerate().for_each(|(y, out)| {
-            for patch in &patches {
-                let height = patch.rows.len() / patch.width;
-                if (patch.origin[1]..patch.origin[1] + height).contains(&y) {
-                    let local = &patch.rows[(y - patch.origin[1]) * patch.width..][..patch.width];
-                    for (out, add) in out[patch.origin[0]..].iter_mut().zip(local) {
-                        out.add(add);
+        let mut right = vec![Vec4::ZERO; size * size];
+        rows.par_chunks_mut(size).zip(right.par_chunks_mut(size)).enumerate().for_each(
+            |(y, (rows, right))| {
+                for patch in &patches {
+                    let (from, height) = (patch.origin[0], patch.rows.len() / patch.width);
+                    if (patch.origin[1]..patch.origin[1] + height).contains(&y) {
+                        let local = (y - patch.origin[1]) * patch.width;
+                        let local = local..local + patch.width;
+                        rows[from..]
+                            .iter_mut()
+                            .zip(&patch.rows[local.clone()])
+                            .for_each(|(to, add)| to.add(add));
+                        right[from..].iter_mut().zip(&patch.right[local]).for_each(|(to, add)| *to += *add);
                     }
                 }
-            }
-        });
-        Self { size, rows }
+            },
+        );
+        Self { size, rows, right }
     }
 
     /// Adds `weight · Σ |Tᵢ − Tⱼ|²` over neighbours in rows and columns.
@@ -113,38 +134,57 @@ impl NormalMatrix {
 
     /// `y += A x`.
     pub fn add_product(&self, x: &[Vec4], y: &mut [Vec4]) {
-        y.par_chunks_mut(self.size).enumerate().for_each(|(row, out)| self.add_row(row, x, out));
+        y.par_chunks_mut(BAND * self.size).enumerate().for_each(|(band, out)| {
+            for (row, out) in out.chunks_mut(self.size).enumerate() {
+                self.add_row(band * BAND + row, x, out);
+            }
+        });
     }
 
+    /// One row of texels. What lies before and after a row in memory is read as its neighbours,
+    /// since couplings over the texture's border are zero.
     fn add_row(&self, y: usize, x: &[Vec4], out: &mut [Vec4]) {
         let size = self.size;
-        let here = y * size;
-        let own = &self.rows[here..here + size];
-        let x1 = &x[here..here + size];
-        for ((out, x), row) in out.iter_mut().zip(x1).zip(own) {
-            *out += *x * row.centre;
+        if y < 2 || y + 2 >= size {
+            out.iter_mut().enumerate().for_each(|(k, out)| *out += self.near_border(k, y, x));
+            return;
         }
-        for i in 0..size - 1 {
-            out[i] += x1[i + 1] * own[i].east;
-            out[i + 1] += x1[i] * own[i].east;
+        let first = y * size;
+        let beside = |first: usize| first - 1..first + size + 1;
+        let (upper, own, lower) = (&x[beside(first - size)], &x[beside(first)], &x[beside(first + size)]);
+        let (above, here) = (&self.rows[beside(first - size)], &self.rows[beside(first)]);
+        for (k, out) in out.iter_mut().enumerate() {
+            let row = &here[k + 1];
+            *out += own[k] * here[k].east
+                + own[k + 1] * row.centre
+                + own[k + 2] * row.east
+                + lower[k] * row.south_west
+                + lower[k + 1] * row.south
+                + lower[k + 2] * row.south_east
+                + upper[k] * above[k].south_east
+                + upper[k + 1] * above[k + 1].south
+                + upper[k + 2] * above[k + 2].south_west;
         }
-        if y + 1 < size {
-            let x2 = &x[here + size..here + 2 * size];
-            for i in 0..size - 1 {
-                out[i] += x2[i] * own[i].south + x2[i + 1] * own[i].south_east;
-                out[i + 1] += x2[i] * own[i + 1].south_west;
-            }
-            out[size - 1] += x2[size - 1] * own[size - 1].south;
-        }
-        if y > 0 {
-            let upper = &self.rows[here - size..here];
-            let x0 = &x[here - size..here];
-            for i in 0..size - 1 {
-                out[i] += x0[i] * upper[i].south + x0[i + 1] * upper[i + 1].south_west;
-                out[i + 1] += x0[i] * upper[i].south_east;
-            }
-            out[size - 1] += x0[size - 1] * upper[size - 1].south;
-        }
+    }
+
+    /// One texel, wherever it lies.
+    fn near_border(&self, column: usize, y: usize, x: &[Vec4]) -> Vec4 {
+        let size = self.size;
+        let at = y * size + column;
+        let (west, east, north, south) = (column > 0, column + 1 < size, y > 0, y + 1 < size);
+        let term = |there: bool, texel: usize, coupling: &dyn Fn() -> f32| {
+            if there { x[texel] * coupling() } else { Vec4::ZERO }
+        };
+        let (row, rows) = (&self.rows[at], &self.rows);
+        x[at] * row.centre
+            + term(west, at.wrapping_sub(1), &|| rows[at - 1].east)
+            + term(east, at + 1, &|| row.east)
+            + term(south && west, at + size - 1, &|| row.south_west)
+            + term(south, at + size, &|| row.south)
+            + term(south && east, at + size + 1, &|| row.south_east)
+            + term(north && west, at.wrapping_sub(size + 1), &|| rows[at - size - 1].south_east)
+            + term(north, at.wrapping_sub(size), &|| rows[at - size].south)
+            + term(north && east, at.wrapping_sub(size - 1), &|| rows[at - size + 1].south_west)
     }
 }
 
@@ -158,13 +198,13 @@ mod tests {
         let size = 5;
         let number = |i: usize| ((i * 2_654_435_761) % 1009) as f32 / 1009.0;
         let x: Vec<Vec4> = (0..25).map(|i| Vec4::splat(number(i + 1))).collect();
-        let mut patch = Patch { origin: [0; 2], width: size, rows: vec![Row::default(); 25] };
+        let mut patch = Patch::new([0; 2], [size; 2]);
         let mut want = 0.0;
         for k in 0..100 {
             let (i, j) = ((number(k + 50) * 4.0) as usize, (number(k + 250) * 4.0) as usize);
             let (fx, fy, w) = (number(k + 450), number(k + 650), number(k + 850));
             let place = j * size + i;
-            add_sample(&mut patch.rows, size, place, [fx, fy], w, Vec4::ZERO);
+            patch.add_sample([i, j], [fx, fy], w, Vec4::ZERO);
             let row = |p: usize| x[p].x * (1.0 - fx) + x[p + 1].x * fx;
             want += w * (row(place) * (1.0 - fy) + row(place + size) * fy).powi(2);
         }

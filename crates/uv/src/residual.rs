@@ -27,49 +27,52 @@ pub struct Residual {
 /// `gradient`.
 pub fn residual(mapped: &Mapped, texture: &Texture, gradient: &mut [DVec2]) -> Vec<Residual> {
     let pyramid = levels(&texture.texels, texture.size, level_count(texture.size));
-    let parts: Vec<Vec<Share>> = (0..mapped.runs.count())
+    let showings = mapped.showings.len();
+    // For each run the triangles' derivatives, and their errors, showing by showing.
+    let parts: Vec<(Vec<[DVec2; 3]>, Vec<f64>)> = (0..mapped.runs.count())
         .into_par_iter()
-        .map(|run| mapped.runs.triangles(run).map(|t| triangle(mapped, &pyramid, texture.size, t)).collect())
+        .map(|run| {
+            let mut errors = Vec::new();
+            let slopes = mapped.runs.triangles(run).map(|t| {
+                errors.resize(errors.len() + showings, 0.0);
+                let last = errors.len() - showings;
+                triangle(mapped, &pyramid, texture.size, t, &mut errors[last..])
+            });
+            (slopes.collect::<Vec<_>>(), errors)
+        })
         .collect();
     let empty = Residual { error: 0.0, by_triangle: vec![0.0; mapped.triangles.len()] };
-    let mut residuals = vec![empty; mapped.showings.len()];
-    for Share { triangle: t, errors, slopes } in parts.into_iter().flatten() {
-        for (residual, error) in residuals.iter_mut().zip(errors) {
-            residual.error += error;
-            residual.by_triangle[t] = error;
-        }
-        for (corner, slope) in mapped.triangles[t].into_iter().zip(slopes) {
-            gradient[corner as usize] += slope;
+    let mut residuals = vec![empty; showings];
+    for (run, (slopes, errors)) in parts.iter().enumerate() {
+        for ((t, slopes), errors) in mapped.runs.triangles(run).zip(slopes).zip(errors.chunks_exact(showings))
+        {
+            for (residual, error) in residuals.iter_mut().zip(errors) {
+                residual.error += error;
+                residual.by_triangle[t] = *error;
+            }
+            for (corner, slope) in mapped.triangles[t].into_iter().zip(slopes) {
+                gradient[corner as usize] += *slope;
+            }
         }
     }
     residuals
 }
 
-/// What one triangle has of the residuals and of their derivative.
-struct Share {
-    triangle: usize,
-    /// One for each showing.
-    errors: Vec<f64>,
-    /// Derivatives for the three corners.
-    slopes: [DVec2; 3],
-}
-
-fn triangle(mapped: &Mapped, pyramid: &[Vec<Vec4>], size: usize, t: usize) -> Share {
+/// Writes one triangle's share of each showing's error; gives its derivatives for the three corners.
+fn triangle(mapped: &Mapped, pyramid: &[Vec<Vec4>], size: usize, t: usize, errors: &mut [f64]) -> [DVec2; 3] {
     let footprint = Footprint::new(mapped.points, mapped.triangles[t]);
     let (mut whole, mut second, mut third) = (DVec2::ZERO, DVec2::ZERO, DVec2::ZERO);
-    let mut errors = Vec::with_capacity(mapped.showings.len());
-    for signal in mapped.showings {
+    for (signal, sum) in mapped.showings.iter().zip(errors) {
         let samples = signal.of(t);
         if samples.is_empty() {
-            errors.push(0.0);
             continue;
         }
         let shown = footprint.level(pixel(signal, t), size, pyramid.len());
-        let (mut error, mut by_level) = (0.0, 0.0);
+        let mut by_level = 0.0;
         for (level, share) in shares(&shown) {
             let own = size >> level;
             let part = on_level(&footprint.on(own), samples, &pyramid[level], own);
-            error += part.error * f64::from(share);
+            *sum += part.error * f64::from(share);
             by_level += if level == shown.fine { -part.error } else { part.error };
             let scale = 2.0 * own as f64 * f64::from(share);
             whole += part.slopes[0] * scale;
@@ -80,9 +83,8 @@ fn triangle(mapped: &Mapped, pyramid: &[Vec<Vec4>], size: usize, t: usize) -> Sh
             second += shown.slope.x_axis * by_level;
             third += shown.slope.y_axis * by_level;
         }
-        errors.push(error);
     }
-    Share { triangle: t, errors, slopes: [whole - second - third, second, third] }
+    [whole - second - third, second, third]
 }
 
 /// A triangle's samples on one level.

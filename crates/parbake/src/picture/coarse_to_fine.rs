@@ -18,8 +18,14 @@ use parbake_uv::optimise::{Balance, Problem, ShapeBy, UvOptions, refine, shape, 
 /// Samples of a showing that texture coordinates are moved for, relative to the texels:
 /// more settle details that the texture cannot hold anyway.
 const SAMPLES_PER_TEXEL: usize = 16;
-/// At least so many, for small textures.
-const LEAST_SAMPLES: usize = 1 << 18;
+/// At least so many on the finest grid, for small textures: with an eighth of them pictures of two
+/// million pixels gain 0.35 dB less.
+const LEAST_SAMPLES: usize = 1 << 21;
+/// The coarse grids place regions, which this share of the samples shows as well.
+const COARSE_SHARE: usize = 8;
+/// Weight of the symmetric Dirichlet energy: many small cells want it stiffer than a model's
+/// triangles. With half of it or twice as much pictures at 64² and 128² gain 0.1 to 0.3 dB less.
+const DISTORTION_WEIGHT: f64 = 4e-2;
 /// Coarsest grid that is worth a descent of its own.
 const COARSEST: usize = 20;
 
@@ -33,7 +39,7 @@ pub fn optimised(
 ) -> Option<(Layout, Texture, Balance)> {
     let size = options.texture_size;
     let steps = options.settled_steps();
-    let mut grids = vec![options.grid];
+    let mut grids = vec![options.settled_grid()];
     while grids[0] % 2 == 0 && grids[0] / 2 >= COARSEST {
         grids.insert(0, grids[0] / 2);
     }
@@ -43,15 +49,15 @@ pub fn optimised(
         // A plane fills its square; what is plain in it may close.
         shape_by: ShapeBy::QuasiNewton,
         flat: 1e-3,
+        distortion_weight: DISTORTION_WEIGHT,
         ..UvOptions::default()
     };
     let mut state: Option<(Layout, Texture, Balance)> = None;
     for (turn, &cells) in grids.iter().enumerate() {
         let plane = Plane { cells };
-        // The coarse grids place regions, which half the samples show as well.
-        let most =
-            (SAMPLES_PER_TEXEL * size * size).max(LEAST_SAMPLES) >> (2 * usize::from(turn + 1 < grids.len()));
-        let showings = showings(picture, plane, most.max(LEAST_SAMPLES));
+        let most = (SAMPLES_PER_TEXEL * size * size).max(LEAST_SAMPLES);
+        let coarse = turn + 1 < grids.len();
+        let showings = showings(picture, plane, if coarse { most / COARSE_SHARE } else { most });
         let rest = plane.rest();
         let problem = Problem { rest: &rest, showings: &showings, texture_size: size, contact };
         let mut frames = Vec::new();
@@ -83,7 +89,7 @@ pub fn optimised(
         if watcher.stopped() {
             // The layout must be one of the finest grid.
             let mut at = cells;
-            while let Some((layout, texture, balance)) = state.take_if(|_| at < options.grid) {
+            while let Some((layout, texture, balance)) = state.take_if(|_| at < options.settled_grid()) {
                 let (plane, points) = Plane { cells: at }.refined(&layout.points);
                 at = plane.cells;
                 state = Some((plane.layout(points), texture, balance));

@@ -87,7 +87,7 @@ pub fn bake_image(
     let size = options.texture_size;
     let picture = Picture::new(image);
     let contact = ContactOptions { texture_size: size as u32, border: Border::Slide, ..Default::default() };
-    let finest = Plane { cells: options.grid };
+    let finest = Plane { cells: options.settled_grid() };
     let all = showings(&picture, finest, usize::MAX);
     let start = finest.layout(as_f64(&finest.points()));
     let kept_texture = written_texture(&start, &all[..1], Texture::solid(size, Vec4::splat(0.5)));
@@ -107,8 +107,10 @@ pub fn bake_image(
         _ => None,
     };
     let left_as_is = found.is_none() && options.uv == UvMode::Optimize;
-    let (layout, texture) = found.unwrap_or((start, kept_texture));
-    let written_errors = errors(&layout, &all, &texture);
+    // Where nothing moved, two triangles show what the finest grid would.
+    let plane = if left_as_is { Plane { cells: 1 } } else { finest };
+    let (layout, texture) = found.unwrap_or_else(|| (plane.layout(as_f64(&plane.points())), kept_texture));
+    let written_errors = if left_as_is { kept_errors.clone() } else { errors(&layout, &all, &texture) };
     let report = ImageReport {
         options: options.clone(),
         kept: kept_errors.iter().map(decibels).collect(),
@@ -124,7 +126,7 @@ pub fn bake_image(
         triangles: layout.triangles.clone(),
         charts: layout.charts.clone(),
     });
-    Ok(BakedImage { model: model(image, finest, &layout, &texture), uv_moves, report })
+    Ok(BakedImage { model: model(image, plane, &layout, &texture), uv_moves, report })
 }
 
 /// Frames and steps so far, and how the paper's method went.

@@ -15,9 +15,10 @@ pub struct ImageOptions {
     pub texture_size: usize,
 
     /// Cells along a side of the plane, 4 to 400: more follow the picture better and make the
-    /// model larger; each cell costs some 45 bytes; the paper has 50
-    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 100))]
-    pub grid: usize,
+    /// model larger, by some 34 bytes a cell (44 from 256 cells on) [default: 200, with --method
+    /// paper 50 as there, 1 where coordinates stay]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
+    pub grid: Option<usize>,
 
     /// Whether texture coordinates move: keep (an ordinary, smaller texture) or optimize
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = UvMode::Optimize))]
@@ -45,7 +46,7 @@ impl Default for ImageOptions {
     fn default() -> Self {
         Self {
             texture_size: 256,
-            grid: 100,
+            grid: None,
             uv: UvMode::Optimize,
             method: Method::Fit,
             no_content_aware: false,
@@ -56,6 +57,16 @@ impl Default for ImageOptions {
 }
 
 impl ImageOptions {
+    /// Cells as asked, or those of what is done.
+    pub fn settled_grid(&self) -> usize {
+        self.grid.unwrap_or(match (self.uv, self.method) {
+            (UvMode::Optimize, Method::Fit) => 200,
+            (UvMode::Optimize, Method::Paper) => 50,
+            // A plane that nothing bends.
+            _ => 1,
+        })
+    }
+
     /// Steps as asked, or those of the method.
     pub fn settled_steps(&self) -> usize {
         self.steps.unwrap_or(match self.method {
@@ -74,7 +85,7 @@ impl ImageOptions {
             }
         };
         within("texture-size", self.texture_size, 16, 4096)?;
-        within("grid", self.grid, 4, 400)?;
+        within("grid", self.grid.unwrap_or(4), 4, 400)?;
         within("steps", self.steps.unwrap_or(0), 0, 10_000)?;
         within("threads", self.threads, 0, crate::threads::MOST_THREADS)?;
         self.method.check(self.no_content_aware)

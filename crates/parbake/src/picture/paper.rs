@@ -42,7 +42,7 @@ pub fn moved(picture: &Picture, options: &ImageOptions, moves: &mut Moves, watch
     while picture.width.min(picture.height) > SIDE {
         picture = picture.halved();
     }
-    let plane = Plane { cells: options.grid };
+    let plane = Plane { cells: options.settled_grid() };
     let [from, to] = BOX;
     let points = as_f64(&plane.points()).into_iter().map(|p| (p * (to - from) + from).as_vec2().as_dvec2());
     let mut layout = plane.layout(points.collect());
@@ -120,7 +120,7 @@ mod tests {
         let run = |no_content_aware| {
             let options = ImageOptions {
                 texture_size: 64,
-                grid: 8,
+                grid: Some(8),
                 method: Method::Paper,
                 no_content_aware,
                 steps: Some(60),

@@ -26,7 +26,7 @@ pub fn run(scope: &Scope, picture: &Path, with: bool) -> Experiment {
     let options = ImageOptions {
         method: Method::Paper,
         no_content_aware: !with,
-        grid: CELLS,
+        grid: Some(CELLS),
         steps,
         ..scope.picture(SIZE)
     };

@@ -39,7 +39,7 @@ const STARTS: [(UvMode, &str); 3] =
 
 fn on_plane(scope: &Scope, picture: &Path, uv: UvMode) -> Experiment {
     let size = if scope.options.quick { 64 } else { 128 };
-    let options = ImageOptions { uv, grid: CELLS, ..scope.picture(size) };
+    let options = ImageOptions { uv, grid: Some(CELLS), ..scope.picture(size) };
     let label = if uv == UvMode::Keep { "fixed UV" } else { "UV" };
     let recipe = Recipe::Picture { options };
     Experiment { subject: Subject::picture(picture), recipe, label: format!("{label}, {CELLS} cells") }

@@ -8,8 +8,7 @@
 
 use crate::best_texture::Mapped;
 use crate::footprint::{Footprint, OnLevel};
-use crate::normal_matrix::{NormalMatrix, Patch, Row, add_sample};
-
+use crate::normal_matrix::{NormalMatrix, Patch};
 use glam::Vec4;
 use rayon::prelude::*;
 
@@ -32,7 +31,7 @@ impl TextureLoss {
 
     /// Overwrites `gradient` (size² values) with ∂L/∂T at `texels`.
     pub fn gradient(&self, texels: &[Vec4], gradient: &mut [Vec4]) {
-        gradient.par_iter_mut().zip(&self.matrix.rows).for_each(|(g, row)| *g = -row.right);
+        gradient.par_iter_mut().zip(&self.matrix.right).for_each(|(g, right)| *g = -*right);
         self.matrix.add_product(texels, gradient);
         gradient.par_iter_mut().for_each(|g| *g *= self.scale);
     }
@@ -56,14 +55,12 @@ fn patch(mapped: &Mapped, run: usize, size: usize) -> Patch {
     if footprints.is_empty() {
         return Patch::default();
     }
-    let width = high[0] - low[0];
-    let mut rows = vec![Row::default(); width * (high[1] - low[1])];
+    let mut patch = Patch::new(low, high);
     for (t, footprint) in &footprints {
         for sample in mapped.showings.iter().flat_map(|signal| signal.of(*t)) {
-            let ([x, y], fractions, _) = footprint.place(sample);
-            let place = (y - low[1]) * width + x - low[0];
-            add_sample(&mut rows, width, place, fractions, sample.weight, sample.target);
+            let (texel, fractions, _) = footprint.place(sample);
+            patch.add_sample(texel, fractions, sample.weight, sample.target);
         }
     }
-    Patch { origin: low, width, rows }
+    patch
 }
