@@ -21,9 +21,9 @@ use parbake_uv::optimise::{Balance, Problem, UvOptions, refine, shape, tensors};
 const MOST_SCALE: f64 = 3.0;
 /// Packing leaves so many texels more than the gutter: charts that touch cannot turn.
 const ROOM: f64 = 0.25;
-/// Minified, it must be better by this much: with a texture that is finer than what views see, a
-/// better picture at full size is worth nothing, and coordinates that were drawn out for it cost
-/// parallax maps 0.2 to 0.3 dB.
+/// Minified, a low-poly's must be better by this much: with a texture that is finer than what views
+/// see, a better picture at full size is worth nothing, and coordinates that were drawn out for it cost
+/// parallax maps 0.2 to 0.3 dB. A model's own smaller texture need only not be worse.
 const MINIFIED: f64 = 0.95;
 /// Turns of the refinement; in between showings are weighted anew.
 const TURNS: usize = 3;
@@ -68,6 +68,7 @@ pub fn moved(
     let relative = |layout: &Layout| -> Vec<f64> {
         errors(problem, layout, all_sizes).iter().zip(&kept).map(|(a, b)| a / b.max(1e-12)).collect()
     };
+    let minified = if all_sizes { 1.0 } else { MINIFIED };
     // The error that counts is that of all sizes.
     let total = |layout: &Layout| relative(layout).iter().sum::<f64>();
     let (mut balance, texture) = Balance::new(problem, start);
@@ -116,7 +117,7 @@ pub fn moved(
         let relative = relative(&layout);
         // By what the texture that will be solved for leaves.
         balance.update(&relative);
-        let sound = relative[0] < WORTH_IT && relative[1..].iter().all(|r| *r < MINIFIED);
+        let sound = relative[0] < WORTH_IT && relative[1..].iter().all(|r| *r < minified);
         let sum: f64 = relative.iter().sum();
         if sound && best.as_ref().is_none_or(|(least, ..)| sum < *least) {
             best = Some((sum, layout.clone(), relative));
