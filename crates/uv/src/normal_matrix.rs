@@ -86,7 +86,7 @@ pub struct NormalMatrix {
     pub size: usize,
     /// size² rows.
     pub rows: Vec<Row>,
-    /// size² right-hand sides.
+    /// size² right-hand sides; a solver of several levels takes them out and gathers them.
     pub right: Vec<Vec4>,
 }
 
@@ -167,24 +167,39 @@ impl NormalMatrix {
         }
     }
 
-    /// One texel, wherever it lies.
+    /// One texel's product, wherever it lies.
     fn near_border(&self, column: usize, y: usize, x: &[Vec4]) -> Vec4 {
-        let size = self.size;
+        let (size, rows) = (self.size, &self.rows);
         let at = y * size + column;
-        let (west, east, north, south) = (column > 0, column + 1 < size, y > 0, y + 1 < size);
-        let term = |there: bool, texel: usize, coupling: &dyn Fn() -> f32| {
-            if there { x[texel] * coupling() } else { Vec4::ZERO }
-        };
-        let (row, rows) = (&self.rows[at], &self.rows);
-        x[at] * row.centre
-            + term(west, at.wrapping_sub(1), &|| rows[at - 1].east)
-            + term(east, at + 1, &|| row.east)
-            + term(south && west, at + size - 1, &|| row.south_west)
-            + term(south, at + size, &|| row.south)
-            + term(south && east, at + size + 1, &|| row.south_east)
-            + term(north && west, at.wrapping_sub(size + 1), &|| rows[at - size - 1].south_east)
-            + term(north, at.wrapping_sub(size), &|| rows[at - size].south)
-            + term(north && east, at.wrapping_sub(size - 1), &|| rows[at - size + 1].south_west)
+        let (west, east) = (column > 0, column + 1 < size);
+        let mut sum = x[at] * rows[at].centre;
+        if west {
+            sum += x[at - 1] * rows[at - 1].east;
+        }
+        if east {
+            sum += x[at + 1] * rows[at].east;
+        }
+        if y + 1 < size {
+            let below = at + size;
+            if west {
+                sum += x[below - 1] * rows[at].south_west;
+            }
+            sum += x[below] * rows[at].south;
+            if east {
+                sum += x[below + 1] * rows[at].south_east;
+            }
+        }
+        if y > 0 {
+            let above = at - size;
+            if west {
+                sum += x[above - 1] * rows[above - 1].south_east;
+            }
+            sum += x[above] * rows[above].south;
+            if east {
+                sum += x[above + 1] * rows[above + 1].south_west;
+            }
+        }
+        sum
     }
 }
 
