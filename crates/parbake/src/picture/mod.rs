@@ -42,7 +42,7 @@ use texture::{decibels, errors, written_texture};
 pub struct BakedImage {
     /// The plane with its texture.
     pub model: Model,
-    /// How texture coordinates moved, if they did.
+    /// How texture coordinates moved, if they did, of at most 50 cells along a side.
     pub uv_moves: Option<UvMoves>,
     /// What the run saw.
     pub report: ImageReport,
@@ -121,11 +121,7 @@ pub fn bake_image(
         stopped_early: watcher.stopped(),
         convergence: moves.convergence,
     };
-    let uv_moves = (!left_as_is && !moves.frames.is_empty()).then(|| UvMoves {
-        frames: moves.frames,
-        triangles: layout.triangles.clone(),
-        charts: layout.charts.clone(),
-    });
+    let uv_moves = (!left_as_is && !moves.frames.is_empty()).then(|| drawn(plane, moves.frames));
     Ok(BakedImage { model: model(image, plane, &layout, &texture), uv_moves, report })
 }
 
@@ -135,6 +131,17 @@ struct Moves {
     frames: Vec<Vec<Vec2>>,
     steps: usize,
     convergence: Option<Convergence>,
+}
+
+/// Cells along a side that an animation shows: the lines of more run together.
+const DRAWN_CELLS: usize = 50;
+
+/// The moves of so many of a plane's cells as can be drawn.
+fn drawn(plane: Plane, frames: Vec<Vec<Vec2>>) -> UvMoves {
+    let (plane, kept) = plane.thinned(DRAWN_CELLS);
+    let layout = plane.layout(as_f64(&plane.points()));
+    let frames = frames.into_iter().map(|frame| kept.iter().map(|&i| frame[i]).collect());
+    UvMoves { frames: frames.collect(), triangles: layout.triangles, charts: layout.charts }
 }
 
 fn as_f64(points: &[Vec2]) -> Vec<DVec2> {

@@ -82,6 +82,16 @@ impl Plane {
         (Self { cells: twice }, fine.collect())
     }
 
+    /// For each point of a grid of at most `most` cells along a side the nearest one of this grid, and
+    /// that grid.
+    pub fn thinned(self, most: usize) -> (Self, Vec<usize>) {
+        let cells = self.cells.min(most);
+        let nearest = |i: usize| (i * self.cells + cells / 2) / cells;
+        let row = |j: usize| nearest(j) * (self.cells + 1);
+        let points = (0..=cells).flat_map(|j| (0..=cells).map(move |i| row(j) + nearest(i)));
+        (Self { cells }, points.collect())
+    }
+
     /// The layout of this grid with these points.
     pub fn layout(self, points: Vec<DVec2>) -> Layout {
         // `Layout::new` keeps the order of vertices, which are all different here.
@@ -122,6 +132,15 @@ mod tests {
             assert!((step.y_axis - dvec2(0.0, 0.02)).length() < 1e-6);
             assert!(layout.doubled_area(t as usize) > 0.0);
         }
+    }
+
+    /// Protects the thinned grid of drawings: its corners are the plane's, and fine ones stay whole.
+    #[test]
+    fn thinned_grids_reach_the_corners() {
+        let (plane, points) = Plane { cells: 7 }.thinned(3);
+        assert_eq!((plane.cells, points.len()), (3, 16));
+        assert_eq!([points[0], points[3], points[12], points[15]], [0, 7, 56, 63]);
+        assert_eq!(Plane { cells: 3 }.thinned(50).1, (0..16).collect::<Vec<_>>());
     }
 
     /// Protects refinement: the finer grid is the same surface.
