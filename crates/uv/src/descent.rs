@@ -27,6 +27,9 @@ pub trait Region {
     fn free(&self) -> &[DVec2];
     /// The largest step in [0, `limit`] along `direction` up to which all is feasible.
     fn max_step(&self, points: &[DVec2], direction: &[DVec2], limit: f64) -> f64;
+    /// Slows those points down along `direction` that alone would end the step before `limit`, where
+    /// that can be told point by point; [`Region::max_step`] bounds what is left.
+    fn slow_down(&self, _points: &[DVec2], _direction: &mut [DVec2], _limit: f64) {}
     /// Whether this very layout is feasible, decided exactly.
     fn is_feasible(&self, points: &[DVec2]) -> bool;
 }
@@ -43,15 +46,39 @@ pub struct DescentOptions {
     pub tolerance: f64,
     /// …so many times in a row.
     pub patience: usize,
-    /// No point moves farther than this in a step, in units of the square.
-    pub longest_move: f64,
+    /// How far a step may go.
+    pub reach: Reach,
     /// Steps after which the preconditioner is made anew where the descent is; 0 keeps the first.
     pub renewal: usize,
 }
 
 impl Default for DescentOptions {
     fn default() -> Self {
-        Self { steps: 60, memory: 8, tolerance: 1e-4, patience: 3, longest_move: 0.1, renewal: 0 }
+        Self { steps: 60, memory: 8, tolerance: 1e-4, patience: 3, reach: Reach::default(), renewal: 0 }
+    }
+}
+
+/// How far a step may go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// No point moves farther than this, in units of the square.
+    pub longest_move: f64,
+    /// Points are slowed down ([`Region::slow_down`]) that alone would go farther than this share of
+    /// their way to the region's border; without it the nearest of them bounds the step of all.
+    pub share_by_point: Option<f64>,
+}
+
+impl Reach {
+    /// The step along `direction` that is wanted: 1, or less where a point would move too far.
+    fn wanted(&self, direction: &[DVec2]) -> f64 {
+        let longest = direction.iter().map(|d| d.length()).fold(0.0, f64::max);
+        (self.longest_move / longest).min(1.0)
+    }
+}
+
+impl Default for Reach {
+    fn default() -> Self {
+        Self { longest_move: 0.1, share_by_point: None }
     }
 }
 
@@ -92,7 +119,7 @@ pub fn descend<P: Preconditioner>(
             current = preconditioner(&place.points);
         }
         let before = place.value;
-        match place.step(&mut memory, objective, region, &current, options.longest_move) {
+        match place.step(&mut memory, objective, region, &current, &options.reach) {
             Step::Stuck => break,
             Step::Forgot => continue,
             Step::Moved => values.push(place.value),
@@ -153,14 +180,14 @@ impl Place {
         mask(&mut self.gradient, region.free());
     }
 
-    /// One step of L-BFGS with its line search; no point moves farther than `longest_move`.
+    /// One step of L-BFGS with its line search.
     pub fn step(
         &mut self,
         memory: &mut Lbfgs,
         objective: &mut impl Objective,
         region: &impl Region,
         preconditioner: &impl Preconditioner,
-        longest_move: f64,
+        reach: &Reach,
     ) -> Step {
         let free = region.free();
         let mut direction = memory.direction(&self.gradient, preconditioner, free);
@@ -173,7 +200,11 @@ impl Place {
         if slope >= 0.0 || !slope.is_finite() {
             return Step::Stuck;
         }
-        let Some(found) = self.search(&direction, slope, objective, region, longest_move) else {
+        if let Some(slowed) = self.slowed(&direction, slope, region, reach) {
+            direction = slowed;
+            slope = dot(&direction, &self.gradient);
+        }
+        let Some(found) = self.search(&direction, slope, objective, region, reach) else {
             if memory.is_empty() {
                 return Step::Stuck;
             }
@@ -188,6 +219,21 @@ impl Place {
         Step::Moved
     }
 
+    /// The direction with points slowed down, if it still promises enough.
+    fn slowed(
+        &self,
+        direction: &[DVec2],
+        slope: f64,
+        region: &impl Region,
+        reach: &Reach,
+    ) -> Option<Vec<DVec2>> {
+        const ENOUGH: f64 = 0.1;
+        let share = reach.share_by_point?;
+        let mut slowed = direction.to_vec();
+        region.slow_down(&self.points, &mut slowed, reach.wanted(direction) / share);
+        (dot(&slowed, &self.gradient) < ENOUGH * slope).then_some(slowed)
+    }
+
     /// The line search: leaves what it accepts in `candidate` and `next`, and gives its value.
     fn search(
         &mut self,
@@ -195,10 +241,9 @@ impl Place {
         slope: f64,
         objective: &mut impl Objective,
         region: &impl Region,
-        longest_move: f64,
+        reach: &Reach,
     ) -> Option<f64> {
-        let longest = direction.iter().map(|d| d.length()).fold(0.0, f64::max);
-        let wanted = (longest_move / longest).min(1.0);
+        let wanted = reach.wanted(direction);
         let limit = region.max_step(&self.points, direction, wanted / FEASIBLE_SHARE);
         let mut length = wanted.min(FEASIBLE_SHARE * limit);
         for _ in 0..HALVINGS {

@@ -7,7 +7,8 @@
 //! residual, shown                     what it leaves: as minimised, and as seen
 //! distortion, metric                  energies of triangles; the signal's structure tensors
 //! contact, inversion, region          what keeps a layout bijective
-//! laplacian, curvature                how a step is scaled
+//! laplacian, curvature,
+//! gauss_seidel, stiffness             how a step is scaled
 //! lbfgs, descent                      feasible descent
 //! variable_projection, optimise       the default method
 //! paper                               the paper's method
@@ -19,6 +20,7 @@ pub mod curvature;
 pub mod descent;
 pub mod distortion;
 pub mod footprint;
+pub mod gauss_seidel;
 pub mod inversion;
 pub mod laplacian;
 pub mod lbfgs;
@@ -32,4 +34,5 @@ pub mod residual;
 pub mod runs;
 pub mod shown;
 pub mod signal;
+pub mod stiffness;
 pub mod variable_projection;

@@ -50,6 +50,24 @@ fn tensor_in_texture(mapped: &Mapped, texture: &Texture, t: usize) -> DMat2 {
     sum * ((size * size) as f64 / samples.len() as f64)
 }
 
+/// How much the error of the first showing would grow if all of it moved by a unit in the texture:
+/// `Σₛ ωₛ Σ_channels |∇T|²`, Gauss and Newton's half of its second derivative with the texture held.
+pub fn steepness(mapped: &Mapped, texture: &Texture) -> f64 {
+    let by_triangle: Vec<f64> = (0..mapped.triangles.len())
+        .into_par_iter()
+        .map(|t| {
+            let samples = mapped.showings.first().map_or(&[][..], |signal| signal.of(t));
+            if samples.is_empty() {
+                return 0.0;
+            }
+            let weight: f64 = samples.iter().map(|s| f64::from(s.weight)).sum();
+            let tensor = tensor_in_texture(mapped, texture, t);
+            weight * (tensor.x_axis.x + tensor.y_axis.y)
+        })
+        .collect();
+    by_triangle.iter().sum()
+}
+
 /// How strongly the start follows the signal's direction, from 0 to 1: above, the other
 /// direction would be squeezed to nothing.
 const ANISOTROPY: f64 = 0.95;

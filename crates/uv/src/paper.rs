@@ -22,7 +22,7 @@ pub mod texture_loss;
 
 use crate::best_texture::{Mapped, Texture};
 use crate::contact::Contact;
-use crate::descent::{Place, Region, Step};
+use crate::descent::{Place, Reach, Region, Step};
 use crate::lbfgs::{Identity, Lbfgs};
 use crate::signal::Signal;
 use parbake_adam::{Adam, AdamOptions};
@@ -207,9 +207,10 @@ pub fn paper_method(
             best = Some((error, place.points.clone(), texture.clone()));
         }
         let mut energy = problem.energy(&place.points, &texture, &errors);
+        let reach = Reach { longest_move: options.longest_move, ..Reach::default() };
         place.refresh(&mut energy, region);
         let from = place.points.clone();
-        let step = place.step(&mut memory, &mut energy, region, &Identity, options.longest_move);
+        let step = place.step(&mut memory, &mut energy, region, &Identity, &reach);
         rounds += 1;
         let still = step != Step::Forgot && longest(&from, &place.points) < options.threshold;
         let go_on = watch(&PaperProgress { round: rounds, error, points: &place.points });

@@ -35,6 +35,10 @@ impl Region for Feasible {
         self.contact.max_step(points, direction, limit)
     }
 
+    fn slow_down(&self, points: &[DVec2], direction: &mut [DVec2], limit: f64) {
+        inversion::slow_down(&self.upright, points, direction, limit);
+    }
+
     fn is_feasible(&self, points: &[DVec2]) -> bool {
         inversion::all_upright(&self.upright, points) && self.contact.is_feasible(points)
     }

@@ -8,10 +8,10 @@ use glam::{DVec2, Vec4};
 use parbake_atlas::Layout;
 use parbake_uv::best_texture::{Mapped, Solve, Texture};
 use parbake_uv::contact::{Border, ContactOptions};
-use parbake_uv::descent::{DescentOptions, descend};
+use parbake_uv::descent::{DescentOptions, Reach, descend};
 use parbake_uv::distortion::Distortion;
 use parbake_uv::laplacian::Laplacian;
-use parbake_uv::optimise::{Balance, Problem, UvOptions, refine, shape, tensors};
+use parbake_uv::optimise::{Balance, Problem, RefineBy, UvOptions, refine, shape, tensors};
 use parbake_uv::region::Feasible;
 use parbake_uv::runs::Runs;
 use parbake_uv::signal::Signal;
@@ -31,16 +31,20 @@ struct Settings {
     contact_weight: f64,
     slide: bool,
     noise: f32,
+    /// Steps scaled by stiffness, with points slowed down, instead of by the Laplacian.
+    stiff: bool,
 }
 
 fn settings() -> impl Strategy<Value = Settings> {
     let weight = || prop_oneof![Just(0.0), Just(1e-4), Just(1e3)];
-    (weight(), weight(), any::<bool>(), prop_oneof![Just(0.0f32), Just(1.0), Just(1e4)]).prop_map(
-        |(distortion_weight, contact_weight, slide, noise)| Settings {
+    let noise = prop_oneof![Just(0.0f32), Just(1.0), Just(1e4)];
+    (weight(), weight(), any::<bool>(), noise, any::<bool>()).prop_map(
+        |(distortion_weight, contact_weight, slide, noise, stiff)| Settings {
             distortion_weight,
             contact_weight,
             slide,
             noise,
+            stiff,
         },
     )
 }
@@ -72,7 +76,7 @@ fn contact(settings: Settings) -> ContactOptions {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(12))]
+    #![proptest_config(ProptestConfig::with_cases(16))]
 
     /// Protects the default way under settings that nobody should choose.
     #[test]
@@ -85,6 +89,7 @@ proptest! {
             refine_steps: STEPS,
             distortion_weight: settings.distortion_weight,
             contact_weight: settings.contact_weight,
+            refine_by: if settings.stiff { RefineBy::Stiffness } else { RefineBy::Laplacian },
             ..UvOptions::default()
         };
         let (balance, texture) = Balance::new(&problem, &start);
@@ -118,8 +123,8 @@ proptest! {
             scale: 1e6,
             best: Best::default(),
         };
-        let options =
-            DescentOptions { steps: STEPS, longest_move: 1e6, tolerance: 0.0, ..DescentOptions::default() };
+        let reach = Reach { longest_move: 1e6, share_by_point: settings.stiff.then_some(0.9) };
+        let options = DescentOptions { steps: STEPS, reach, tolerance: 0.0, ..DescentOptions::default() };
         let laplacian = |at: &[DVec2]| Laplacian::new(at.len(), triangles, 0.05);
         let mut points: Vec<DVec2> = start.points.clone();
         let descent = descend(&mut points, &mut objective, &region, laplacian, &options, |_, _| true);

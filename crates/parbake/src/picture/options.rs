@@ -15,8 +15,8 @@ pub struct ImageOptions {
     pub texture_size: usize,
 
     /// Cells along a side of the plane, 4 to 400: more follow the picture better and make the
-    /// model larger, by some 34 bytes a cell (44 from 256 cells on) [default: 200, with --method
-    /// paper 50 as there, 1 where coordinates stay]
+    /// model larger, by some 34 bytes a cell (44 from 256 cells on) [default: 200, 240 from 128
+    /// texels on, 400 from 256 on, with --method paper 50 as there, 1 where coordinates stay]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
     pub grid: Option<usize>,
 
@@ -33,7 +33,7 @@ pub struct ImageOptions {
     pub no_content_aware: bool,
 
     /// Steps that texture coordinates take at most on each of the grids, coarse to fine, or with
-    /// --method paper on the one it has, 0 to 10000 [default: 100, 70 from 256 texels on, whose
+    /// --method paper on the one it has, 0 to 10000 [default: 80, 40 from 256 texels on, whose
     /// steps take longer, with --method paper 800]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
     pub steps: Option<usize>,
@@ -61,7 +61,11 @@ impl ImageOptions {
     /// Cells as asked, or those of what is done.
     pub fn settled_grid(&self) -> usize {
         self.grid.unwrap_or(match (self.uv, self.method) {
-            (UvMode::Optimize, Method::Fit) => 200,
+            (UvMode::Optimize, Method::Fit) => match self.texture_size {
+                0..128 => 200,
+                128..256 => 240,
+                _ => 400,
+            },
             (UvMode::Optimize, Method::Paper) => 50,
             // A plane that nothing bends.
             _ => 1,
@@ -71,8 +75,8 @@ impl ImageOptions {
     /// Steps as asked, or those of the method.
     pub fn settled_steps(&self) -> usize {
         self.steps.unwrap_or(match self.method {
-            Method::Fit if self.texture_size < 256 => 100,
-            Method::Fit => 70,
+            Method::Fit if self.texture_size < 256 => 80,
+            Method::Fit => 40,
             Method::Paper => PaperOptions::default().rounds,
         })
     }
