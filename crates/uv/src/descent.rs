@@ -6,6 +6,9 @@
 //! of a file**: candidates are rounded to `f32` first and judged then. The value never
 //! rises. Points move only along free coordinates.
 //!
+//! Where many points may move, the one that may move least bounds the step of all; [`Reach`] can
+//! have such points slowed down alone instead.
+//!
 //! [`descend`] is the whole way for one objective; [`Place::step`] is one step, for
 //! objectives that change in between.
 
@@ -99,8 +102,8 @@ pub struct Descent {
     pub evaluations: usize,
 }
 
-/// Descends from `points`; `preconditioner` makes one for a layout. `step` sees every accepted layout and its value, and may end
-/// the descent by returning false.
+/// Descends from `points`; `preconditioner` makes one for a layout. `step` sees every accepted layout
+/// and its value, and may end the descent by returning false.
 pub fn descend<P: Preconditioner>(
     points: &mut Vec<DVec2>,
     objective: &mut impl Objective,

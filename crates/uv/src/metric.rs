@@ -50,8 +50,8 @@ fn tensor_in_texture(mapped: &Mapped, texture: &Texture, t: usize) -> DMat2 {
     sum * ((size * size) as f64 / samples.len() as f64)
 }
 
-/// How much the error of the first showing would grow if all of it moved by a unit in the texture:
-/// `Σₛ ωₛ Σ_channels |∇T|²`, Gauss and Newton's half of its second derivative with the texture held.
+/// How steep the texture is where the first showing's samples fall: `Σₛ ωₛ Σ_channels |∇T|²`, Gauss and
+/// Newton's half of the error's second derivative for a common motion, with the texture held.
 pub fn steepness(mapped: &Mapped, texture: &Texture) -> f64 {
     let by_triangle: Vec<f64> = (0..mapped.triangles.len())
         .into_par_iter()

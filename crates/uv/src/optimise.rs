@@ -81,8 +81,8 @@ pub enum RefineBy {
     /// By the graph's Laplacian, factorised once; the first triangle that would turn over bounds the
     /// step of all.
     Laplacian,
-    /// By what moving a point costs (`stiffness.rs`), with a triangle's points slowed down before it turns
-    /// over: for the many small cells of a picture. Models gain 0.05 dB by it.
+    /// By what moving a point costs (`stiffness.rs`), with a triangle's points slowed down before it
+    /// turns over: for the many small cells of a picture. Models gain 0.05 dB by it.
     Stiffness,
 }
 

@@ -6,13 +6,13 @@
 //!
 //! - Triangles that are nearly closed are stiffer than others by orders of magnitude, and few pairs
 //!   of L-BFGS cannot tell which: without H_D all points take the small steps that those few ask for.
-//! - The error's own Hessian with the texture held is `Σ ω ∇T ∇Tᵀ`. The best texture follows what moves
-//!   smoothly and gives most of that back, so what is left is stiff against differences of
-//!   neighbours: a Laplacian, of a share of the mean triangle's. Tensors of each triangle in β's place
-//!   gain nothing, nor do shares of 0.02 or 0.2 or a κ of 0.1 or 1.
+//! - The error's own Hessian with the texture held is `Σ ω ∇T ∇Tᵀ`. The best texture follows what
+//!   moves smoothly and gives most of that back, so what is left is stiff against differences of
+//!   neighbours: a Laplacian, of a share of the mean triangle's. Tensors of each triangle in β's
+//!   place gain nothing, nor do shares of 0.02 or 0.2 or a κ of 0.1 or 1.
 //!
-//! Applied by a sweep of Gauss-Seidel (`gauss_seidel.rs`), made anew for each step: pictures at 128² on 200 cells gain
-//! 0.4 to 1.0 dB over the Laplacian alone, on 400 cells 1.6 to 2.4 dB.
+//! Applied by a sweep of Gauss-Seidel (`gauss_seidel.rs`), made anew for each step: pictures at 128²
+//! on 200 cells gain 0.4 to 1.0 dB over the Laplacian alone, on 400 cells 1.6 to 2.4 dB.
 
 use crate::best_texture::{Mapped, Texture};
 use crate::distortion::Distortion;
@@ -38,8 +38,8 @@ pub struct Stiffness<'a> {
 }
 
 impl<'a> Stiffness<'a> {
-    /// For an objective `scale · R + distortion_weight · D` whose error R the layout `mapped` leaves with
-    /// `texture`.
+    /// For an objective `scale · R + distortion_weight · D` whose error R the layout `mapped` leaves
+    /// with `texture`.
     pub fn new(
         mapped: &Mapped<'a>,
         texture: &Texture,
@@ -58,7 +58,8 @@ impl<'a> Stiffness<'a> {
 
     /// H at these points, of which `free` tells what may move.
     pub fn at(&self, points: &[DVec2], free: &[DVec2]) -> GaussSeidel<'_> {
-        // A side of a triangle is half an edge: |e|² + |f|² + |e − f|² of the edges e, f from its first corner.
+        // A side of a triangle is half an edge: |e|² + |f|² + |e − f|², e and f its edges from the
+        // first corner.
         let side = DMat2::IDENTITY * (0.5 * self.error);
         let blocks: Vec<[[DMat2; 2]; 2]> = (self.distortion.elements.par_iter())
             .zip(self.triangles)
