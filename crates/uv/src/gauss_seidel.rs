@@ -22,7 +22,7 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// The sides of F triangles among so many points.
+    /// The sides of F triangles, each of three different ones of so many points.
     pub fn new(points: usize, triangles: &[[u32; 3]]) -> Self {
         let sorted = |[a, b]: [u32; 2]| if a > b { [a, b] } else { [b, a] };
         let sides = |t: &[u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].map(sorted);
@@ -63,8 +63,9 @@ pub struct GaussSeidel<'a> {
 }
 
 impl<'a> GaussSeidel<'a> {
-    /// The sum of the triangles' blocks, by pairs of their edges from the first corner, and of
-    /// `shift` on the diagonal; `free` tells what may move.
+    /// The sum of F triangles' `blocks`, by pairs of their edges from the first corner
+    /// ([`Element::curvature`](crate::distortion::Element::curvature)), and of `shift` > 0 on the
+    /// diagonal; for each of P points `free` has 1 where a coordinate may move and 0 where not.
     pub fn new(
         pattern: &'a Pattern,
         triangles: &[[u32; 3]],
@@ -85,15 +86,14 @@ impl<'a> GaussSeidel<'a> {
                 before[*side as usize] += if i > j { block } else { block.transpose() };
             }
         }
-        let held = |rows: DVec2, columns: DVec2| DMat2::from_cols(rows * columns.x, rows * columns.y);
-        let masked = |block: DMat2, mask: DMat2| {
-            DMat2::from_cols(block.x_axis * mask.x_axis, block.y_axis * mask.y_axis)
+        let masked = |block: DMat2, rows: DVec2, columns: DVec2| {
+            DMat2::from_cols(block.x_axis * rows * columns.x, block.y_axis * rows * columns.y)
         };
-        for (i, free_here) in free.iter().enumerate() {
-            own[i] =
-                masked(own[i], held(*free_here, *free_here)) + DMat2::from_diagonal(DVec2::ONE - *free_here);
+        for (i, &rows) in free.iter().enumerate() {
+            // A coordinate that is not free has nothing but its own one.
+            own[i] = masked(own[i], rows, rows) + DMat2::from_diagonal(DVec2::ONE - rows);
             for k in pattern.row(i) {
-                before[k] = masked(before[k], held(*free_here, free[pattern.earlier[k] as usize]));
+                before[k] = masked(before[k], rows, free[pattern.earlier[k] as usize]);
             }
         }
         let inverse = own.iter().map(DMat2::inverse).collect();

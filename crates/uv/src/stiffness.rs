@@ -26,6 +26,10 @@ const SHARE: f64 = 0.06;
 /// κ: holds charts and regions in place, relative to their neighbours.
 const SHIFT: f64 = 0.3;
 
+/// Keeps blocks invertible where neither error nor distortion says anything, as on a plain picture;
+/// objectives are of the order of 1.
+const LEAST_SHIFT: f64 = 1e-12;
+
 /// H without its points.
 pub struct Stiffness<'a> {
     distortion: &'a Distortion,
@@ -56,7 +60,7 @@ impl<'a> Stiffness<'a> {
         }
     }
 
-    /// H at these points, of which `free` tells what may move.
+    /// H at these P points; `free` has 1 where a coordinate may move and 0 where not.
     pub fn at(&self, points: &[DVec2], free: &[DVec2]) -> GaussSeidel<'_> {
         // A side of a triangle is half an edge: |e|² + |f|² + |e − f|², e and f its edges from the
         // first corner.
@@ -73,7 +77,7 @@ impl<'a> Stiffness<'a> {
                 ]
             })
             .collect();
-        let shift = (SHIFT * self.error).max(f64::MIN_POSITIVE);
+        let shift = (SHIFT * self.error).max(LEAST_SHIFT);
         GaussSeidel::new(&self.pattern, self.triangles, &blocks, shift, free)
     }
 }

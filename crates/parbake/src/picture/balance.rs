@@ -1,7 +1,7 @@
 //! The guard of the default method: however far texture coordinates move, no size is shown
 //! worse than with an ordinary texture.
 
-use super::texture::{errors, written_texture};
+use super::texture::{NOTHING, errors, written_texture};
 use parbake_atlas::Layout;
 use parbake_uv::best_texture::Texture;
 use parbake_uv::optimise::Balance;
@@ -51,7 +51,7 @@ fn balanced_texture(
         texture = written_texture(layout, &balance.weighted(all), texture);
         let found = errors(layout, all, &texture);
         let relative: Vec<f64> = found.iter().zip(&balance.baseline).map(|(e, kept)| e / kept).collect();
-        let fine = relative[0] < 1.0 && relative[1..].iter().all(|r| *r <= TOLERATED);
+        let fine = kept[0] > NOTHING && relative[0] < 1.0 && relative[1..].iter().all(|r| *r <= TOLERATED);
         let better = best.as_ref().is_none_or(|(error, _)| relative[0] < 0.99 * error);
         if fine && better {
             best = Some((relative[0], texture.clone()));

@@ -165,3 +165,21 @@ fn model(image: &Image, plane: Plane, layout: &Layout, texture: &Texture) -> Mod
     };
     Model { name: image.name.clone(), mesh, materials: vec![material], images: vec![written] }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects pictures on which nothing can be gained: they get two triangles and no plane of
+    /// thousands.
+    #[test]
+    fn a_plain_picture_is_left_as_it_is() {
+        let pixels = vec![[90, 120, 40, 255]; 96 * 64];
+        let picture = Image { name: "plain".into(), width: 96, height: 64, pixels };
+        let options = ImageOptions { texture_size: 16, grid: Some(8), ..ImageOptions::default() };
+        let baked = bake_image(&picture, &options, &()).expect("options are in range");
+        assert!(baked.report.left_as_is);
+        assert_eq!(baked.model.mesh.triangles.len(), 2);
+        assert_eq!(baked.report.written, baked.report.kept);
+    }
+}
