@@ -58,10 +58,9 @@ pub struct PaperOptions {
     /// …and its width d₀ = 5 in texels: the activation that the contact was made with.
     pub contact_texels: f64,
     /// s > 0, the scale between rest shapes and the texture: the energy is least where a
-    /// triangle is 1 / s times its rest shape. With rest shapes in units of the square
-    /// (those of the start, say), texels along the texture over pixels along the picture:
-    /// each triangle then wants as many texels as it has pixels, the erroneous ones get
-    /// them. With s = 1 little moves.
+    /// triangle is 1 / s times its rest shape. Texels over pixels of what is shown makes
+    /// triangles want more than they can have, so that the erroneous ones get it. With s = 1
+    /// and rest shapes in units of the square little moves.
     pub scale: f64,
     /// Adam's; the paper names none.
     pub adam: AdamOptions,

@@ -1,12 +1,13 @@
 //! The paper's method on a picture: one grid, for the full size alone (`parbake_uv::paper`).
 //!
 //! As in section 4.4 the plane begins as the box [0.01, 0.99]² of the texture, and a barrier
-//! five texels wide (section 4.5) keeps it from the texture's border. The energy's scale is s² =
-//! texels / pixels of the whole texture and of the whole picture: triangles with errors want as many
-//! texels as they have pixels, which is how we read section 4.5's “the same number of texels”. Without the
-//! content-aware term s says how stiff distortion makes the plane, so both readings matter
-//! to Table 3 (docs/figures.md). Samples are those of the picture halved until its shorter side is
-//! at most 512 pixels. The paper has 50 cells along a side.
+//! five texels wide (section 4.5) keeps it from the texture's border. Its rest shape is the plane as the
+//! paper's mesh normalization (section 4.4) leaves it, [−1, 1]². Texture coordinates count in
+//! units of s² = texels / pixels of the whole texture and of the whole picture, which is how we read
+//! section 4.5's “the same number of texels”. Without the content-aware term both say how stiff
+//! distortion makes the plane, so they matter to Table 3 (docs/figures.md). Samples are
+//! those of the picture halved until its shorter side is at most 512 pixels. The paper has 50 cells
+//! along a side.
 //!
 //! Contract: the best round's layout, which is sound; it is returned even where it shows
 //! the picture worse than it was.
@@ -18,7 +19,7 @@ use crate::message::{Message, Stage, Watcher};
 use crate::options::Method;
 use crate::picture::ImageOptions;
 use parbake_atlas::Layout;
-use parbake_model::glam::Vec2;
+use parbake_model::glam::{DMat2, Vec2};
 use parbake_uv::best_texture::Mapped;
 use parbake_uv::contact::{Border, ContactOptions};
 use parbake_uv::paper::{PaperOptions, paper_method};
@@ -29,6 +30,8 @@ use parbake_uv::runs::Runs;
 const SIDE: usize = 512;
 /// The box in which the plane begins, from and to, along both axes.
 const BOX: [f64; 2] = [0.01, 0.99];
+/// Side of the plane where nothing pulls at it: it fills [−1, 1]².
+const PLANE: f64 = 2.0;
 /// λ_uv for pictures on a plane.
 const DISTORTION_WEIGHT: f64 = 1e-5;
 
@@ -57,7 +60,8 @@ pub fn moved(picture: &Picture, options: &ImageOptions, moves: &mut Moves, watch
     let region = Feasible::new(&layout, &contact(options, own.contact_texels));
     let total = own.rounds;
     let (size, barrier) = (options.texture_size, Some(region.contact()));
-    let found = paper_method(&mapped, &plane.rest(), size, &region, barrier, &own, |progress| {
+    let rest: Vec<DMat2> = plane.rest().into_iter().map(|rest| rest * PLANE).collect();
+    let found = paper_method(&mapped, &rest, size, &region, barrier, &own, |progress| {
         if progress.round == 1 || progress.round.is_multiple_of(FRAME_ROUNDS) {
             moves.frames.push(progress.points.iter().map(|p| p.as_vec2()).collect::<Vec<Vec2>>());
         }
