@@ -4,14 +4,15 @@
 //! Every pixel of the training views gives examples: where the high-poly fills it, the
 //! low-poly's nearest layer shall be opaque; where it does not, all of its layers shall be
 //! left out. With y = ±1 and the opacity o, the squared hinge `max(0, 1 − y o)²` is convex in
-//! the coefficients, and so is a membrane between neighbouring texels; Adam walks down both
-//! in small groups of views. Texels that no view wants left out stay opaque from everywhere,
+//! the coefficients, and so are a membrane and a thin plate (`thin_plate.rs`) through
+//! neighbouring texels; Adam walks down all in small groups of views. Texels that no view wants left out stay opaque from everywhere,
 //! and only examples near the others are looked at.
 //!
 //! Contract: examples are summed in their order, so the result does not depend on the number
 //! of threads.
 
 use crate::reference::Reference;
+use crate::thin_plate::ThinPlate;
 use crate::view_walk::Walker;
 use crate::watch::{Stage, Watch};
 use parbake_adam::{Adam, AdamOptions};
@@ -37,11 +38,15 @@ pub struct CutoutOptions {
     /// How much neighbouring texels are alike, as a share of the examples' mean pull on a texel:
     /// a little makes outlines smooth that many maps would fit alike.
     pub stiffness: f32,
+    /// How much texels resist to bend away from a ramp through their neighbours, as such a
+    /// share too: it keeps outlines from fraying, texel by texel, where the surface is seen at
+    /// a grazing angle.
+    pub bending: f32,
 }
 
 impl Default for CutoutOptions {
     fn default() -> Self {
-        Self { order: 3, size: 64, steps: 200, views_per_step: 24, rate: 0.3, stiffness: 1e-3 }
+        Self { order: 4, size: 64, steps: 200, views_per_step: 24, rate: 0.3, stiffness: 1e-3, bending: 2e-3 }
     }
 }
 
@@ -152,6 +157,7 @@ pub fn fit_cutout(
     let rate = AdamOptions { rate: options.rate, ..AdamOptions::default() };
     let mut adam = Adam::new(moving.len(), rate);
     let wanted = wanted(views, options.size);
+    let plate = ThinPlate::new(options.size, wanted.clone());
     for step in 0..options.steps {
         watch.progress(Stage::Cutout, step, options.steps);
         if views.iter().all(Vec::is_empty) || watch.should_stop() {
@@ -168,6 +174,7 @@ pub fn fit_cutout(
         let asked: usize = chosen.iter().map(|view| view.len()).sum();
         let mean_pull = asked as f32 / wanted.len() as f32;
         add_membrane(&map, &wanted, options.stiffness * mean_pull, &mut gradient);
+        plate.add_gradient(&map.coefficients, options.bending * mean_pull, &mut gradient);
         let left = 1.0 - step as f32 / options.steps as f32;
         adam.step(&mut moving, &lanes(&gradient), left);
         for (four, moved) in map.coefficients.chunks_mut(4).zip(&moving) {

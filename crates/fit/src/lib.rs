@@ -33,6 +33,7 @@ pub mod schedule;
 pub mod start;
 pub mod stencil;
 pub mod territory;
+pub mod thin_plate;
 pub mod view_walk;
 pub mod views;
 pub mod watch;

@@ -12,6 +12,8 @@
 //! values, weighted by sample. Views of a step are summed in their order, so the result does
 //! not depend on the number of threads.
 
+mod plate;
+
 use crate::canvas::Canvas;
 use crate::color::respond;
 use crate::reference::Reference;
@@ -26,6 +28,7 @@ use parbake_render::parallax::{ShParallax, Sight};
 use parbake_render::parallax_variants::shift_map::{ShiftMap, Vantage};
 use parbake_render::shade::cosine_with_derivative;
 use parbake_render::texture::{Taps, taps};
+use plate::MapPlate;
 use rayon::prelude::*;
 
 /// How the map is fitted.
@@ -44,6 +47,10 @@ pub struct ParallaxOptions {
     /// Adam's ε for coefficients, as a gradient a pixel: where a shift would better so little,
     /// nothing moves. Without it a map that nobody needs would wander about as far as any.
     pub indifference: f32,
+    /// How much coefficients resist to bend away from a ramp through their neighbouring texels: a
+    /// bend by one texture width weighs as much as this squared difference in each of a texel's
+    /// pixels. It keeps lines whole where shifts are far.
+    pub bending: f32,
     /// About how far texels move in a step, whose values go from 0 to 1.
     pub texture_rate: f32,
 }
@@ -57,6 +64,7 @@ impl Default for ParallaxOptions {
             views_per_step: 12,
             rate: 5e-4,
             indifference: 3e-4,
+            bending: 2.0,
             texture_rate: 0.01,
         }
     }
@@ -249,6 +257,7 @@ pub fn fit_parallax<M: ShiftMap>(
     let mut adam_map = Adam::new(moving.len(), map_options);
     let mut adam_color = Adam::new(texels, at_rate(options.texture_rate));
     let mut adam_normal = Adam::new(texels, at_rate(options.texture_rate));
+    let plate = MapPlate::new(views, &state.map);
     let mut losses = Vec::with_capacity(options.steps);
     let together = views_in_part(texels, options.views_per_step);
     let mut parts: Vec<Part<M>> = Vec::new();
@@ -281,7 +290,8 @@ pub fn fit_parallax<M: ShiftMap>(
             let [x, y, z, _] = texel.to_array();
             *texel = Vec3::new(x, y, z.max(0.02)).normalize().extend(0.0);
         });
-        let to_maps: Vec<Vec<Vec4>> = parts.iter().map(|p| p.map.parameters()).collect();
+        let mut to_maps: Vec<Vec<Vec4>> = parts.iter().map(|p| p.map.parameters()).collect();
+        to_maps.extend(plate.as_ref().map(|plate| plate.pull(&state.map, options.bending * count as f32)));
         let stride = |i: usize| strides.get(i).copied().unwrap_or(Vec4::ONE);
         let to_map: Vec<Vec4> = (0..moving.len())
             .into_par_iter()

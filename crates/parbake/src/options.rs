@@ -191,7 +191,7 @@ pub struct BakeOptions {
     pub no_cutout: bool,
 
     /// Highest order of the cutout's spherical harmonics, 0 to 7
-    #[cfg_attr(feature = "clap", arg(long, value_name = "ORDER", default_value_t = 3))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "ORDER", default_value_t = 4))]
     pub cutout_order: usize,
 
     /// Side of the cutout map in texels, 4 to 1024
@@ -291,7 +291,7 @@ impl Default for BakeOptions {
             parallax_order: 2,
             parallax_size: 64,
             no_cutout: false,
-            cutout_order: 3,
+            cutout_order: 4,
             cutout_size: 128,
             method: Method::Fit,
             no_content_aware: false,

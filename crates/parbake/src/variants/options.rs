@@ -133,7 +133,8 @@ impl VariantsOptions {
 
     /// How a map is fitted.
     pub(super) fn fit(&self) -> ParallaxOptions {
-        ParallaxOptions { steps: self.steps, views_per_step: 8, ..ParallaxOptions::default() }
+        // A plate would hold one kind of map only.
+        ParallaxOptions { steps: self.steps, views_per_step: 8, bending: 0.0, ..ParallaxOptions::default() }
     }
 
     /// How textures are solved for.

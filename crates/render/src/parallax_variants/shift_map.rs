@@ -47,6 +47,12 @@ pub trait ShiftMap: Clone + Send + Sync {
     /// map allows.
     fn set_parameters(&mut self, lanes: &[Vec4]);
 
+    /// Width and height of the texels that parameters belong to: as many to each, one texel after
+    /// the other, without padding between them. None where parameters are no map.
+    fn texels(&self) -> Option<[usize; 2]> {
+        None
+    }
+
     /// How far each parameter moves in a step beside the others, in the lanes of
     /// [`ShiftMap::parameters`]; empty where all move alike.
     fn strides(&self) -> Vec<Vec4> {
@@ -107,6 +113,10 @@ impl ShiftMap for ShParallax {
             Vec4::new(c[0].x, c[0].y, second.x, second.y)
         };
         self.coefficients.chunks(2).map(lane).collect()
+    }
+
+    fn texels(&self) -> Option<[usize; 2]> {
+        Some([self.width, self.height])
     }
 
     fn set_parameters(&mut self, lanes: &[Vec4]) {
