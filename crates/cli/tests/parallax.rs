@@ -125,7 +125,7 @@ fn a_bake_writes_maps_that_are_read_again() {
     run(folder, &[&arguments[..], &maps, &SMALL].concat());
     let model = read_model(&folder.join("deep.glb"), &Limits::default()).unwrap().model;
     let map = model.materials[0].parallax.as_ref().unwrap();
-    assert_eq!((map.order, map.cutout.as_ref().unwrap().order), (2, 3));
+    assert_eq!((map.order, map.cutout.as_ref().unwrap().order), (2, 4));
     let report = common::json(&folder.join("deep.json"));
     assert!(report["depth"]["steps"].as_u64().unwrap() > 0);
     assert!(report["shape"]["moved"][1].as_f64().unwrap() > 0.0);
