@@ -46,7 +46,7 @@ pub struct CutoutOptions {
 
 impl Default for CutoutOptions {
     fn default() -> Self {
-        Self { order: 4, size: 64, steps: 200, views_per_step: 24, rate: 0.3, stiffness: 1e-3, bending: 2e-3 }
+        Self { order: 4, size: 64, steps: 200, views_per_step: 24, rate: 0.3, stiffness: 1e-3, bending: 1e-3 }
     }
 }
 
