@@ -5,8 +5,8 @@
 //! low-poly's nearest layer shall be opaque; where it does not, all of its layers shall be
 //! left out. With y = ±1 and the opacity o, the squared hinge `max(0, 1 − y o)²` is convex in
 //! the coefficients, and so are a membrane and a thin plate (`thin_plate.rs`) through
-//! neighbouring texels; Adam walks down all in small groups of views. Texels that no view wants left out stay opaque from everywhere,
-//! and only examples near the others are looked at.
+//! neighbouring texels; Adam walks down all in small groups of views. Texels that no view wants
+//! left out stay opaque from everywhere, and only examples near the others are looked at.
 //!
 //! Contract: examples are summed in their order, so the result does not depend on the number
 //! of threads.

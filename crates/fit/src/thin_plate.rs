@@ -24,8 +24,9 @@ impl ThinPlate {
         Self { width, counted }
     }
 
-    /// Adds the energy's gradient, k being `stiffness`. `values` has the same number of values for
-    /// each texel, one texel after the other, and so has `gradient`.
+    /// Adds the energy's gradient, k being `stiffness`. `values` has as many values for each of the
+    /// width × height texels, one texel after the other, and `gradient` its length; a rest too short for
+    /// another value in each texel is padding.
     pub fn add_gradient(&self, values: &[f32], stiffness: f32, gradient: &mut [f32]) {
         let texels = self.counted.len();
         let each = values.len() / texels.max(1);

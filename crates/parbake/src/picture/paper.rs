@@ -1,13 +1,12 @@
 //! The paper's method on a picture: one grid, for the full size alone (`parbake_uv::paper`).
 //!
 //! As in section 4.4 the plane begins as the box [0.01, 0.99]² of the texture, and a barrier
-//! five texels wide (section 4.5) keeps it from the texture's border. Its rest shape is the plane as the
-//! paper's mesh normalization (section 4.4) leaves it, [−1, 1]². Texture coordinates count in
-//! units of s² = texels / pixels of the whole texture and of the whole picture, which is how we read
-//! section 4.5's “the same number of texels”. Without the content-aware term both say how stiff
-//! distortion makes the plane, so they matter to Table 3 (docs/figures.md). Samples are
-//! those of the picture halved until its shorter side is at most 512 pixels. The paper has 50 cells
-//! along a side.
+//! five texels wide (section 4.5) keeps it from the texture's border. Its rest shape is the plane
+//! as the paper's mesh normalization (section 4.4) leaves it, [−1, 1]². The energy's scale is s² =
+//! texels / pixels of the whole texture and of the whole picture, which is how we read section
+//! 4.5's “the same number of texels”. Without the content-aware term both say how stiff distortion
+//! makes the plane, so they matter to Table 3 (docs/figures.md). Samples are those of the picture
+//! halved until its shorter side is at most 512 pixels. The paper has 50 cells along a side.
 //!
 //! Contract: the best round's layout, which is sound; it is returned even where it shows
 //! the picture worse than it was.
