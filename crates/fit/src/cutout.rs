@@ -35,8 +35,9 @@ pub struct CutoutOptions {
     pub views_per_step: usize,
     /// About how far a coefficient moves in a step; an opaque texel's first one is 3.5.
     pub rate: f32,
-    /// How much neighbouring texels are alike, as a share of the examples' mean pull on a texel:
-    /// a little makes outlines smooth that many maps would fit alike.
+    /// How much neighbouring texels are alike, as a share of the mean pull on a texel of those
+    /// examples that are wrong to begin with: a little makes outlines smooth that many maps
+    /// would fit alike, and where little is wrong a little less does.
     pub stiffness: f32,
     /// How much texels resist to bend away from a ramp through their neighbours, as such a
     /// share too: it keeps outlines from fraying, texel by texel, where the surface is seen at
@@ -46,7 +47,7 @@ pub struct CutoutOptions {
 
 impl Default for CutoutOptions {
     fn default() -> Self {
-        Self { order: 4, size: 64, steps: 200, views_per_step: 24, rate: 0.3, stiffness: 1e-3, bending: 1e-3 }
+        Self { order: 4, size: 64, steps: 200, views_per_step: 24, rate: 0.3, stiffness: 0.01, bending: 0.01 }
     }
 }
 
@@ -172,7 +173,7 @@ pub fn fit_cutout(
             .map(|i| parts.iter().map(|part| part[i]).sum())
             .collect();
         let asked: usize = chosen.iter().map(|view| view.len()).sum();
-        let mean_pull = asked as f32 / wanted.len() as f32;
+        let mean_pull = before as f32 * asked as f32 / wanted.len() as f32;
         add_membrane(&map, &wanted, options.stiffness * mean_pull, &mut gradient);
         plate.add_gradient(&map.coefficients, options.bending * mean_pull, &mut gradient);
         let left = 1.0 - step as f32 / options.steps as f32;

@@ -48,8 +48,9 @@ pub struct ParallaxOptions {
     /// nothing moves. Without it a map that nobody needs would wander about as far as any.
     pub indifference: f32,
     /// How much coefficients resist to bend away from a ramp through their neighbouring texels: a
-    /// bend by one texture width weighs as much as this squared difference in each of a texel's
-    /// pixels. It keeps lines whole where shifts are far.
+    /// bend by one texture width weighs as much as this many times the mean squared difference to
+    /// begin with. It keeps lines whole where shifts are far, and gives way to details where
+    /// pictures hardly differ.
     pub bending: f32,
     /// About how far texels move in a step, whose values go from 0 to 1.
     pub texture_rate: f32,
@@ -64,7 +65,7 @@ impl Default for ParallaxOptions {
             views_per_step: 12,
             rate: 5e-4,
             indifference: 3e-4,
-            bending: 2.0,
+            bending: 400.0,
             texture_rate: 0.01,
         }
     }
@@ -290,8 +291,9 @@ pub fn fit_parallax<M: ShiftMap>(
             let [x, y, z, _] = texel.to_array();
             *texel = Vec3::new(x, y, z.max(0.02)).normalize().extend(0.0);
         });
+        let bending = options.bending * losses.first().copied().unwrap_or(0.0) as f32;
         let mut to_maps: Vec<Vec<Vec4>> = parts.iter().map(|p| p.map.parameters()).collect();
-        to_maps.extend(plate.as_ref().map(|plate| plate.pull(&state.map, options.bending * count as f32)));
+        to_maps.extend(plate.as_ref().map(|plate| plate.pull(&state.map, bending * count as f32)));
         let stride = |i: usize| strides.get(i).copied().unwrap_or(Vec4::ONE);
         let to_map: Vec<Vec4> = (0..moving.len())
             .into_par_iter()
