@@ -48,7 +48,7 @@ pub fn bytes(path: &Path) -> u64 {
     std::fs::metadata(path).map_or(0, |m| m.len())
 }
 
-/// Cells whose plane takes a third of a megabyte.
+/// Cells whose plane takes a fifth of a megabyte.
 const SMALL_GRID: usize = 100;
 
 fn summary(report: &ImageReport, picture: &Path, output: &Path, seconds: f64) -> String {

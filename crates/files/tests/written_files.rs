@@ -4,7 +4,7 @@
 //! Where `$PARBAKE_GLB_OUT` names a folder, the GLB files stay there, for the
 //! Khronos validator to look at (`tools/validate_gltf`).
 
-use parbake_files::{Limits, read_model, write_glb, write_obj};
+use parbake_files::{Limits, read_model, short_uv, write_glb, write_obj};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{
     AlphaMode, CutoutMap, DepthMap, Image, Material, Mesh, Model, ShParallaxMap, TextureSlot, UvTransform,
@@ -82,6 +82,15 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
+/// Leaves a file for the validator.
+fn keep(path: &Path, name: &str) -> std::io::Result<()> {
+    if let Some(folder) = std::env::var_os("PARBAKE_GLB_OUT").map(PathBuf::from) {
+        std::fs::create_dir_all(&folder)?;
+        std::fs::copy(path, folder.join(name))?;
+    }
+    Ok(())
+}
+
 /// Protects every bit of a model in a GLB file, around the size where indices grow,
 /// and the folder from leftovers.
 #[test]
@@ -106,10 +115,30 @@ fn glb_comes_back_whole() {
             }
         }
         assert_eq!(names(folder.path()), ["model.glb"]);
-        if let Some(keep) = std::env::var_os("PARBAKE_GLB_OUT").map(PathBuf::from) {
-            std::fs::create_dir_all(&keep).unwrap();
-            write_glb(&keep.join(format!("grid-{side}.glb")), &model).unwrap();
-        }
+        keep(&path, &format!("grid-{side}.glb")).unwrap();
+    }
+}
+
+/// Protects planes of pictures: a grid comes back as it was though its rows share their indices and its
+/// coordinates take two bytes each.
+#[test]
+fn grids_take_few_bytes_and_come_back_whole() {
+    let Model { mut mesh, .. } = grid(121);
+    mesh.uvs = mesh.uvs1.iter().map(|&uv| short_uv(uv)).collect();
+    (mesh.normals, mesh.tangents, mesh.uvs1, mesh.colors) = Default::default();
+    mesh.triangle_materials.fill(0);
+    let model = Model { mesh, materials: vec![Material::default()], ..Model::default() };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("grid.glb");
+    write_glb(&path, &model).unwrap();
+    keep(&path, "grid-in-runs.glb").unwrap();
+    let written = std::fs::metadata(&path).unwrap().len() as usize;
+    let whole = model.mesh.positions.len() * 20 + model.mesh.triangles.len() * 6;
+    assert!(written * 10 < whole * 7, "{written} bytes in place of {whole}");
+    let back = read_model(&path, &Limits::default()).unwrap().model.mesh;
+    for i in 0..model.mesh.triangles.len() {
+        assert_eq!(back.corners(i), model.mesh.corners(i));
+        assert_eq!(back.corner_uvs(i), model.mesh.corner_uvs(i));
     }
 }
 

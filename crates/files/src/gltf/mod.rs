@@ -6,6 +6,7 @@
 //! is taken as its nodes place it.
 
 mod accessor;
+mod binary;
 mod buffers;
 mod container;
 mod extensions;
@@ -16,14 +17,18 @@ mod materials;
 mod merge;
 mod parallax;
 mod references;
+mod runs;
 mod scene;
+mod short_uv;
 mod textures;
 mod topology;
 mod uri;
 mod write;
 mod write_material;
+mod write_mesh;
 mod write_parallax;
 
+pub use short_uv::short_uv;
 pub use write::{glb_bytes, write_glb};
 
 use crate::context::{Context, Textures};

@@ -28,6 +28,7 @@ use crate::uv_animation::UvMoves;
 use balance::best_share;
 use coarse_to_fine::optimised;
 use parbake_atlas::{Layout, UvCheck, check};
+use parbake_files::short_uv;
 use parbake_model::glam::{DVec2, Vec2, Vec4};
 use parbake_model::{AlphaMode, Image, Material, Model, TextureSlot, Wrap};
 use parbake_uv::best_texture::Texture;
@@ -110,6 +111,7 @@ pub fn bake_image(
     // Where nothing moved, two triangles show what the finest grid would.
     let plane = if left_as_is { Plane { cells: 1 } } else { finest };
     let (layout, texture) = found.unwrap_or_else(|| (plane.layout(as_f64(&plane.points())), kept_texture));
+    let layout = shortened(layout);
     let written_errors = if left_as_is { kept_errors.clone() } else { errors(&layout, &all, &texture) };
     let report = ImageReport {
         options: options.clone(),
@@ -123,6 +125,13 @@ pub fn bake_image(
     };
     let uv_moves = (!left_as_is && !moves.frames.is_empty()).then(|| drawn(plane, moves.frames));
     Ok(BakedImage { model: model(image, plane, &layout, &texture), uv_moves, report })
+}
+
+/// The layout at coordinates that a file holds in two bytes, where no triangle turns over by that.
+fn shortened(layout: Layout) -> Layout {
+    let points = layout.points.iter().map(|p| short_uv(p.as_vec2()).as_dvec2()).collect();
+    let short = Layout { points, ..layout.clone() };
+    if (0..short.triangles.len()).all(|t| short.doubled_area(t) > 0.0) { short } else { layout }
 }
 
 /// Frames and steps so far, and how the paper's method went.

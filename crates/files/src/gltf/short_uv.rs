@@ -1,0 +1,41 @@
+//! Texture coordinates in two bytes (glTF 2.0, section 3.6.2.2, normalised unsigned shorts): the
+//! 65535ths from 0 to 1.
+
+use parbake_model::glam::Vec2;
+
+/// The nearest coordinate that a file can hold in two bytes, as it is read back: at most 2⁻¹⁷ away
+/// within the unit square, which is what 0.002 texels of 256 are.
+pub fn short_uv(uv: Vec2) -> Vec2 {
+    Vec2::from_array(uv.to_array().map(|x| f32::from(nearest_short(x)) / 65535.0))
+}
+
+/// The nearest of 65535ths.
+pub fn nearest_short(x: f32) -> u16 {
+    // The cast saturates: what lies outside goes to the border.
+    (x * 65535.0).round() as u16
+}
+
+/// True where two bytes hold a coordinate to the bit.
+pub fn is_short(uv: &Vec2) -> bool {
+    short_uv(*uv) == *uv
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects what a proof says of rounded coordinates: all of them come back to the bit, and
+    /// others are not taken for such.
+    #[test]
+    fn every_short_is_held_to_the_bit() {
+        for short in 0..=u16::MAX {
+            let x = f32::from(short) / 65535.0;
+            assert_eq!(nearest_short(x), short);
+            assert!(is_short(&Vec2::splat(x)));
+        }
+        for x in [-0.25, 1.5, 0.3, f32::NAN] {
+            assert!(!is_short(&Vec2::new(x, 0.0)));
+        }
+        assert!((short_uv(Vec2::splat(0.3)) - Vec2::splat(0.3)).abs().max_element() < 1.0 / 131_070.0);
+    }
+}
