@@ -5,7 +5,7 @@
 //! as the paper's mesh normalization (section 4.4) leaves it, [−1, 1]². The energy's scale is s² =
 //! texels / pixels of the whole texture and of the whole picture, which is how we read section
 //! 4.5's “the same number of texels”. Without the content-aware term both say how stiff distortion
-//! makes the plane, so they matter to Table 3 (docs/figures.md). Samples are those of the picture
+//! makes the plane, so they matter to Table 3 (docs/experiments.md). Samples are those of the picture
 //! halved until its shorter side is at most 512 pixels. The paper has 50 cells along a side.
 //!
 //! Contract: the best round's layout, which is sound; it is returned even where it shows
