@@ -32,6 +32,16 @@ impl Default for AdamOptions {
     }
 }
 
+/// Share of the steps that go at the full rate.
+const FULL_RATE: f32 = 0.3;
+
+/// The share of its rate at which the step of so many goes: all of it at first, then falling along a cosine to
+/// 1/500.
+pub fn rate_at(step: usize, steps: usize) -> f32 {
+    let t = (step as f32 / steps.max(1) as f32 - FULL_RATE).max(0.0) / (1.0 - FULL_RATE);
+    0.002 + 0.998 * 0.5 * (1.0 + (std::f32::consts::PI * t).cos())
+}
+
 /// The moments of N values.
 #[derive(Clone, Debug)]
 pub struct Adam {

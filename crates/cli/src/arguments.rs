@@ -19,7 +19,7 @@ pub struct Arguments {
 /// What to do.
 #[derive(Subcommand, Debug)]
 pub enum Command {
-    /// Bake a detailed model's look onto a coarse one with texture coordinates
+    /// Bake a detailed model's look onto a coarse one
     Bake(BakeCommand),
     /// Give a model a smaller texture that looks the same
     Compress(CompressCommand),
@@ -59,7 +59,7 @@ pub struct BakeCommand {
     /// The detailed model: .obj, .gltf or .glb
     pub high: PathBuf,
 
-    /// The coarse model with texture coordinates: .obj, .gltf or .glb
+    /// The coarse model: .obj, .gltf or .glb; texture coordinates that it lacks are made
     pub low: PathBuf,
 
     /// Where the result goes: .glb, or .obj with .mtl and .png beside it
@@ -90,6 +90,10 @@ pub struct BakeCommand {
 
 /// Arguments of `compress`.
 #[derive(Args, Debug)]
+#[command(
+    after_help = "The surface stays: options of vertices, parallax maps and cutouts have no effect, and those \
+                        of views have one on models with a normal map alone."
+)]
 pub struct CompressCommand {
     /// The model with its texture: .obj, .gltf or .glb
     pub model: PathBuf,
@@ -111,7 +115,7 @@ pub struct CompressCommand {
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
 
-    /// How to do it; what concerns views has no effect on models without a normal map
+    /// How to do it
     #[command(flatten, next_help_heading = "Baking")]
     pub bake: BakeOptions,
 

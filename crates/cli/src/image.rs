@@ -15,7 +15,7 @@ pub fn run(command: &ImageCommand) -> Result<Ending, Failure> {
     command.options.check()?;
     check_output(&command.output)?;
     check_not_input(&command.output, &[&command.picture])?;
-    let console = Console::new(command.talk);
+    let console = Console::for_bake(command.talk, None);
     with_threads(command.options.threads, || {
         let picture = read_image(&command.picture, &Limits::default())?;
         let baked = bake_image(&picture, &command.options, &console)?;

@@ -2,7 +2,7 @@
 //! contract, so that no index can go astray.
 
 use crate::{FileError, Place};
-use parbake_model::{Image, Material, Model};
+use parbake_model::{Material, Model};
 use std::path::Path;
 
 /// Refuses models that break [`Model`]'s or [`Mesh`](parbake_model::Mesh)'s contract.
@@ -46,7 +46,7 @@ pub(crate) fn check(path: &Path, model: &Model) -> Result<(), FileError> {
     {
         return refuse("a texture's transform is not finite".into());
     }
-    if let Some(image) = used.map(|s| &model.images[s.image]).find(|i| !is_whole(i)) {
+    if let Some(image) = used.map(|s| &model.images[s.image]).find(|i| !i.is_whole()) {
         let (w, h, n) = (image.width, image.height, image.pixels.len());
         return refuse(format!("image {:?} should have {w} × {h} texels, but has {n}", image.name));
     }
@@ -63,15 +63,11 @@ pub(crate) fn check(path: &Path, model: &Model) -> Result<(), FileError> {
     Ok(())
 }
 
-fn is_whole(image: &Image) -> bool {
-    !image.pixels.is_empty() && image.width.checked_mul(image.height) == Some(image.pixels.len())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use parbake_model::glam::Vec3;
-    use parbake_model::{Mesh, ShParallaxMap, TextureSlot, UvTransform};
+    use parbake_model::{Image, Mesh, ShParallaxMap, TextureSlot, UvTransform};
 
     fn turned(rotation: f32) -> Option<TextureSlot> {
         let transform = UvTransform { rotation, ..UvTransform::default() };

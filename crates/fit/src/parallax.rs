@@ -20,7 +20,7 @@ use crate::reference::Reference;
 use crate::samples::{packed, unpacked};
 use crate::view_walk::Walker;
 use crate::watch::{Stage, Watch};
-use parbake_adam::{Adam, AdamOptions};
+use parbake_adam::{Adam, AdamOptions, rate_at};
 use parbake_model::Wrap;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_render::display_table::DisplayTable;
@@ -124,7 +124,7 @@ pub struct State<M = ShParallax> {
     pub normal: Canvas,
 }
 
-/// Loss and gradients of some views, in buffers that are used again in every step.
+/// Loss and gradients of some views; textures' lie in buffers that are used again in every step.
 struct Part<M> {
     loss: f64,
     map: M,
@@ -225,14 +225,6 @@ pub fn mean_square<M: ShiftMap>(views: &[Vec<Sighted>], state: &State<M>, displa
     losses.iter().sum::<f64>() / (3 * count.max(1)) as f64
 }
 
-/// Share of the steps that go at the full rate; then it falls as a cosine does.
-const FULL_RATE: f32 = 0.3;
-
-fn rate_at(step: usize, steps: usize) -> f32 {
-    let t = (step as f32 / steps.max(1) as f32 - FULL_RATE).max(0.0) / (1.0 - FULL_RATE);
-    0.002 + 0.998 * 0.5 * (1.0 + (std::f32::consts::PI * t).cos())
-}
-
 /// Moves all three; returns the mean squared difference of each step's views.
 pub fn fit_parallax<M: ShiftMap>(
     views: &[Vec<Sighted>],
@@ -265,7 +257,7 @@ pub fn fit_parallax<M: ShiftMap>(
     parts.resize_with(options.views_per_step.div_ceil(together), || Part::zeros(state));
     for step in 0..options.steps {
         watch.progress(Stage::Parallax, step, options.steps);
-        if views.is_empty() || watch.should_stop() {
+        if mean_size == 0.0 || watch.should_stop() {
             break;
         }
         // The pool's every prefix is well spread, and so is every run of it.

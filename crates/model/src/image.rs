@@ -19,4 +19,9 @@ impl Image {
     pub fn solid(name: &str, width: usize, height: usize, rgba: [u8; 4]) -> Self {
         Self { name: name.into(), width, height, pixels: vec![rgba; width * height] }
     }
+
+    /// Whether it has pixels, and as many as its width and height say.
+    pub fn is_whole(&self) -> bool {
+        !self.pixels.is_empty() && self.width.checked_mul(self.height) == Some(self.pixels.len())
+    }
 }

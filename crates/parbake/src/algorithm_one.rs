@@ -32,8 +32,8 @@ const SAMPLES: usize = 3;
 
 /// What came out: how vertices moved, where they did, and the map, where there is one.
 pub struct Outcome {
-    /// How vertices moved.
-    pub report: ShapeReport,
+    /// How vertices moved; none where they were kept.
+    pub report: Option<ShapeReport>,
     /// The parallax map, as a reader sees it.
     pub map: Option<ShParallax>,
 }
@@ -60,16 +60,14 @@ pub fn algorithm_one(
         background: Background::Black,
     };
     let found = paper_fit(&placed, &views, seed, &plan.fit, watch);
-    move_vertices(&mut low.mesh, &placed, &found.positions, frame);
-    let map = found.map.map(|map| {
-        let mut images = Vec::new();
-        let packed = map.pack(&mut images);
-        ShParallax::unpack(&packed, &images).unwrap_or(map)
+    let map = found.map.map(|map| map.as_stored());
+    let report = plan.fit.motion.map(|_| {
+        move_vertices(&mut low.mesh, &placed, &found.positions, frame);
+        ShapeReport {
+            steps: found.losses.len(),
+            moved: found.moved.map(|way| 0.5 * way),
+            ..ShapeReport::default()
+        }
     });
-    let report = ShapeReport {
-        steps: found.losses.len(),
-        moved: found.moved.map(|way| 0.5 * way),
-        ..ShapeReport::default()
-    };
     Ok(Outcome { report, map })
 }

@@ -16,7 +16,7 @@ use crate::low::{LowPoly, lit};
 use crate::message::{Message, Stage, Watcher};
 use crate::options::{BakeOptions, UvMode};
 use crate::pair::{common_frame, placed};
-use crate::report::BakeReport;
+use crate::report::{BakeReport, Work};
 use crate::shape::{Target, shape};
 use crate::unfold::{Source, mend_with_room, unfold};
 use crate::uv_animation::UvMoves;
@@ -126,7 +126,7 @@ pub(crate) fn bake_pair(
         if let Some(plan) = &algorithm_plan {
             let share = bridge.share(DEPTH_SHARE);
             let outcome = algorithm_one(&mut moved.model, &frame, &target, plan, options.seed, &share)?;
-            (shaped, map_of_paper) = (Some(outcome.report), outcome.map);
+            (shaped, map_of_paper) = (outcome.report, outcome.map);
             clock.lap(Stage::Shape);
         }
         unfolded = Some(moved);
@@ -183,6 +183,7 @@ pub(crate) fn bake_pair(
         warnings.push(warning);
     }
     let report = BakeReport {
+        work: if same { Work::Compress } else { Work::Bake },
         shape: shaped,
         depth: depth.as_ref().map(|d| d.report.clone()),
         unfold: unfolded.as_ref().filter(|_| options.uv != UvMode::Keep).map(|u| u.report.clone()),
@@ -198,7 +199,7 @@ pub(crate) fn bake_pair(
         uv,
         losses: fitted.losses.iter().map(Into::into).collect(),
         stages: clock.stages,
-        stopped_early: fitted.stopped || views < plan.views,
+        stopped_early: fitted.stopped || views < plan.views || bridge.stopped_a_stage(),
         warnings,
         peak_memory: crate::memory::peak_memory(),
     };

@@ -4,6 +4,8 @@
 use crate::message::{Message, Stage, Watcher};
 use crate::report::StageTime;
 use parbake_fit::watch;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Passes the stages' messages on, and their question whether to stop.
@@ -11,13 +13,20 @@ pub(crate) struct Bridge<'a, W> {
     watcher: &'a W,
     /// When a budget is spent, besides what the watcher says.
     until: Option<Instant>,
+    /// Set once a stage was told to stop; one for all stages.
+    told: Arc<AtomicBool>,
 }
 
 impl<'a, W: Watcher> Bridge<'a, W> {
     /// For a run that may take so many seconds from `begin` on.
     pub fn new(watcher: &'a W, begin: Instant, budget: Option<f64>) -> Self {
         let until = budget.map(|seconds| begin + Duration::from_secs_f64(seconds.min(1e9)));
-        Self { watcher, until }
+        Self { watcher, until, told: Arc::default() }
+    }
+
+    /// Whether a stage was told to stop.
+    pub fn stopped_a_stage(&self) -> bool {
+        self.told.load(Ordering::Relaxed)
     }
 
     /// The same for a stage that may take this share of the time that is left.
@@ -25,7 +34,7 @@ impl<'a, W: Watcher> Bridge<'a, W> {
         let own = self.until.map(|until| until.saturating_duration_since(Instant::now()).as_secs_f64());
         let left = own.into_iter().chain(self.watcher.seconds_left()).reduce(f64::min);
         let until = left.map(|left| Instant::now() + Duration::from_secs_f64((left * share).clamp(0.0, 1e9)));
-        Self { watcher: self.watcher, until }
+        Self { watcher: self.watcher, until, told: self.told.clone() }
     }
 }
 
@@ -54,7 +63,11 @@ impl<W: Watcher> watch::Watch for Bridge<'_, W> {
     }
 
     fn should_stop(&self) -> bool {
-        self.watcher.stopped() || self.until.is_some_and(|until| Instant::now() >= until)
+        let stop = self.watcher.stopped() || self.until.is_some_and(|until| Instant::now() >= until);
+        if stop {
+            self.told.store(true, Ordering::Relaxed);
+        }
+        stop
     }
 }
 

@@ -6,11 +6,12 @@
 //! compared as they are stored, as when a picture is scaled.
 
 use crate::bake::{Baked, bake_pair};
+use crate::bridge::Bridge;
 use crate::error::BakeError;
 use crate::message::{Message, Stage, Watcher};
-use crate::options::{BakeOptions, Convention, Parallax, UvMode};
+use crate::options::{BakeOptions, Convention, Method, Parallax, UvMode};
 use crate::pair::{common_frame, placed};
-use crate::report::{BakeReport, LossStep, StageTime};
+use crate::report::{BakeReport, LossStep, StageTime, Work};
 use crate::unfold::{Source, SurfaceTexture, UnfoldOptions, mend, solve_on_surface, unfold};
 use parbake_model::{Image, Material, Model, TextureSlot, Wrap};
 use parbake_render::scene::Scene;
@@ -37,6 +38,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     options.check()?;
     let options = &BakeOptions { convention: Convention::Paper, ..options.clone() };
     let begin = Instant::now();
+    let watcher = &Bridge::new(watcher, begin, options.time_budget);
     let frame = common_frame(model)?;
     let interpretation = options.convention.interpretation();
     let scene = Scene::new(placed(model, &frame), &model.materials, &model.images, interpretation);
@@ -62,7 +64,8 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     let ordinary = solved(&kept.model)?;
     lap(Stage::Solve, &mut since);
     let asked = options.unfold();
-    let steps = options.uv_steps.unwrap_or(STEPS_FACTOR * asked.steps);
+    let factor = if options.method == Method::Fit { STEPS_FACTOR } else { 1 };
+    let steps = options.uv_steps.unwrap_or(factor * asked.steps);
     let asked = UnfoldOptions { steps, ..asked };
     let mut unfolded = unfold(mend(model, &asked)?, &frame, &source, &asked, watcher);
     lap(Stage::Unfold, &mut since);
@@ -82,6 +85,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         mean_square: solved.errors[0],
     };
     let report = BakeReport {
+        work: Work::Compress,
         shape: None,
         depth: None,
         unfold: Some(unfolded.report.clone()),
@@ -97,7 +101,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         uv: crate::check::check_mesh(&unfolded.model.mesh, options.texture_size),
         losses: vec![loss("start", &ordinary), loss("color", &written)],
         stages,
-        stopped_early: watcher.stopped(),
+        stopped_early: watcher.stopped_a_stage(),
         warnings,
         peak_memory: crate::memory::peak_memory(),
     };

@@ -30,7 +30,7 @@ use parbake_fit::territory::{Territory, keep_at_home};
 use parbake_fit::view_walk::Walker;
 use parbake_fit::watch::Watch;
 use parbake_mesh::charts;
-use parbake_model::{Image, Model, Placement, ShParallaxMap, Wrap};
+use parbake_model::{Image, Model, Placement, ShParallaxMap};
 use parbake_render::cutout::ShCutout;
 use parbake_render::display_table::DisplayTable;
 use parbake_render::parallax::ShParallax;
@@ -149,9 +149,7 @@ pub fn fit_depth(
     let cutout = plan.cutout.map(|options| {
         let (map, misplaced) = fit_cutout(&examples(walker, references, options.size), &options, watch);
         report.misplaced = Some(misplaced);
-        let mut images = Vec::new();
-        let packed = map.pack(&mut images);
-        ShCutout::unpack(&packed, [Wrap::Clamp; 2], &images).unwrap_or(map)
+        map.as_stored()
     });
     let walker = walker.clone().with_cutout(cutout.as_ref());
 
@@ -163,6 +161,10 @@ pub fn fit_depth(
     let mut coarser = None;
     let judged: Vec<_> = views.iter().step_by(JUDGED).cloned().collect();
     for pass in plan.passes.iter().filter(|pass| pass.steps > 0) {
+        // Later passes only better what the first one found.
+        if coarser.is_some() && watch.should_stop() {
+            break;
+        }
         let LowPoly { placed, map: texels, atlas, .. } = LowPoly::new(low, frame, pass.texture_size)?;
         let start = project(&placed, &texels, &atlas, target.scene, target.surface, target.reach);
         let solved_with = |map: ShParallax| {
@@ -177,7 +179,8 @@ pub fn fit_depth(
         if coarser.is_some_and(|size| size < pass.texture_size) {
             let anew = solved_with(ShParallax::zeros(plan.parallax.order, plan.parallax.size));
             let [with, without] = [&state, &anew].map(|state| mean_square(&judged, state, &display));
-            if with > WORTH_KEEPING * without {
+            // Textures of a solve that was cut short say nothing of the map.
+            if with > WORTH_KEEPING * without && !watch.should_stop() {
                 state = anew;
                 report.begun_anew += 1;
             }
@@ -198,9 +201,7 @@ pub fn fit_depth(
     let LowPoly { placed, map: texels, .. } = LowPoly::new(low, frame, TERRITORY)?;
     let territory = Territory::new(&Atlas::new(&texels, &charts(&placed), TERRITORY));
     report.strayed = keep_at_home(&walker, references, &territory, &mut map);
-    let mut images = Vec::new();
-    let packed = map.pack(&mut images);
-    let parallax = ShParallax::unpack(&packed, &images).unwrap_or_else(|| map.clone());
+    let parallax = map.as_stored();
     if let Some((color, normal)) = textures {
         let mut state = State { map, color, normal };
         report.rounding[0] = mean_square(&judged, &state, &display);

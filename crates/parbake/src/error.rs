@@ -22,6 +22,12 @@ pub enum BakeError {
         /// What may be asked.
         range: String,
     },
+    /// A picture that a library caller made is not one.
+    #[error("{image}: the picture has no pixels, or not as many as its width and height say")]
+    BrokenImage {
+        /// Its name.
+        image: String,
+    },
     /// A texture cannot be baked without texture coordinates.
     #[error(
         "{model}: the low-poly has no texture coordinates, so there is no place for a texture; let --uv unwrap make some"

@@ -1,8 +1,8 @@
 //! Parbake makes a small 3D model look like a big one.
 //!
-//! It takes a detailed textured model (the high-poly) and a coarse one with texture
-//! coordinates (the low-poly), renders both, and moves the coarse one's textures
-//! until the pictures agree.
+//! It takes a detailed textured model (the high-poly) and a coarse one (the low-poly), renders
+//! both, and moves the coarse one's vertices, texture coordinates and textures until the
+//! pictures agree.
 //!
 //! ```no_run
 //! use parbake::{BakeOptions, Limits, bake, read_model, write_glb};
@@ -62,9 +62,9 @@ pub use parbake_files::{
     write_obj,
 };
 pub use parbake_model::{Image as Picture, Model};
-pub use picture::{BakedImage, ImageOptions, ImageReport, bake_image};
+pub use picture::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
 pub use plan::Plan;
-pub use report::{BakeReport, LossStep, StageTime};
+pub use report::{BakeReport, LossStep, StageTime, Work};
 pub use shape::ShapeReport;
 pub use studio::{Shot, Studio, Subject};
 pub use threads::{join, with_threads};

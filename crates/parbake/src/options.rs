@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Preset {
-    /// A look within a second or two.
+    /// A look within seconds.
     Fast,
     /// What most bakes should use.
     #[default]
@@ -210,13 +210,13 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long))]
     pub no_content_aware: bool,
 
-    /// Least distance between charts in texels, 0 to 64 [default: 1, from 512 on a 256th of the side;
+    /// Least distance between charts in texels, 0 to 64 [default: a 256th of the side, 1 to 8;
     /// with a parallax map two of its texels where charts are few: 16 for a map of 64²]
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "TEXELS"))]
     pub gutter: Option<f64>,
 
-    /// Steps in which texture coordinates are moved, 0 to 10000 [default: by preset 10, 30, 60;
-    /// with --method paper 800]
+    /// Steps in which texture coordinates are moved, 0 to 10000 [default: by preset 10, 30, 60,
+    /// eight times as many where a model is compressed; with --method paper 800]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
     pub uv_steps: Option<usize>,
 
@@ -275,7 +275,9 @@ pub struct BakeOptions {
     pub threads: usize,
 
     /// Seconds after which the best textures so far are written, 0 to 1e9; reading files counts, for
-    /// a library from the call of `bake`. Projection is always finished [default: no limit]
+    /// a library from the call of `bake`. Projection is always finished; below 8 seconds vertices stay
+    /// and texture coordinates are only mended, and with any budget maps learn from 96 views
+    /// [default: no limit]
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "SECONDS"))]
     pub time_budget: Option<f64>,
 }
@@ -343,6 +345,10 @@ impl BakeOptions {
         within("cutout-size", self.cutout_size as f64, 4.0, 1024.0)?;
         within("threads", self.threads as f64, 0.0, crate::threads::MOST_THREADS as f64)?;
         within("time-budget", self.time_budget.unwrap_or(0.0), 0.0, 1e9)?;
+        if self.shape == ShapeMode::Laplacian && self.method == Method::Paper {
+            let range = "keep or normal with --method paper".into();
+            return Err(BakeError::Option { option: "shape", value: "laplacian".into(), range });
+        }
         self.method.check(self.no_content_aware)
     }
 }

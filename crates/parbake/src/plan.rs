@@ -175,7 +175,7 @@ impl BakeOptions {
             guide: Method::guide(self.no_content_aware),
             texture_size: self.texture_size,
             gutter: self.gutter_texels(),
-            gutter_asked: self.gutter.is_some(),
+            gutter_required: self.gutter.is_some(),
             parallax_size: (self.parallax != Parallax::None).then_some(self.parallax_size),
             steps: self.uv_steps.unwrap_or(steps),
         }
@@ -196,8 +196,8 @@ impl BakeOptions {
         let finer = (self.texture_size as f32 / 1024.0).max(1.0).sqrt();
         let view_size = self.view_size.unwrap_or((view_size as f32 * finer) as usize);
         let rounds = self.rounds.unwrap_or(rounds);
-        // A projection is only looked at, to report its loss.
-        let views = if rounds == 0 { 16 } else { views };
+        // A projection without maps is only looked at, to report its loss.
+        let views = if rounds == 0 && self.parallax == Parallax::None { 16 } else { views };
         Plan {
             views: self.views.unwrap_or(views),
             reference: Sampling {

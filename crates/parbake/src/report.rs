@@ -41,9 +41,23 @@ impl From<&LossPoint> for LossStep {
     }
 }
 
+/// What a report is of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Work {
+    /// A high-poly's look on a low-poly.
+    #[default]
+    Bake,
+    /// A model with a smaller texture.
+    Compress,
+}
+
 /// What a bake saw.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BakeReport {
+    /// What it is of.
+    #[serde(default)]
+    pub work: Work,
     /// What was done with vertices; none where they were kept.
     #[serde(default)]
     pub shape: Option<ShapeReport>,
@@ -77,10 +91,29 @@ pub struct BakeReport {
     pub losses: Vec<LossStep>,
     /// Seconds by stage.
     pub stages: Vec<StageTime>,
-    /// True when a time budget or a signal ended the run early.
+    /// True when a time budget or a signal ended a stage early.
     pub stopped_early: bool,
     /// What the user was warned of.
     pub warnings: Vec<String>,
     /// Peak resident memory of the process in bytes, where the system tells.
     pub peak_memory: Option<u64>,
+}
+
+impl BakeReport {
+    /// The command, as one types it, and what it takes.
+    pub(crate) fn command(&self) -> &'static str {
+        match self.work {
+            Work::Bake => "bake HIGH LOW",
+            Work::Compress => "compress MODEL",
+        }
+    }
+
+    /// What the textures are that the result is compared with.
+    pub(crate) fn start(&self) -> &'static str {
+        match self.views {
+            // Nothing was projected where nothing was looked at.
+            0 => "the best texture of this size for the coordinates as they were",
+            _ => "what an ordinary baker delivers",
+        }
+    }
 }

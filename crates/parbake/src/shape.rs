@@ -6,8 +6,9 @@
 //! high-poly ───────┴ small smooth views ──────────────┘
 //! ```
 //!
-//! Contract: what is not moved keeps its position and its normal to the bit; triangles,
-//! texture coordinates and the order of the vertices stay.
+//! Contract: what is not moved keeps its position and its normal to the bit; triangles stay in their
+//! order, and so do their corners' texture coordinates. Vertices are split where a normal would end up on its
+//! face's back.
 
 use crate::error::BakeError;
 use crate::low::LowPoly;

@@ -33,6 +33,13 @@ impl ShCutout {
         CutoutMap { order: self.order, images, scale, offset }
     }
 
+    /// The cutout as a reader of the file sees it, rounded to 8 bits. Numbers that no file holds stay.
+    pub fn as_stored(&self) -> Self {
+        let mut images = Vec::new();
+        let packed = self.pack(&mut images);
+        Self::unpack(&packed, self.wrap, &images).unwrap_or_else(|| self.clone())
+    }
+
     /// The coefficients that a map's images hold; `None` where the map breaks its contract.
     /// `wrap` is that of the parallax map which the cutout is part of.
     pub fn unpack(map: &CutoutMap, wrap: [Wrap; 2], images: &[Image]) -> Option<Self> {

@@ -36,6 +36,13 @@ impl ShParallax {
         ShParallaxMap { order, images: places, scale, offset, limit, depth, wrap, ..ShParallaxMap::default() }
     }
 
+    /// The map as a reader of the file sees it, rounded to 8 bits. Numbers that no file holds stay.
+    pub fn as_stored(&self) -> Self {
+        let mut images = Vec::new();
+        let packed = self.pack(&mut images);
+        Self::unpack(&packed, &images).unwrap_or_else(|| self.clone())
+    }
+
     /// The coefficients that a map's images hold; `None` where the map breaks its contract.
     pub fn unpack(map: &ShParallaxMap, images: &[Image]) -> Option<Self> {
         map.check(images).ok()?;

@@ -11,9 +11,9 @@ use crate::outcome::{BACKGROUNDS, Outcome, Point, Score};
 use crate::plane::{as_shown, wanted};
 use image::imageops::FilterType;
 use parbake::{
-    BakeError, BakeOptions, BakeReport, EvaluateOptions, ImageOptions, Limits, UvMode, VariantsOptions,
-    Watcher, bake, bake_image, compare_variants, compress, encode_png, evaluate_before, laid_out, read_image,
-    read_model, subdivided, wall_pair, write_file, write_glb,
+    BakeError, BakeOptions, BakeReport, EvaluateOptions, ImageOptions, Limits, PictureUv, UvMode,
+    VariantsOptions, Watcher, bake, bake_image, compare_variants, compress, encode_png, evaluate_before,
+    laid_out, read_image, read_model, subdivided, wall_pair, write_file, write_glb,
 };
 use parbake_metric::{Rgb, mean_squared_error, ms_ssim, psnr_from_mse};
 use parbake_model::{Image, Model};
@@ -176,7 +176,7 @@ impl<O: Observer> Run<'_, O> {
     /// The paper's baseline: the picture scaled down, shown with bilinear filtering.
     fn downsample(&self, path: &Path, size: usize) -> Result<Outcome, BakeError> {
         let picture = read_image(path, &Limits::default())?;
-        let plain = ImageOptions { texture_size: size, uv: UvMode::Keep, ..ImageOptions::default() };
+        let plain = ImageOptions { texture_size: size, uv: PictureUv::Keep, ..ImageOptions::default() };
         let mut plane = bake_image(&picture, &plain, &self.stop)?.model;
         for image in &mut plane.images {
             *image = scaled(&picture, size);

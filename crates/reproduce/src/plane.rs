@@ -46,7 +46,7 @@ fn linear(shown: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use parbake::{ImageOptions, UvMode, bake_image};
+    use parbake::{ImageOptions, PictureUv, bake_image};
     use parbake_metric::{mean_squared_error, psnr_from_mse};
 
     /// Protects the comparison of pictures: what the renderer shows of a plane, whatever its
@@ -61,7 +61,7 @@ mod tests {
                 })
                 .collect();
             let picture = Image { name: "p".into(), width, height, pixels };
-            let options = ImageOptions { texture_size: 16, uv: UvMode::Keep, ..ImageOptions::default() };
+            let options = ImageOptions { texture_size: 16, uv: PictureUv::Keep, ..ImageOptions::default() };
             let baked = bake_image(&picture, &options, &()).unwrap();
             let shown = as_shown(&baked.model, &picture).unwrap();
             let psnr = psnr_from_mse(mean_squared_error(&wanted(&picture), &shown).unwrap());

@@ -24,7 +24,7 @@ use crate::laplacian::Laplacian;
 use crate::points::{Motion, Points};
 use crate::views::{Judgement, Outline, Views};
 use glam::{Vec3, Vec4};
-use parbake_adam::{Adam, AdamOptions};
+use parbake_adam::{Adam, AdamOptions, rate_at};
 use parbake_fit::canvas::Canvas;
 use parbake_fit::reference::Reference as Rendered;
 use parbake_fit::views::mixed;
@@ -112,20 +112,6 @@ pub struct Shaped {
     pub outline: [Outline; 2],
     /// How far they were apart in the mean before and after, in the common frame.
     pub gap: [f32; 2],
-    /// True when it was asked to stop early.
-    pub stopped: bool,
-}
-
-/// Share of the steps that go at the full rate; then it falls as a cosine does.
-const FULL_RATE: f32 = 0.3;
-
-pub(crate) fn rate_at(step: usize, steps: usize) -> f32 {
-    let t = step as f32 / steps.max(1) as f32;
-    if t < FULL_RATE {
-        return 1.0;
-    }
-    let t = (t - FULL_RATE) / (1.0 - FULL_RATE);
-    0.002 + 0.998 * 0.5 * (1.0 + (std::f32::consts::PI * t).cos())
 }
 
 pub(crate) fn pyramid(canvas: &Canvas) -> Pyramid<3> {
@@ -211,11 +197,10 @@ pub fn fit_shape(
     let mut adam_normal = Adam::new(texels, at_rate(options.texture_rate));
     let mut values = vec![Vec4::ZERO; home.len()];
     let mut at = home.clone();
-    let (mut losses, mut stopped) = (Vec::new(), false);
+    let mut losses = Vec::new();
     for step in 0..options.steps {
         watch.progress(Stage::Shape, step, options.steps);
         if references.is_empty() || watch.should_stop() {
-            stopped = true;
             break;
         }
         // The pool's every prefix is well spread, and so is every run of it.
@@ -267,7 +252,7 @@ pub fn fit_shape(
     let moved = [way.iter().sum::<f32>() / way.len().max(1) as f32, way.iter().copied().fold(0.0, f32::max)];
     let outline = [before.outline, after];
     let gap = outline.map(|o| o.gap() as f32 * pixel);
-    Shaped { positions: fit.points.vertices(&at), losses, moved, outline, gap, stopped }
+    Shaped { positions: fit.points.vertices(&at), losses, moved, outline, gap }
 }
 
 /// Outlines that agree hardly better than before are not worth another shape.

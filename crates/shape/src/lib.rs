@@ -5,7 +5,7 @@
 //! guard         what keeps triangles from turning over, shrinking to nothing or spiking
 //! laplacian     the smoothness term of earlier work, for comparison
 //! normals       vertex normals that turn with the faces around them
-//! views         what rendered views say: loss, gradients, errors by triangle
+//! views         what rendered views say: loss, gradients
 //! joint         the fit: vertices and a provisional texture, against rendered views
 //! paper         the paper's optimiser: textures, parallax and displacement from nothing
 //! ```

@@ -4,18 +4,18 @@
 //!
 //! What the paper leaves open is settled so: L_diff is the absolute difference of display
 //! values in front of black; a step looks at a few views; the rate is constant until the
-//! last k₂ steps, in which it falls along a cosine; λ_ΔV weighs the mean squared
+//! last k₂ steps, of which it falls along a cosine in all but the first third; λ_ΔV weighs the mean squared
 //! displacement in the common frame. Tangent frames are those of the start, as
 //! displacements are only applied at the end.
 //!
 //! Contract: as of `joint.rs`. The mesh has normals and tangents.
 
 use crate::guard::Guard;
-use crate::joint::{lanes, pyramid, rate_at};
+use crate::joint::{lanes, pyramid};
 use crate::points::{Motion, Points};
 use crate::views::Views;
 use glam::{Vec2, Vec3, Vec4};
-use parbake_adam::{Adam, AdamOptions};
+use parbake_adam::{Adam, AdamOptions, rate_at};
 use parbake_fit::canvas::Canvas;
 use parbake_fit::views::unit_interval;
 use parbake_fit::watch::{Stage, Watch};

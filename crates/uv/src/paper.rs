@@ -70,8 +70,6 @@ pub struct PaperOptions {
     pub memory: usize,
     /// No point moves farther in a round, in units of the square.
     pub longest_move: f64,
-    /// Whether the best round is kept, rather than the last one.
-    pub keep_best: bool,
 }
 
 impl Default for PaperOptions {
@@ -92,7 +90,6 @@ impl Default for PaperOptions {
             channels: 3,
             memory: 8,
             longest_move: 0.1,
-            keep_best: true,
         }
     }
 }
@@ -102,9 +99,6 @@ impl Default for PaperOptions {
 pub enum Guide {
     /// The content-aware term, with both parts of the gradient that section 4.4 prints.
     ContentAware,
-    /// The content-aware term with the image loss held, as sections 4.1 and 4.4 say in
-    /// words: the error says where texels are wanted, but not which way to go.
-    ContentAwareHeld,
     /// The image loss alone, as in the paper's Table 3.
     ImageLoss,
 }
@@ -194,7 +188,7 @@ pub fn paper_method(
         Place::new(mapped.points.to_vec(), &mut problem.energy(mapped.points, &texture, &errors), region);
     let mut memory = Lbfgs::new(options.memory);
     let mut best: Option<(f64, Vec<DVec2>, Texture)> = None;
-    let mut rounds = 0;
+    let (mut rounds, mut stopped) = (0, false);
     while rounds < options.rounds {
         let loss = problem.loss(&place.points, size);
         let changed = painter.steps(&mut texture, &loss, options.steps_in_round, Rate::Constant, |_, _| {});
@@ -202,7 +196,7 @@ pub fn paper_method(
         let now = problem.point(history.moved[1], &place.points, &texture, &mut errors);
         let error = now.loss;
         history.points.push(now);
-        if options.keep_best && best.as_ref().is_none_or(|(least, ..)| error < *least) {
+        if best.as_ref().is_none_or(|(least, ..)| error < *least) {
             best = Some((error, place.points.clone(), texture.clone()));
         }
         let mut energy = problem.energy(&place.points, &texture, &errors);
@@ -212,8 +206,8 @@ pub fn paper_method(
         let step = place.step(&mut memory, &mut energy, region, &Identity, &reach);
         rounds += 1;
         let still = step != Step::Forgot && longest(&from, &place.points) < options.threshold;
-        let go_on = watch(&PaperProgress { round: rounds, error, points: &place.points });
-        if !go_on || (still && changed < options.threshold) {
+        stopped = !watch(&PaperProgress { round: rounds, error, points: &place.points });
+        if stopped || (still && changed < options.threshold) {
             break;
         }
     }
@@ -226,7 +220,7 @@ pub fn paper_method(
     painter.steps(
         &mut texture,
         &problem.loss(&points, size),
-        options.last_steps,
+        if stopped { 0 } else { options.last_steps },
         Rate::Falling,
         |step, texture| {
             if step % RECORDED == 0 {

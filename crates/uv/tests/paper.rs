@@ -156,7 +156,7 @@ fn lowers_the_error_and_stays_feasible() {
     let bounds = plane.bounds();
     let still = plane.run(&PaperOptions { rounds: 0, ..few_rounds() }, &bounds);
     assert_eq!(still.points, plane.layout.points);
-    for guide in [Guide::ContentAware, Guide::ContentAwareHeld, Guide::ImageLoss] {
+    for guide in [Guide::ContentAware, Guide::ImageLoss] {
         let result = plane.run(&PaperOptions { guide, ..few_rounds() }, &bounds);
         assert!(result.error < 0.97 * still.error, "{guide:?}: {} {}", result.error, still.error);
         assert!(bounds.is_feasible(&result.points));
@@ -195,7 +195,7 @@ fn stops_when_asked_and_takes_empty_signals() {
 fn same_bytes_for_any_number_of_threads() {
     let plane = Plane::new();
     let bounds = plane.bounds();
-    for guide in [Guide::ContentAware, Guide::ContentAwareHeld, Guide::ImageLoss] {
+    for guide in [Guide::ContentAware, Guide::ImageLoss] {
         let options = PaperOptions { rounds: 10, guide, ..few_rounds() };
         let [one, three] = [1, 3].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

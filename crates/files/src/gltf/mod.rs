@@ -28,7 +28,7 @@ mod write_material;
 mod write_mesh;
 mod write_parallax;
 
-pub use short_uv::short_uv;
+pub use short_uv::{short_uv, short_uvs_pay};
 pub use write::{glb_bytes, write_glb};
 
 use crate::context::{Context, Textures};

@@ -2,7 +2,7 @@
 //! indices: each run has vertices of its own, numbered as its triangles come to them, so that
 //! runs of the same connectivity have the same indices, in two bytes, which are written once.
 //!
-//! A grid of 400 × 400 cells takes 4 kB of indices a row this way in place of 3.8 MB. Vertices
+//! A grid of 400 × 400 cells takes 120 kB of indices this way in place of 3.8 MB. Vertices
 //! that two runs touch are written twice.
 
 use super::binary::SHORT;

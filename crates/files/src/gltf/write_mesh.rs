@@ -6,21 +6,17 @@
 
 use super::binary::Binary;
 use super::runs::{Run, runs};
-use super::short_uv::{is_short, nearest_short};
+use super::short_uv::{is_short, nearest_short, short_uvs_pay};
 use crate::unit::{unit, unit_tangent};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{Mesh, Model};
 use serde_json::{Value, json};
 
-/// Vertices from which on coordinates are written in two bytes where they are all 65535ths: in
-/// smaller meshes that saves nothing worth a reader's trouble.
-const MANY: usize = 10_000;
-
 /// The primitives of a model's mesh; `used` are the materials that its triangles name, which
 /// primitives name by their places there.
 pub fn primitives(binary: &mut Binary, model: &Model, used: &[usize]) -> Vec<Value> {
     let mesh = mended(model);
-    let sets = [&mesh.uvs, &mesh.uvs1].map(|uvs| uvs.len() >= MANY && uvs.iter().all(is_short));
+    let sets = [&mesh.uvs, &mesh.uvs1].map(|uvs| short_uvs_pay(uvs.len()) && uvs.iter().all(is_short));
     match runs(&mesh, stride(&mesh, sets)) {
         None => whole(binary, &mesh, sets, used),
         Some(runs) => in_runs(binary, &mesh, sets, &runs),

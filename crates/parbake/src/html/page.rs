@@ -32,9 +32,10 @@ pub fn page(high: &Model, baked: &Baked, evaluated: &Evaluated, sides: &[Side]) 
         "looks",
         "Before and after",
         &format!(
-            "Projected is what an ordinary baker delivers, baked is the result. Point at a picture, or tap it, to see \
+            "Projected is {}, baked is the result. Point at a picture, or tap it, to see \
              the high-poly in its place. Differences are those of the values on screen, {AMPLIFIED} times as strong. \
-             The decibels are PSNR of these very pictures, on dark grey."
+             The decibels are PSNR of these very pictures, on dark grey.",
+            report.start()
         ),
         &gallery(sides)?,
     );
@@ -75,7 +76,7 @@ pub fn page(high: &Model, baked: &Baked, evaluated: &Evaluated, sides: &[Side]) 
             ),
             loss_curve(&report.losses),
             tables::stages(report),
-            settings(&report.options)
+            settings(&report.options, report.command())
         ),
     );
     Ok(document(&name, &out))

@@ -43,8 +43,8 @@ pub fn flags<T: Serialize>(options: &T, default: &T) -> String {
     escape(&out)
 }
 
-/// The table of all options.
-pub fn settings(options: &BakeOptions) -> String {
+/// The table of all options, and the command that takes them.
+pub fn settings(options: &BakeOptions, command: &str) -> String {
     let (plan, default) = (options.plan(), fields(&BakeOptions::default()));
     let mut out = String::from(r#"<table class="settings"><tbody>"#);
     for (name, value) in fields(options) {
@@ -52,6 +52,10 @@ pub fn settings(options: &BakeOptions) -> String {
             "views" => Some(plan.views.to_string()),
             "view_size" => Some(plan.reference.size.to_string()),
             "rounds" => Some(plan.schedule.rounds.to_string()),
+            "gutter" => Some(format!("{} texels", options.gutter_texels())),
+            "silhouette" => Some(options.silhouette_weight().to_string()),
+            "outlier" => Some(plan.schedule.outlier.to_string()),
+            "uv_steps" => Some(options.unfold().steps.to_string()),
             "threads" if options.threads == 0 => Some("one a core".into()),
             _ => None,
         };
@@ -62,7 +66,7 @@ pub fn settings(options: &BakeOptions) -> String {
             None => String::new(),
         };
         let text = match (&value, settled) {
-            (Value::Null, Some(settled)) => format!("{} <small>by preset</small>", escape(&settled)),
+            (Value::Null, Some(settled)) => format!("{} <small>by default</small>", escape(&settled)),
             (_, Some(settled)) => escape(&settled),
             (value, None) => escape(&plain(value)),
         };
@@ -75,7 +79,7 @@ pub fn settings(options: &BakeOptions) -> String {
     }
     let _ = write!(
         out,
-        "</tbody></table><p class=\"note\">To bake like this again: <code>parbake bake HIGH LOW{}</code></p>",
+        "</tbody></table><p class=\"note\">To bake like this again: <code>parbake {command}{}</code></p>",
         flags(options, &BakeOptions::default())
     );
     out
@@ -104,7 +108,7 @@ mod tests {
     /// Protects the promise that every option is on the page.
     #[test]
     fn no_option_is_missing() {
-        let html = settings(&BakeOptions::default());
+        let html = settings(&BakeOptions::default(), "bake HIGH LOW");
         let views = BakeOptions::default().plan().views;
         assert!(fields(&BakeOptions::default()).len() > 10);
         assert_eq!(html.matches("<tr").count(), fields(&BakeOptions::default()).len());

@@ -1,6 +1,7 @@
 //! The guard of the default method: however far texture coordinates move, no size is shown
 //! worse than with an ordinary texture.
 
+use super::rounding::as_written;
 use super::texture::{NOTHING, errors, written_texture};
 use parbake_atlas::Layout;
 use parbake_uv::best_texture::Texture;
@@ -24,8 +25,7 @@ pub fn best_share(
         for (p, from) in layout.points.iter_mut().zip(&start.points) {
             *p = from.lerp(*p, share);
         }
-        layout.round();
-        if (0..layout.triangles.len()).all(|t| layout.doubled_area(t) > 0.0)
+        if let Some(layout) = as_written(layout)
             && let Some(texture) = balanced_texture(&layout, all, texture.clone(), balance.clone(), kept)
         {
             return Some((layout, texture));

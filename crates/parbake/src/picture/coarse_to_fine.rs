@@ -93,7 +93,7 @@ pub fn optimised(
         balance.update(&refined.relative);
         moves.steps += refined.descent.values.len() - 1;
         // Grids of other turns have other triangles: only the last one's moves are drawn.
-        moves.frames = frames;
+        (moves.plane, moves.frames) = (plane, frames);
         state = Some((layout, refined.texture, balance));
         if watcher.stopped() {
             // The layout must be one of the finest grid.

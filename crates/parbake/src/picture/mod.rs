@@ -15,25 +15,26 @@ mod coarse_to_fine;
 mod options;
 mod paper;
 mod plane;
+mod rounding;
 mod showings;
 mod texture;
 
-pub use options::ImageOptions;
+pub use options::{ImageOptions, PictureUv};
 
 use crate::convergence::Convergence;
 use crate::error::BakeError;
 use crate::message::Watcher;
-use crate::options::{Method, UvMode};
+use crate::options::Method;
 use crate::uv_animation::UvMoves;
 use balance::best_share;
 use coarse_to_fine::optimised;
 use parbake_atlas::{Layout, UvCheck, check};
-use parbake_files::short_uv;
 use parbake_model::glam::{DVec2, Vec2, Vec4};
 use parbake_model::{AlphaMode, Image, Material, Model, TextureSlot, Wrap};
 use parbake_uv::best_texture::Texture;
 use parbake_uv::contact::{Border, ContactOptions};
 use plane::Plane;
+use rounding::as_written;
 use serde::Serialize;
 use showings::{Picture, showings};
 use texture::{decibels, errors, written_texture};
@@ -78,13 +79,16 @@ pub struct ImageReport {
 /// When the watcher asks to stop, the best state so far is returned.
 ///
 /// # Errors
-/// When an option is out of range.
+/// When an option is out of range, or the picture has not as many pixels as it says.
 pub fn bake_image(
     image: &Image,
     options: &ImageOptions,
     watcher: &impl Watcher,
 ) -> Result<BakedImage, BakeError> {
     options.check()?;
+    if !image.is_whole() {
+        return Err(BakeError::BrokenImage { image: image.name.clone() });
+    }
     let size = options.texture_size;
     let picture = Picture::new(image);
     let contact = ContactOptions { texture_size: size as u32, border: Border::Slide, ..Default::default() };
@@ -94,24 +98,24 @@ pub fn bake_image(
     let kept_texture = written_texture(&start, &all[..1], Texture::solid(size, Vec4::splat(0.5)));
     let kept_errors = errors(&start, &all, &kept_texture);
 
-    let mut moves = Moves::default();
-    let moving = options.uv == UvMode::Optimize && options.settled_steps() > 0;
+    let mut moves = Moves { plane: finest, frames: Vec::new(), steps: 0, convergence: None };
+    let moving = options.uv == PictureUv::Optimize && options.settled_steps() > 0;
     let found = match options.method {
         Method::Fit if moving => optimised(&picture, options, &contact, &mut moves, watcher)
             // What was moved for fewer samples is judged by all of them.
             .and_then(|found| best_share(&start, found, &all, &kept_errors)),
         Method::Paper if moving => {
             let layout = paper::moved(&picture, options, &mut moves, watcher);
+            let layout = as_written(layout.clone()).unwrap_or(layout);
             let texture = written_texture(&layout, &all[..1], kept_texture.clone());
             Some((layout, texture))
         }
         _ => None,
     };
-    let left_as_is = found.is_none() && options.uv == UvMode::Optimize;
+    let left_as_is = found.is_none() && options.uv == PictureUv::Optimize;
     // Where nothing moved, two triangles show what the finest grid would.
     let plane = if left_as_is { Plane { cells: 1 } } else { finest };
     let (layout, texture) = found.unwrap_or_else(|| (plane.layout(as_f64(&plane.points())), kept_texture));
-    let layout = shortened(layout);
     let written_errors = if left_as_is { kept_errors.clone() } else { errors(&layout, &all, &texture) };
     let report = ImageReport {
         options: options.clone(),
@@ -123,20 +127,14 @@ pub fn bake_image(
         stopped_early: watcher.stopped(),
         convergence: moves.convergence,
     };
-    let uv_moves = (!left_as_is && !moves.frames.is_empty()).then(|| drawn(plane, moves.frames));
+    let uv_moves = (!left_as_is && !moves.frames.is_empty()).then(|| drawn(moves.plane, moves.frames));
     Ok(BakedImage { model: model(image, plane, &layout, &texture), uv_moves, report })
 }
 
-/// The layout at coordinates that a file holds in two bytes, where no triangle turns over by that.
-fn shortened(layout: Layout) -> Layout {
-    let points = layout.points.iter().map(|p| short_uv(p.as_vec2()).as_dvec2()).collect();
-    let short = Layout { points, ..layout.clone() };
-    if (0..short.triangles.len()).all(|t| short.doubled_area(t) > 0.0) { short } else { layout }
-}
-
 /// Frames and steps so far, and how the paper's method went.
-#[derive(Default)]
 struct Moves {
+    /// The grid that frames are of: a run that was stopped may not have come to the finest.
+    plane: Plane,
     frames: Vec<Vec<Vec2>>,
     steps: usize,
     convergence: Option<Convergence>,
@@ -178,6 +176,8 @@ fn model(image: &Image, plane: Plane, layout: &Layout, texture: &Texture) -> Mod
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::message::Message;
+    use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
     /// Protects pictures on which nothing can be gained: they get two triangles and no plane of
     /// thousands.
@@ -190,5 +190,49 @@ mod tests {
         assert!(baked.report.left_as_is);
         assert_eq!(baked.model.mesh.triangles.len(), 2);
         assert_eq!(baked.report.written, baked.report.kept);
+    }
+
+    /// Stops after so many messages.
+    struct StopAfter(AtomicUsize);
+
+    impl Watcher for StopAfter {
+        fn message(&self, _: Message) {
+            self.0.fetch_update(Relaxed, Relaxed, |left| left.checked_sub(1)).ok();
+        }
+
+        fn stopped(&self) -> bool {
+            self.0.load(Relaxed) == 0
+        }
+    }
+
+    /// Protects a run that is stopped on a coarse grid: its plane is the finest, sound and no worse than
+    /// an ordinary texture, its moves are drawn on the grid they are of.
+    #[test]
+    fn a_run_can_be_stopped_on_any_grid() {
+        let checks = |i: usize| if i % 96 / 6 % 2 == i / 96 / 6 % 2 { 30 } else { 220 };
+        let pixels = (0..96 * 96).map(|i| if i % 96 < 48 { [checks(i), 90, 40, 255] } else { [90; 4] });
+        let picture = Image { name: "checks".into(), width: 96, height: 96, pixels: pixels.collect() };
+        let options = ImageOptions { texture_size: 16, grid: Some(80), ..ImageOptions::default() };
+        for messages in [0, 1, 3, 20] {
+            let baked =
+                bake_image(&picture, &options, &StopAfter(messages.into())).expect("options are in range");
+            assert!(baked.report.stopped_early, "{messages}");
+            assert!(baked.report.uv.is_bijective(), "{messages}");
+            assert!(baked.report.written[0] >= baked.report.kept[0]);
+            if let Some(moves) = baked.uv_moves {
+                let points = moves.triangles.iter().flatten().max().map_or(0, |most| *most as usize + 1);
+                assert!(moves.frames.iter().all(|frame| frame.len() == points), "{messages}");
+            }
+        }
+    }
+
+    /// Protects library callers: a picture without its pixels is an error and no panic.
+    #[test]
+    fn broken_pictures_are_refused() {
+        let broken = Image { name: "broken".into(), width: 4, height: 4, pixels: vec![[0; 4]; 15] };
+        for picture in [broken, Image::default()] {
+            let found = bake_image(&picture, &ImageOptions::default(), &());
+            assert!(matches!(found, Err(BakeError::BrokenImage { .. })));
+        }
     }
 }

@@ -1,9 +1,21 @@
 //! What a user can ask of `parbake image`.
 
 use crate::error::BakeError;
-use crate::options::{Method, UvMode};
+use crate::options::Method;
 use parbake_uv::paper::PaperOptions;
 use serde::{Deserialize, Serialize};
+
+/// What becomes of a plane's texture coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum PictureUv {
+    /// They stay: an ordinary, smaller texture on two triangles.
+    Keep,
+    /// They move to where they show most.
+    #[default]
+    Optimize,
+}
 
 /// Options of [`crate::bake_image`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -15,14 +27,14 @@ pub struct ImageOptions {
     pub texture_size: usize,
 
     /// Cells along a side of the plane, 4 to 400: more follow the picture better and make the
-    /// model larger, by some 34 bytes a cell (44 from 256 cells on) [default: 200, 240 from 128
+    /// model larger, by some 18 bytes a cell (up to 40 where no number from 2 to 16 divides them) [default: 200, 240 from 128
     /// texels on, 400 from 256 on, with --method paper 50 as there, 1 where coordinates stay]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
     pub grid: Option<usize>,
 
-    /// Whether texture coordinates move: keep (an ordinary, smaller texture) or optimize
-    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = UvMode::Optimize))]
-    pub uv: UvMode,
+    /// What becomes of texture coordinates
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = PictureUv::Optimize))]
+    pub uv: PictureUv,
 
     /// How they are moved; the texture itself is the least-squares one with either
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Method::Fit))]
@@ -48,7 +60,7 @@ impl Default for ImageOptions {
         Self {
             texture_size: 256,
             grid: None,
-            uv: UvMode::Optimize,
+            uv: PictureUv::Optimize,
             method: Method::Fit,
             no_content_aware: false,
             steps: None,
@@ -61,12 +73,12 @@ impl ImageOptions {
     /// Cells as asked, or those of what is done.
     pub fn settled_grid(&self) -> usize {
         self.grid.unwrap_or(match (self.uv, self.method) {
-            (UvMode::Optimize, Method::Fit) => match self.texture_size {
+            (PictureUv::Optimize, Method::Fit) => match self.texture_size {
                 0..128 => 200,
                 128..256 => 240,
                 _ => 400,
             },
-            (UvMode::Optimize, Method::Paper) => 50,
+            (PictureUv::Optimize, Method::Paper) => 50,
             // A plane that nothing bends.
             _ => 1,
         })

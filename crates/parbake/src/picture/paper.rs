@@ -67,7 +67,7 @@ pub fn moved(picture: &Picture, options: &ImageOptions, moves: &mut Moves, watch
         watcher.message(Message::Progress { stage: Stage::Unfold, done: progress.round, total });
         !watcher.stopped()
     });
-    moves.steps = found.rounds;
+    (moves.plane, moves.steps) = (plane, found.rounds);
     moves.convergence = Some(found.history.into());
     moves.frames.push(found.points.iter().map(|p| p.as_vec2()).collect());
     layout.points = found.points;

@@ -53,9 +53,9 @@ pub struct UnfoldOptions {
     pub texture_size: usize,
     /// Least distance between charts in texels.
     pub gutter: f64,
-    /// Whether the user asked for that gutter: otherwise a sound layout with a smaller one
-    /// is not packed again for it.
-    pub gutter_asked: bool,
+    /// Whether it must be that gutter, as where the user asked for it: otherwise a sound layout with
+    /// a smaller one is not packed again for it.
+    pub gutter_required: bool,
     /// Texels along a side of the parallax map that is to come, if one is.
     pub parallax_size: Option<usize>,
     /// Steps of the refinement, or rounds of the paper's method at most.
@@ -166,7 +166,7 @@ pub fn mend(low: &Model, options: &UnfoldOptions) -> Result<Mended, BakeError> {
     let sound = || check(&Layout::new(&mesh), options.texture_size).is_bijective();
     let (mesh, mut mended) = match options.mode {
         UvMode::Keep => (mesh, Vec::new()),
-        UvMode::Repair | UvMode::Optimize if !options.gutter_asked && !mesh.uvs.is_empty() && sound() => {
+        UvMode::Repair | UvMode::Optimize if !options.gutter_required && !mesh.uvs.is_empty() && sound() => {
             (mesh, Vec::new())
         }
         UvMode::Unwrap => (unwrap(&mesh, &UnwrapOptions { pack, ..Default::default() })?.mesh, Vec::new()),
@@ -193,13 +193,14 @@ impl UnfoldOptions {
     /// gutter is the user's, or where charts are too many for it.
     fn with_room(&self, mesh: &Mesh) -> Option<Self> {
         let made_here = matches!(self.mode, UvMode::Optimize | UvMode::Unwrap);
-        let size =
-            self.parallax_size.filter(|_| made_here && !self.gutter_asked && self.method == Method::Fit)?;
+        let size = self
+            .parallax_size
+            .filter(|_| made_here && !self.gutter_required && self.method == Method::Fit)?;
         let charts = Layout::new(mesh).charts.iter().max().map_or(0, |last| last + 1);
         let wide = PARALLAX_GUTTER / size as f64;
         let gutter = wide * self.texture_size as f64;
         let fits = 2.0 * f64::from(charts).sqrt() * wide <= PARALLAX_ROOM;
-        (fits && gutter > self.gutter).then_some(Self { gutter, gutter_asked: true, ..*self })
+        (fits && gutter > self.gutter).then_some(Self { gutter, gutter_required: true, ..*self })
     }
 }
 

@@ -63,58 +63,120 @@ pub fn moved(
     let shape_steps = most_steps.min(10 * asked.steps);
     let options = &UvOptions { refine_steps: asked.steps, shape_steps, ..UvOptions::default() };
     // A low-poly's texture is fitted to views, which reads its first level alone.
-    let all_sizes = source.surface.is_none();
-    let kept = errors(problem, start, all_sizes);
-    let relative = |layout: &Layout| -> Vec<f64> {
-        errors(problem, layout, all_sizes).iter().zip(&kept).map(|(a, b)| a / b.max(1e-12)).collect()
-    };
-    let minified = if all_sizes { 1.0 } else { MINIFIED };
-    // The error that counts is that of all sizes.
-    let total = |layout: &Layout| relative(layout).iter().sum::<f64>();
-    let (mut balance, texture) = Balance::new(problem, start);
-    // Views see a surface under all angles: half of it is minified.
-    balance.weights.fill(1.0);
-    let tensors = tensors(problem, start);
-    let mut layout = start.clone();
-    if let Some(packed) = packed(problem, start, &packing(asked), &tensors)
-        && total(&packed) < kept.len() as f64
-    {
-        layout = packed;
-        report.packed = true;
-    }
+    let judge = &Judge::new(problem, start, source.surface.is_none());
+    let tensors = &tensors(problem, start);
+    let packed = packed(problem, start, &packing(asked), tensors)
+        .filter(|packed| judge.total(packed) < judge.kept.len() as f64);
+    let is_packed = packed.is_some();
+    let mut layout = packed.unwrap_or_else(|| start.clone());
     let mut frames = vec![as_f32(&start.points), as_f32(&layout.points)];
     let most = options.refine_steps + FLAT.len() * options.shape_steps;
-    let mut done = 0;
-    let mut step = |way: &mut Vec<Vec<Vec2>>, points: &[DVec2]| {
+    let steps = &mut Steps { done: 0, most, watcher };
+    frames.extend(shaped(judge, &mut layout, tensors, options, steps));
+    let (layout, relative) = refined(judge, start, layout, options, &mut frames, steps)?;
+    report.packed |= is_packed;
+    report.steps = frames.len() - 2;
+    report.relative_error = relative;
+    Some(Moved { layout, frames })
+}
+
+/// How much worse or better layouts show the surface than the one that was given.
+struct Judge<'a> {
+    problem: &'a Problem<'a>,
+    /// Whether textures are judged at all their mip levels.
+    all_sizes: bool,
+    /// The given layout's error by showing: at full size, half and so on.
+    kept: Vec<f64>,
+}
+
+impl<'a> Judge<'a> {
+    fn new(problem: &'a Problem<'a>, start: &Layout, all_sizes: bool) -> Self {
+        Self { problem, all_sizes, kept: errors(problem, start, all_sizes) }
+    }
+
+    /// Errors as shares of those of the given layout.
+    fn relative(&self, layout: &Layout) -> Vec<f64> {
+        let errors = errors(self.problem, layout, self.all_sizes);
+        errors.iter().zip(&self.kept).map(|(a, b)| a / b.max(1e-12)).collect()
+    }
+
+    /// The error that counts is that of all sizes.
+    fn total(&self, layout: &Layout) -> f64 {
+        self.relative(layout).iter().sum()
+    }
+}
+
+/// How far along the way is.
+struct Steps<'a, W> {
+    done: usize,
+    most: usize,
+    watcher: &'a W,
+}
+
+impl<W: Watcher> Steps<'_, W> {
+    /// Notes a step; false to stop.
+    fn step(&mut self, way: &mut Vec<Vec<Vec2>>, points: &[DVec2]) -> bool {
         way.push(as_f32(points));
-        done = most.min(done + 1);
-        watcher.message(Message::Progress { stage: Stage::Unfold, done, total: most });
-        !watcher.stopped()
-    };
-    // The signal-specialised start is a guess: how plain the plain is depends on the texture's size, and
-    // where both guesses are bad, none is better.
-    let (before, mut least, mut shaped) = (layout.clone(), total(&layout), Vec::new());
+        self.done = self.most.min(self.done + 1);
+        self.watcher.message(Message::Progress { stage: Stage::Unfold, done: self.done, total: self.most });
+        !self.watcher.stopped()
+    }
+}
+
+/// Moves the layout to the better one of the signal-specialised starts, and returns the way there. The start is
+/// a guess: how plain the plain is depends on the texture's size, and where both guesses are bad,
+/// none is better.
+fn shaped<W: Watcher>(
+    judge: &Judge,
+    layout: &mut Layout,
+    tensors: &[DMat2],
+    options: &UvOptions,
+    steps: &mut Steps<W>,
+) -> Vec<Vec<Vec2>> {
+    let (before, mut least, mut shaped) = (layout.clone(), judge.total(layout), Vec::new());
     for flat in FLAT {
         let (mut guess, mut way) = (before.clone(), Vec::new());
         let own = UvOptions { flat, ..*options };
-        shape(problem, &mut guess, &tensors, &own, |points, _| step(&mut way, points));
-        let left = total(&guess);
+        shape(judge.problem, &mut guess, tensors, &own, |points, _| steps.step(&mut way, points));
+        let left = judge.total(&guess);
         if left < least {
-            (layout, least, shaped) = (guess, left, way);
+            (*layout, least, shaped) = (guess, left, way);
+        }
+        if steps.watcher.stopped() {
+            break;
         }
     }
-    frames.extend(shaped);
+    shaped
+}
+
+/// Refines the layout by variable projection, in turns after each of which showings are weighted anew. The best
+/// of the turns' layouts that are better than `start` at each size, and its errors as shares of
+/// those of `start`.
+fn refined<W: Watcher>(
+    judge: &Judge,
+    start: &Layout,
+    mut layout: Layout,
+    options: &UvOptions,
+    frames: &mut Vec<Vec<Vec2>>,
+    steps: &mut Steps<W>,
+) -> Option<(Layout, Vec<f64>)> {
+    let (mut balance, mut texture) = Balance::new(judge.problem, start);
+    // Views see a surface under all angles: half of it is minified.
+    balance.weights.fill(1.0);
     // A bake's last thousandths lie in parallax and outlines, not in coordinates.
-    let (tolerance, solve) =
-        if all_sizes { (options.tolerance, options.solve) } else { (1e-3, Solve::ROUGH) };
+    let (tolerance, solve, minified) = if judge.all_sizes {
+        (options.tolerance, options.solve, 1.0)
+    } else {
+        (1e-3, Solve::ROUGH, MINIFIED)
+    };
     let turn = UvOptions { refine_steps: options.refine_steps.div_ceil(TURNS), tolerance, solve, ..*options };
-    let mut texture = texture;
     let mut best: Option<(f64, Layout, Vec<f64>)> = None;
     for _ in 0..TURNS {
-        let refined =
-            refine(problem, &balance, &mut layout, texture, &turn, |points, _| step(&mut frames, points));
-        texture = refined.texture;
-        let relative = relative(&layout);
+        let found = refine(judge.problem, &balance, &mut layout, texture, &turn, |points, _| {
+            steps.step(frames, points)
+        });
+        texture = found.texture;
+        let relative = judge.relative(&layout);
         // By what the texture that will be solved for leaves.
         balance.update(&relative);
         let sound = relative[0] < WORTH_IT && relative[1..].iter().all(|r| *r < minified);
@@ -122,14 +184,11 @@ pub fn moved(
         if sound && best.as_ref().is_none_or(|(least, ..)| sum < *least) {
             best = Some((sum, layout.clone(), relative));
         }
-        if watcher.stopped() {
+        if steps.watcher.stopped() {
             break;
         }
     }
-    report.steps = frames.len() - 2;
-    let (_, layout, relative) = best?;
-    report.relative_error = relative;
-    Some(Moved { layout, frames })
+    best.map(|(_, layout, relative)| (layout, relative))
 }
 
 /// Charts packed anew, each as large as its signal asks for.

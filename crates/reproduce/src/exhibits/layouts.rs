@@ -12,7 +12,7 @@ use crate::plane::{as_shown, wanted};
 use crate::results::Results;
 use crate::scope::Scope;
 use crate::table::{Cell, Table};
-use parbake::{BakeOptions, ImageOptions, Limits, UvMode, read_image, read_model};
+use parbake::{BakeOptions, ImageOptions, Limits, PictureUv, UvMode, read_image, read_model};
 use parbake_model::Model;
 use parbake_page::text::{decimal, escape};
 use parbake_page::{amplified_difference, embed, embed_rgb, uv_layout};
@@ -37,17 +37,17 @@ const STARTS_SIZE: usize = 128;
 const STARTS: [(UvMode, &str); 3] =
     [(UvMode::Keep, "delivered"), (UvMode::Unwrap, "unwrapped"), (UvMode::Tutte, "Tutte")];
 
-fn on_plane(scope: &Scope, picture: &Path, uv: UvMode) -> Experiment {
+fn on_plane(scope: &Scope, picture: &Path, uv: PictureUv) -> Experiment {
     let size = if scope.options.quick { 64 } else { 128 };
     let options = ImageOptions { uv, grid: Some(CELLS), ..scope.picture(size) };
-    let label = if uv == UvMode::Keep { "fixed UV" } else { "UV" };
+    let label = if uv == PictureUv::Keep { "fixed UV" } else { "UV" };
     let recipe = Recipe::Picture { options };
     Experiment { subject: Subject::picture(picture), recipe, label: format!("{label}, {CELLS} cells") }
 }
 
 /// Both of each picture.
 pub fn picture_experiments(scope: &Scope) -> Vec<Experiment> {
-    let both = |picture| [UvMode::Keep, UvMode::Optimize].map(|uv| on_plane(scope, picture, uv));
+    let both = |picture| [PictureUv::Keep, PictureUv::Optimize].map(|uv| on_plane(scope, picture, uv));
     scope.catalogue.pictures.iter().flat_map(|picture| both(picture)).collect()
 }
 
@@ -82,7 +82,7 @@ pub fn start_experiments(scope: &Scope) -> Vec<Experiment> {
 pub fn draw_pictures(scope: &Scope, results: &Results) -> Result<Drawn, ReproduceError> {
     let mut html = String::new();
     for path in &scope.catalogue.pictures {
-        let experiments = [UvMode::Keep, UvMode::Optimize].map(|uv| on_plane(scope, path, uv));
+        let experiments = [PictureUv::Keep, PictureUv::Optimize].map(|uv| on_plane(scope, path, uv));
         let picture = read_image(path, &Limits::default())?;
         html += &format!(r#"<h3>{}</h3><div class="plates">"#, escape(&stem(path)));
         html += &framed("the picture", &embed(&picture)?.address, "");

@@ -8,7 +8,7 @@ use crate::paper;
 use crate::results::Results;
 use crate::scope::Scope;
 use crate::table::{Cell, Table};
-use parbake::{ImageOptions, UvMode};
+use parbake::{ImageOptions, PictureUv};
 use std::path::Path;
 
 /// How to read it.
@@ -17,9 +17,9 @@ texels. Fixed UV is the least-squares texture, UV moves coordinates besides; min
 quarter size with trilinear filtering. Downsampled is a triangle filter, shown with bilinear filtering.";
 
 /// Kept coordinates, or moved ones.
-pub fn run(scope: &Scope, picture: &Path, size: usize, uv: UvMode) -> Experiment {
+pub fn run(scope: &Scope, picture: &Path, size: usize, uv: PictureUv) -> Experiment {
     let options = ImageOptions { uv, ..scope.picture(size) };
-    let label = if uv == UvMode::Keep { "fixed UV" } else { "UV" };
+    let label = if uv == PictureUv::Keep { "fixed UV" } else { "UV" };
     let recipe = Recipe::Picture { options };
     Experiment { subject: Subject::picture(picture), recipe, label: label.into() }
 }
@@ -35,7 +35,7 @@ pub fn experiments(scope: &Scope) -> Vec<Experiment> {
     for &size in scope.picture_sizes() {
         for picture in &scope.catalogue.pictures {
             all.push(downsampled(picture, size));
-            all.extend([UvMode::Keep, UvMode::Optimize].map(|uv| run(scope, picture, size, uv)));
+            all.extend([PictureUv::Keep, PictureUv::Optimize].map(|uv| run(scope, picture, size, uv)));
         }
     }
     all
@@ -63,7 +63,7 @@ pub fn draw(scope: &Scope, results: &Results) -> Drawn {
         for picture in &scope.catalogue.pictures {
             let name = stem(picture);
             let [kept, moved] =
-                [UvMode::Keep, UvMode::Optimize].map(|uv| results.of(&run(scope, picture, size, uv)));
+                [PictureUv::Keep, PictureUv::Optimize].map(|uv| results.of(&run(scope, picture, size, uv)));
             let papers = |method: &str| paper::figure(6, &name, size, method);
             let cell = |method| Cell::or_missing(papers(method).map(|f| Cell::Paper(f.psnr, f.ms_ssim)));
             let ours = gain(Outcome::psnr, moved, kept);

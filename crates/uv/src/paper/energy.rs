@@ -108,7 +108,6 @@ impl<'a> Problem<'a> {
         let distortion =
             Distortion::symmetric_dirichlet(self.rest, scale, |t| distortion_weight + held * errors[t]);
         let image = match guide {
-            Guide::ContentAwareHeld => None,
             Guide::ImageLoss => Some((texture, Cow::Borrowed(self.signal), 1.0 / self.mean_over)),
             Guide::ContentAware => Some((texture, Cow::Owned(self.distorted(points)), content_weight)),
         };
