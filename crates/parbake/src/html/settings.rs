@@ -113,7 +113,7 @@ mod tests {
         assert!(fields(&BakeOptions::default()).len() > 10);
         assert_eq!(html.matches("<tr").count(), fields(&BakeOptions::default()).len());
         assert!(
-            html.contains(&format!("{views} <small>by preset")) && html.contains("<td>0.05</td>"),
+            html.contains(&format!("{views} <small>by default")) && html.contains("<td>0.05</td>"),
             "{html}"
         );
     }
