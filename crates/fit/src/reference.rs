@@ -8,6 +8,7 @@
 use crate::views::View;
 use crate::watch::{Stage, Watch};
 use half::f16;
+use half::slice::HalfFloatSliceExt;
 use parbake_render::raster::{NOTHING, Visibility, rasterise};
 use parbake_render::scene::Scene;
 use parbake_render::shade::Shading;
@@ -32,6 +33,28 @@ pub struct Reference {
     pub view: View,
     /// size² pixels of premultiplied linear light and coverage.
     pub pixels: Vec<[f16; 4]>,
+}
+
+impl Reference {
+    /// The pixels as single floats: many at once, where a CPU converts one as slowly as eight.
+    pub fn linear(&self) -> Vec<[f32; 4]> {
+        let mut pixels = vec![[0.0; 4]; self.pixels.len()];
+        self.pixels.as_flattened().convert_to_f32_slice(pixels.as_flattened_mut());
+        pixels
+    }
+
+    /// The same picture with half as many pixels along a side: each is the mean of four. Odd sizes
+    /// lose their last row and column.
+    pub fn halved(&self) -> Self {
+        let (size, pixels) = (self.pixels.len().isqrt(), self.linear());
+        let half = size / 2;
+        let mean = |pixel: usize| -> [f16; 4] {
+            let corner = 2 * (pixel / half) * size + 2 * (pixel % half);
+            let four = [corner, corner + 1, corner + size, corner + size + 1].map(|i| pixels[i]);
+            std::array::from_fn(|k| f16::from_f32(0.25 * four.iter().map(|p| p[k]).sum::<f32>()))
+        };
+        Self { view: self.view, pixels: (0..half * half).map(mean).collect() }
+    }
 }
 
 /// Renders the pool. Stops early, with fewer views, when asked to, but never
@@ -88,6 +111,26 @@ fn render(high: &Scene, shading: &impl Shading, view: &View, sampling: &Sampling
             pixel[3] += share;
         }
     }
-    let pixels = sum.into_iter().map(|p| p.map(f16::from_f32)).collect();
+    let mut pixels = vec![[f16::ZERO; 4]; sum.len()];
+    pixels.as_flattened_mut().convert_from_f32_slice(sum.as_flattened());
     Reference { view: *view, pixels }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parbake_model::glam::Vec3;
+    use parbake_render::camera::{Camera, Projection};
+
+    /// Protects coarse views: each pixel is the mean of its own four, also where a side is odd.
+    #[test]
+    fn half_as_many_pixels_are_means_of_four() {
+        let camera = Camera::towards_origin(Vec3::Z, 3.5, Projection::Perspective(0.4));
+        let view = View { camera, jitter: [0.0; 2] };
+        let pixels = (0..25u8).map(|i| [f16::from(i), f16::ZERO, f16::ZERO, f16::ONE]).collect();
+        let halved = Reference { view, pixels }.halved();
+        let red: Vec<f32> = halved.linear().iter().map(|p| p[0]).collect();
+        assert_eq!(red, [3.0, 5.0, 13.0, 15.0]);
+        assert!(halved.linear().iter().all(|p| p[3] == 1.0));
+    }
 }

@@ -115,11 +115,10 @@ impl<'a> Walker<'a> {
                 map.opacity(uv, direction) >= 0.0
             }),
         }
-        for (index, &triangle) in seen.triangle.iter().enumerate() {
+        for (index, (&triangle, pixel)) in seen.triangle.iter().zip(reference.linear()).enumerate() {
             if triangle == NOTHING {
                 continue;
             }
-            let pixel = reference.pixels[index].map(f32::from);
             let Some((target, weight)) = target(pixel, self.display, self.beyond) else {
                 continue;
             };

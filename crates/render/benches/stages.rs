@@ -112,7 +112,7 @@ impl Bench {
             edges: EdgeAdjacency::new(&positions, &triangles),
             color: texture(|u, v| [0.5 + 0.4 * (60.0 * u).sin(), 0.5 + 0.4 * (45.0 * v).cos(), u * v]),
             normal: texture(|u, v| [0.2 * (80.0 * u).sin(), 0.2 * (70.0 * v).sin(), 0.95]),
-            reference: Reference::new(&wanted, SIZE, &composer),
+            reference: Reference::new(wanted, SIZE, &composer),
             picture,
             positions,
             normals,

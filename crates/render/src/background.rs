@@ -3,6 +3,7 @@
 //! Forward: `x = gain · rgb + (1 − a) · background` in linear light, then
 //! `e = curve(x)`: the background is as bright as it says, whatever the model's light.
 //! Adjoint: `dL/drgb = gain · curve'(x) · dL/de`, `dL/da = −Σ background · curve'(x) · dL/de`.
+//! The curve is read from a table (`display_table.rs`): powers took a fifth of a view's time.
 //!
 //! A fit on one background learns to paint that colour where the model ought to end;
 //! backgrounds that change from view to view leave nothing to gain by it. Plain greys
@@ -10,6 +11,7 @@
 //! saturated colours.
 
 use crate::display::{Curve, Display};
+use crate::display_table::DisplayTable;
 
 /// What is asked for behind the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -93,7 +95,8 @@ pub struct Composed {
 pub struct Composer {
     backdrop: Backdrop,
     gain: f32,
-    curve: Display,
+    /// None where the display is linear.
+    curve: Option<DisplayTable>,
     /// For each column (and row): is its square an odd one?
     odd: Vec<bool>,
     /// The bare backdrop's two squares: most pixels of a view are one of them.
@@ -103,8 +106,9 @@ pub struct Composer {
 impl Composer {
     /// For pictures of `size` pixels along a side.
     pub fn new(backdrop: Backdrop, display: Display, size: usize) -> Self {
-        let curve = Display { gain: 1.0, ..display };
-        let bare = backdrop.colors.map(|c| compose(&curve, c));
+        let of_display = || DisplayTable::new(&Display { gain: 1.0, ..display });
+        let curve = (display.curve != Curve::Linear).then(of_display);
+        let bare = backdrop.colors.map(|c| compose(curve.as_ref(), c));
         let odd = (0..size).map(|i| (i * backdrop.cells / size) & 1 == 1).collect();
         Self { backdrop, gain: display.gain, curve, odd, bare }
     }
@@ -123,7 +127,8 @@ impl Composer {
             return self.bare[square];
         }
         let behind = self.backdrop.colors[square];
-        compose(&self.curve, std::array::from_fn(|k| self.gain * rgba[k] + (1.0 - rgba[3]) * behind[k]))
+        let light = std::array::from_fn(|k| self.gain * rgba[k] + (1.0 - rgba[3]) * behind[k]);
+        compose(self.curve.as_ref(), light)
     }
 
     /// Adjoint: the gradient of the display values to that of the premultiplied pixel.
@@ -137,12 +142,14 @@ impl Composer {
 }
 
 #[inline]
-fn compose(curve: &Display, light: [f32; 3]) -> Composed {
-    if curve.curve == Curve::Linear {
+fn compose(curve: Option<&DisplayTable>, light: [f32; 3]) -> Composed {
+    let Some(curve) = curve else {
         return Composed { value: light, slope: [1.0; 3] };
-    }
-    let pairs = light.map(|x| curve.encode_with_derivative(x));
-    Composed { value: pairs.map(|p| p.0), slope: pairs.map(|p| p.1) }
+    };
+    let [r, g, b] = light;
+    let [r, g, b] =
+        [curve.encode_with_derivative(r), curve.encode_with_derivative(g), curve.encode_with_derivative(b)];
+    Composed { value: [r.0, g.0, b.0], slope: [r.1, g.1, b.1] }
 }
 
 #[cfg(test)]

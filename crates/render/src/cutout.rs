@@ -14,10 +14,10 @@
 //! Contract: as of `parallax.rs`.
 
 use crate::raster::{NOTHING, ScreenTriangles, Visibility, rasterise, rasterise_behind};
-use crate::spherical_harmonics::{MOST_FUNCTIONS, evaluate, functions};
+use crate::spherical_harmonics::{MOST_FUNCTIONS, as_constant, evaluate, functions};
 use crate::texture::{Taps, taps};
 use parbake_model::Wrap;
-use parbake_model::glam::{Vec2, Vec3};
+use parbake_model::glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 /// The opacity map of a surface.
@@ -53,29 +53,40 @@ impl ShCutout {
     /// `Σ_k O_k(t) Y_k(d)`.
     #[inline]
     pub fn opacity(&self, uv: Vec2, direction: Vec3) -> f32 {
-        let mut values = [0.0; MOST_FUNCTIONS];
-        evaluate(self.order, direction, &mut values);
-        let (count, at) = (functions(self.order), self.taps(uv));
-        let texel = |index: u32| -> f32 {
-            let start = index as usize * count;
-            self.coefficients[start..start + count].iter().zip(&values).map(|(c, y)| c * y).sum()
-        };
-        at.index.into_iter().zip(at.weights()).map(|(index, weight)| texel(index) * weight).sum()
+        let at = self.taps(uv);
+        as_constant(self.order, |order| {
+            let (count, weights) = (functions(order), at.weights());
+            let mut values = [0.0; MOST_FUNCTIONS];
+            evaluate(order, direction, &mut values);
+            let of_texel = at.index.map(|index| &self.coefficients[index as usize * count..][..count]);
+            let blended = |k: usize| -> f32 { (0..4).map(|i| of_texel[i][k] * weights[i]).sum() };
+            let blended_lanes = |k: usize| -> Vec4 {
+                (0..4).map(|i| Vec4::from_slice(&of_texel[i][k..k + 4]) * weights[i]).sum()
+            };
+            let in_lanes = count - count % 4;
+            let sum: Vec4 = (0..in_lanes)
+                .step_by(4)
+                .map(|k| blended_lanes(k) * Vec4::from_slice(&values[k..k + 4]))
+                .sum();
+            sum.element_sum() + (in_lanes..count).map(|k| blended(k) * values[k]).sum::<f32>()
+        })
     }
 
     /// Adjoint of [`ShCutout::opacity`] by the coefficients: adds to `into`, which has as
     /// many as this map.
     #[inline]
     pub fn adjoint(&self, uv: Vec2, direction: Vec3, to_opacity: f32, into: &mut [f32]) {
-        let mut values = [0.0; MOST_FUNCTIONS];
-        evaluate(self.order, direction, &mut values);
-        let (count, at) = (functions(self.order), self.taps(uv));
-        for (index, weight) in at.index.into_iter().zip(at.weights()) {
-            let start = index as usize * count;
-            for (to, y) in into[start..start + count].iter_mut().zip(&values) {
-                *to += to_opacity * weight * y;
+        let at = self.taps(uv);
+        as_constant(self.order, |order| {
+            let count = functions(order);
+            let mut values = [0.0; MOST_FUNCTIONS];
+            evaluate(order, direction, &mut values);
+            for (index, weight) in at.index.into_iter().zip(at.weights()) {
+                let to_texel = to_opacity * weight;
+                let into = &mut into[index as usize * count..][..count];
+                into.iter_mut().zip(&values).for_each(|(to, y)| *to += to_texel * y);
             }
-        }
+        });
     }
 }
 

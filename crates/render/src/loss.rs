@@ -77,8 +77,7 @@ pub struct Reference {
 
 impl Reference {
     /// Puts a premultiplied linear picture of size² pixels in front of a backdrop.
-    pub fn new(rgba: &[[f32; 4]], size: usize, composer: &Composer) -> Self {
-        let mut pixels = rgba.to_vec();
+    pub fn new(mut pixels: Vec<[f32; 4]>, size: usize, composer: &Composer) -> Self {
         pixels.par_chunks_mut(size.max(1)).enumerate().for_each(|(row, pixels)| {
             for (column, pixel) in pixels.iter_mut().enumerate() {
                 let [r, g, b] = composer.forward(pixel, column, row).value;

@@ -13,10 +13,10 @@
 //!
 //! Contract: n·d is in [−1, 1]; where it is below the limit it has no gradient.
 
-use crate::spherical_harmonics::{MOST_FUNCTIONS, adjoint as sh_adjoint, evaluate, functions};
+use crate::spherical_harmonics::{MOST_FUNCTIONS, adjoint as sh_adjoint, as_constant, evaluate, functions};
 use crate::texture::{Level, Taps, taps};
 use parbake_model::Wrap;
-use parbake_model::glam::{Vec2, Vec3};
+use parbake_model::glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
 /// The coefficient maps of a surface.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -38,7 +38,7 @@ pub struct ShParallax {
 }
 
 /// From where a point is seen.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sight {
     /// Unit vector to the viewer.
     pub direction: Vec3,
@@ -63,6 +63,12 @@ struct Factors {
     /// 1 / max(|n·d|, limit).
     steepness: f32,
     depth: f32,
+}
+
+/// Two pairs as one vector.
+#[inline(always)]
+fn lanes(pairs: &[Vec2]) -> Vec4 {
+    Vec4::new(pairs[0].x, pairs[0].y, pairs[1].x, pairs[1].y)
 }
 
 impl ShParallax {
@@ -114,40 +120,65 @@ impl ShParallax {
         Factors { steepness, depth }
     }
 
+    /// `Σ_k T_k(t) Y_k(d)`.
+    #[inline]
+    fn sum(&self, at: &Taps, direction: Vec3) -> Vec2 {
+        as_constant(self.order, |order| {
+            let (count, weights) = (functions(order), at.weights());
+            let mut values = [0.0; MOST_FUNCTIONS];
+            evaluate(order, direction, &mut values);
+            let of_texel = at.index.map(|index| &self.coefficients[index as usize * count..][..count]);
+            let mut sum = Vec4::ZERO;
+            for k in (0..count - 1).step_by(2) {
+                let blended: Vec4 = (0..4).map(|i| lanes(&of_texel[i][k..k + 2]) * weights[i]).sum();
+                sum += blended * Vec4::new(values[k], values[k], values[k + 1], values[k + 1]);
+            }
+            let mut sum = sum.xy() + sum.zw();
+            if count % 2 == 1 {
+                let blended: Vec2 = (0..4).map(|i| of_texel[i][count - 1] * weights[i]).sum();
+                sum += blended * values[count - 1];
+            }
+            sum
+        })
+    }
+
     /// How far the coordinate moves, in texture widths.
     #[inline]
     pub fn shift(&self, uv: Vec2, sight: &Sight) -> Vec2 {
-        let mut values = [0.0; MOST_FUNCTIONS];
-        evaluate(self.order, sight.direction, &mut values);
-        let at = self.taps(uv);
-        let sum = (at.index.into_iter().zip(at.weights()))
-            .fold(Vec2::ZERO, |sum, (index, weight)| sum + self.at_texel(index, &values) * weight);
         let Factors { steepness, depth } = self.factors(uv, sight);
-        sum * (steepness * depth)
+        self.sum(&self.taps(uv), sight.direction) * (steepness * depth)
     }
 
     /// The part of [`ShParallax::adjoint`] that goes to the maps: all that a fit needs whose
     /// surface stands still.
     #[inline]
     pub fn adjoint_of_maps(&self, uv: Vec2, sight: &Sight, to_shift: Vec2, into: &mut Self) {
-        let mut values = [0.0; MOST_FUNCTIONS];
-        evaluate(self.order, sight.direction, &mut values);
-        let count = functions(self.order);
         let at = self.taps(uv);
         let Factors { steepness, depth } = self.factors(uv, sight);
         if let (Some(map), Some(into)) = (&self.depth, &mut into.depth) {
-            let sum = (at.index.into_iter().zip(at.weights()))
-                .fold(Vec2::ZERO, |sum, (index, weight)| sum + self.at_texel(index, &values) * weight);
+            let sum = self.sum(&at, sight.direction);
             into.scatter(&taps(uv, map.width, map.height, self.wrap), &[sum.dot(to_shift) * steepness]);
         }
         let to_sum = to_shift * (steepness * depth);
-        for (index, weight) in at.index.into_iter().zip(at.weights()) {
-            let start = index as usize * count;
-            let to_texel = to_sum * weight;
-            for (to, y) in into.coefficients[start..start + count].iter_mut().zip(&values) {
-                *to += to_texel * *y;
+        as_constant(self.order, |order| {
+            let count = functions(order);
+            let mut values = [0.0; MOST_FUNCTIONS];
+            evaluate(order, sight.direction, &mut values);
+            for (index, weight) in at.index.into_iter().zip(at.weights()) {
+                let to_texel = to_sum * weight;
+                let to_lanes = Vec4::new(to_texel.x, to_texel.y, to_texel.x, to_texel.y);
+                let into = &mut into.coefficients[index as usize * count..][..count];
+                for k in (0..count - 1).step_by(2) {
+                    let y = Vec4::new(values[k], values[k], values[k + 1], values[k + 1]);
+                    let to = lanes(&into[k..k + 2]) + to_lanes * y;
+                    into[k] = to.xy();
+                    into[k + 1] = to.zw();
+                }
+                if count % 2 == 1 {
+                    into[count - 1] += to_texel * values[count - 1];
+                }
             }
-        }
+        });
     }
 
     /// The part of [`ShParallax::adjoint`] that goes to the point and to the direction.

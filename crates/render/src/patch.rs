@@ -199,7 +199,7 @@ impl<'a> Patch<'a> {
     ) -> SampleTexels {
         let s = self.sample(x, y);
         let texels = |color: Vec3, normal: Vec3, shift| SampleTexels {
-            fetches: s.lods.map(|lod| Fetch { uv: s.fetched, lod }),
+            fetches: [Fetch { uv: s.fetched, lod: s.lods[0] }, Fetch { uv: s.fetched, lod: s.lods[1] }],
             gradients: [color.to_array(), normal.to_array()],
             shift,
         };

@@ -94,9 +94,11 @@ impl ScreenTriangles {
 
 impl ScreenTriangle {
     /// s at this point of the screen: barycentrics divided by depth.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, x: f64, y: f64) -> [f64; 3] {
-        self.planes.map(|p| p.x * x + p.y * y + p.z)
+        let [a, b, c] = &self.planes;
+        let along = |plane: &DVec3| plane.x * x + plane.y * y + plane.z;
+        [along(a), along(b), along(c)]
     }
 }
 

@@ -4,7 +4,9 @@
 //! The adjoint of [`Pyramid::fetch`] by its texels: each tap receives its weight times
 //! the sample's gradient. Instead of atomics or a copy of the texture for each thread,
 //! the samples are sorted by the strips of texel rows that they touch; then each strip
-//! is filled by itself, its samples in their order.
+//! is filled by itself, its samples in their order. A texture without mip levels, as fits of the
+//! shape use, takes one tap where others take up to two and a choice between levels: sorting would
+//! cost more than adding, and such fits have other views to keep the other threads busy.
 //!
 //! Contract: adds to what is there; the result does not depend on the number of
 //! threads, only on the samples' order and their division into bands.
@@ -44,7 +46,9 @@ struct Sorted {
 #[derive(Debug)]
 pub struct Scatter<'a> {
     layout: Layout,
-    bands: Vec<(&'a [Fetch], Sorted)>,
+    bands: Vec<&'a [Fetch]>,
+    /// Of each band; none of a texture without mip levels.
+    sorted: Vec<Sorted>,
 }
 
 /// For each level: its first strip, rows of a strip, width, height.
@@ -113,13 +117,22 @@ impl<'a> Scatter<'a> {
     pub fn new<const C: usize>(pyramid: &Pyramid<C>, bands: impl IntoIterator<Item = &'a [Fetch]>) -> Self {
         let layout = Layout::of(pyramid);
         let bands: Vec<&[Fetch]> = bands.into_iter().collect();
-        let bands = bands.into_par_iter().map(|band| (band, sort(pyramid, &layout, band))).collect();
-        Self { layout, bands }
+        let sorted = match pyramid.levels.len() {
+            1 => Vec::new(),
+            _ => bands.par_iter().map(|band| sort(pyramid, &layout, band)).collect(),
+        };
+        Self { layout, bands, sorted }
     }
 
     /// Adds the gradients of all fetched values, band by band and fetch by fetch, to
     /// the texels.
     pub fn add<const C: usize>(&self, gradients: &[&[[f32; C]]], into: &mut Pyramid<C>) {
+        if let [level] = into.levels.as_mut_slice() {
+            for (fetch, gradient) in self.bands.iter().zip(gradients).flat_map(|(f, g)| f.iter().zip(*g)) {
+                level.scatter(&taps(fetch.uv, level.width, level.height, self.layout.wrap), gradient);
+            }
+            return;
+        }
         let top = into.levels.len() - 1;
         let strips: Vec<(usize, usize, &mut [[f32; C]])> = (into.levels.iter_mut().enumerate())
             .flat_map(|(l, level)| {
@@ -131,7 +144,7 @@ impl<'a> Scatter<'a> {
         strips.into_par_iter().with_max_len(1).for_each(|(l, strip, texels)| {
             let [first, rows, width, height] = self.layout.levels[l];
             let base = ((strip - first) * rows * width) as u32;
-            for ((band, sorted), gradients) in self.bands.iter().zip(gradients) {
+            for ((band, sorted), gradients) in self.bands.iter().zip(&self.sorted).zip(gradients) {
                 let range = sorted.starts[strip] as usize..sorted.starts[strip + 1] as usize;
                 for &i in &sorted.order[range] {
                     let (fetch, gradient) = (&band[i as usize], &gradients[i as usize]);
@@ -158,11 +171,12 @@ mod tests {
     use super::*;
     use crate::texture::Level;
 
-    /// Protects every texel's gradient: the same as one fetch after the other.
-    #[test]
-    fn agrees_with_the_adjoint_of_each_fetch() {
-        let number = |i: usize| ((i * 7919 + 13) % 1009) as f32 / 1009.0;
-        let mut pyramid = Pyramid::from_base(Level::<2>::zeros(40, 70));
+    fn number(i: usize) -> f32 {
+        ((i * 7919 + 13) % 1009) as f32 / 1009.0
+    }
+
+    /// The same texels' gradients as one fetch after the other.
+    fn agrees(mut pyramid: Pyramid<2>) {
         pyramid.wrap = [Wrap::Repeat, Wrap::Clamp];
         let samples = |band: usize| (0..200).map(move |i| 6 * (200 * band + i));
         let fetch = |i| Fetch {
@@ -183,5 +197,12 @@ mod tests {
                 assert!((a[0] - b[0]).abs() < 1e-4 && (a[1] - b[1]).abs() < 1e-4, "{a:?} {b:?}");
             }
         }
+    }
+
+    /// Protects every texel's gradient, on many levels and on one.
+    #[test]
+    fn agrees_with_the_adjoint_of_each_fetch() {
+        agrees(Pyramid::from_base(Level::zeros(40, 70)));
+        agrees(Pyramid::single(Level::zeros(40, 70)));
     }
 }

@@ -48,7 +48,7 @@ impl<const C: usize> Level<C> {
     /// A bilinear fetch with its derivatives.
     #[inline]
     fn slopes(&self, at: &Taps) -> FetchSlopes<C> {
-        let [a, b, c, d] = at.index.map(|i| self.texels[i as usize]);
+        let [a, b, c, d] = self.four(at);
         let (width, height) = (self.width as f32, self.height as f32);
         let mut out = FetchSlopes { value: [0.0; C], per_u: [0.0; C], per_v: [0.0; C], per_lod: [0.0; C] };
         for k in 0..C {

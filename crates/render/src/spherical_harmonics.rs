@@ -60,17 +60,34 @@ const fn factors() -> [f32; (HIGHEST_ORDER + 1) * (HIGHEST_ORDER + 2) / 2] {
     all
 }
 
+/// Calls `with` with the order as a constant: loops over functions become straight lines, which
+/// takes a third of the time where a map is fetched once a sample.
+#[inline(always)]
+pub(crate) fn as_constant<R>(order: usize, with: impl FnOnce(usize) -> R) -> R {
+    match order {
+        0 => with(0),
+        1 => with(1),
+        2 => with(2),
+        3 => with(3),
+        4 => with(4),
+        5 => with(5),
+        6 => with(6),
+        _ => with(HIGHEST_ORDER),
+    }
+}
+
 /// Y of all functions up to `order` at the unit vector d; the rest stays as it is.
-#[inline]
+#[inline(always)]
 pub fn evaluate(order: usize, d: Vec3, values: &mut [f32; MOST_FUNCTIONS]) {
     walk(order, d, |index, value, _| values[index] = value);
 }
 
 /// Adjoint of [`evaluate`]: the gradient of d, given those of the values.
-#[inline]
 pub fn adjoint(order: usize, d: Vec3, to_values: &[f32; MOST_FUNCTIONS]) -> Vec3 {
     let mut to_d = Vec3::ZERO;
-    walk(order, d, |index, _, derivative| to_d += derivative * to_values[index]);
+    as_constant(order, |order| {
+        walk(order, d, |index, _, derivative| to_d += derivative * to_values[index]);
+    });
     to_d
 }
 
@@ -83,11 +100,12 @@ fn walk(order: usize, d: Vec3, mut each: impl FnMut(usize, f32, Vec3)) {
     let (mut last_re, mut last_im) = (0.0f32, 0.0f32);
     // P̂_m^m = (2 m − 1)!!
     let mut diagonal = 1.0f32;
-    for m in 0..=order {
+    // Half-open ranges: the compiler unrolls them where the order is a constant.
+    for m in 0..order + 1 {
         // P̂ of degrees l and l − 1, and their derivatives by z.
         let (mut p, mut p_below) = (diagonal, 0.0f32);
         let (mut q, mut q_below) = (0.0f32, 0.0f32);
-        for l in m..=order {
+        for l in m..order + 1 {
             if l > m {
                 let (a, b) = ((2 * l - 1) as f32, (l + m - 1) as f32);
                 let share = 1.0 / (l - m) as f32;

@@ -88,11 +88,19 @@ impl<const C: usize> Level<C> {
         Self { width, height, texels: vec![[0.0; C]; width * height] }
     }
 
+    /// The texels of a fetch. Written out, since `map` on an array is a call here.
+    #[inline(always)]
+    pub(crate) fn four(&self, taps: &Taps) -> [&[f32; C]; 4] {
+        let [a, b, c, d] = taps.index;
+        let texel = |i: u32| &self.texels[i as usize];
+        [texel(a), texel(b), texel(c), texel(d)]
+    }
+
     /// The blend of four texels.
     #[inline]
     pub fn fetch(&self, taps: &Taps) -> [f32; C] {
         let w = taps.weights();
-        let [a, b, c, d] = taps.index.map(|i| &self.texels[i as usize]);
+        let [a, b, c, d] = self.four(taps);
         std::array::from_fn(|k| a[k] * w[0] + b[k] * w[1] + c[k] * w[2] + d[k] * w[3])
     }
 
@@ -110,7 +118,7 @@ impl<const C: usize> Level<C> {
     /// Gradient of a fetch with respect to the coordinate.
     #[inline]
     pub fn uv_adjoint(&self, taps: &Taps, gradient: &[f32; C]) -> Vec2 {
-        let [a, b, c, d] = taps.index.map(|i| &self.texels[i as usize]);
+        let [a, b, c, d] = self.four(taps);
         let (fx, fy) = (taps.fx, taps.fy);
         let mut out = Vec2::ZERO;
         for k in 0..C {

@@ -169,7 +169,7 @@ impl Scene {
             Textures::new(&color, self.lit.then_some(&normal)).with_parallax(self.parallax.as_ref());
         let display = Display { gain: 0.95, curve: Curve::Srgb };
         let composer = Composer::new(self.background.for_view(3), display, self.size);
-        let reference = Reference::new(&self.reference, self.size, &composer);
+        let reference = Reference::new(self.reference.clone(), self.size, &composer);
         let view = View {
             camera: &self.camera,
             reference: &reference,

@@ -101,8 +101,7 @@ impl Views<'_> {
     fn look_once(&self, surface: &Surface, textures: &Textures, index: usize, seed: u64) -> Judgement {
         let rendered = &self.references[index];
         let composer = Composer::new(self.background.for_view(seed), self.display, self.size);
-        let rgba: Vec<[f32; 4]> = rendered.pixels.iter().map(|p| p.map(f32::from)).collect();
-        let reference = Reference::new(&rgba, self.size, &composer);
+        let reference = Reference::new(rendered.linear(), self.size, &composer);
         let view = View {
             camera: &rendered.view.camera,
             reference: &reference,

@@ -11,7 +11,7 @@ use crate::parallax::{ShParallax, Sight};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 
 /// From where a point is seen, in the mesh's axes and in the surface's own.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vantage {
     /// Direction to the viewer in the mesh's axes, and its cosine.
     pub sight: Sight,
