@@ -79,7 +79,7 @@ static BENCH: LazyLock<Bench> = LazyLock::new(|| {
 
 fn collect(low: &Mesh, references: &[Reference]) -> SampleSet {
     let beyond = Beyond::Background([0.0; 3], 0.5);
-    collect_samples(&Walker::new(low, VIEW_SIZE, &DISPLAY, beyond), references, TEXTURE_SIZE, None, &())
+    collect_samples(&Walker::new(low, VIEW_SIZE, &DISPLAY, beyond), references, TEXTURE_SIZE, &())
 }
 
 impl Bench {

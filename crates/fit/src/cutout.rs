@@ -106,20 +106,16 @@ fn wanted(views: &[Vec<Example>], size: usize) -> Vec<bool> {
     wanted
 }
 
-/// Half the gradient of the examples' loss, and the loss.
-fn view_gradient(examples: &[Example], map: &ShCutout) -> (f64, Vec<f32>) {
-    let mut into = vec![0.0; map.coefficients.len()];
-    let mut loss = 0.0;
+/// Adds half the gradient of the examples' loss.
+fn add_view(examples: &[Example], map: &ShCutout, into: &mut [f32]) {
     for example in examples {
         let direction = example.direction();
         let side = if example.opaque { 1.0 } else { -1.0 };
         let short = 1.0 - side * map.opacity(example.uv, direction);
         if short > 0.0 {
-            loss += f64::from(short * short);
-            map.adjoint(example.uv, direction, -side * short, &mut into);
+            map.adjoint(example.uv, direction, -side * short, into);
         }
     }
-    (loss, into)
 }
 
 /// Adds the gradient of `½ stiffness Σ |Oᵢ − Oⱼ|²` over side neighbours that both have a say.
@@ -142,6 +138,11 @@ fn add_membrane(map: &ShCutout, wanted: &[bool], stiffness: f32, gradient: &mut 
     });
 }
 
+/// Sums that a step's views are added to, at most; their number alone decides the order of sums.
+const PARTS: usize = 8;
+/// Numbers of one task.
+const BAND: usize = 4096;
+
 /// Fits the map; returns it with the share of examples that it gets wrong, before and after.
 pub fn fit_cutout(
     views: &[Vec<Example>],
@@ -159,6 +160,9 @@ pub fn fit_cutout(
     let mut adam = Adam::new(moving.len(), rate);
     let wanted = wanted(views, options.size);
     let plate = ThinPlate::new(options.size, wanted.clone());
+    let together = options.views_per_step.div_ceil(PARTS).max(1);
+    let mut gradient = vec![0.0; map.coefficients.len()];
+    let mut parts = vec![gradient.clone(); options.views_per_step.div_ceil(together)];
     for step in 0..options.steps {
         watch.progress(Stage::Cutout, step, options.steps);
         if views.iter().all(Vec::is_empty) || watch.should_stop() {
@@ -167,11 +171,16 @@ pub fn fit_cutout(
         let chosen: Vec<&[Example]> = (0..options.views_per_step)
             .map(|i| views[(step * options.views_per_step + i) % views.len()].as_slice())
             .collect();
-        let parts: Vec<Vec<f32>> = chosen.par_iter().map(|view| view_gradient(view, &map).1).collect();
-        let mut gradient: Vec<f32> = (0..map.coefficients.len())
-            .into_par_iter()
-            .map(|i| parts.iter().map(|part| part[i]).sum())
-            .collect();
+        parts.par_iter_mut().zip(chosen.par_chunks(together)).for_each(|(part, views)| {
+            part.fill(0.0);
+            views.iter().for_each(|view| add_view(view, &map, part));
+        });
+        gradient.par_chunks_mut(BAND).enumerate().for_each(|(band, into)| {
+            into.fill(0.0);
+            for part in &parts {
+                into.iter_mut().zip(&part[band * BAND..]).for_each(|(into, from)| *into += from);
+            }
+        });
         let asked: usize = chosen.iter().map(|view| view.len()).sum();
         let mean_pull = before as f32 * asked as f32 / wanted.len() as f32;
         add_membrane(&map, &wanted, options.stiffness * mean_pull, &mut gradient);

@@ -12,7 +12,8 @@
 //! ```
 //!
 //! With maps of depth, between views and samples: `view_walk` (a view's pixels) → `cutout` (what
-//! is left out) → `parallax` (where coordinates shift) → `territory` (shifts stay in their chart).
+//! is left out) → `sighted` (what is left) → `parallax` (where coordinates shift) → `territory`
+//! (shifts stay in their chart).
 //!
 //! `schedule` walks that way; `watch` is how it reports and is stopped.
 
@@ -30,6 +31,7 @@ pub mod quantise;
 pub mod reference;
 pub mod samples;
 pub mod schedule;
+pub mod sighted;
 pub mod start;
 pub mod stencil;
 pub mod territory;

@@ -1,8 +1,8 @@
 //! Where each pixel of the training views falls on the low-poly's texture, how the
 //! light meets it there, and what the high-poly shows in its place.
 //!
-//! Forward: a walk over the views' pixels (`view_walk.rs`), then the shift of the
-//! coordinate where there is a parallax map; what is left for the solvers is a bilinear
+//! Forward: a walk over the views' pixels (`view_walk.rs`), or those of an earlier walk and the
+//! shift of the coordinate where there is a parallax map (`sighted.rs`); what is left for the solvers is a bilinear
 //! fetch and the shading. Samples are binned by texture tile (a stable counting sort a view, then views in order within a
 //! tile), so that bands of the texture can be summed by many threads without
 //! atomics and always in the same order, and each band's texels stay in cache.
@@ -12,11 +12,11 @@
 
 use crate::canvas::{BAND, bands};
 use crate::reference::Reference;
-use crate::view_walk::{Seen, Walker};
+use crate::sighted::Sighted;
+use crate::view_walk::Walker;
 use crate::watch::{Stage, Watch};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_render::frame::TangentLight;
-use parbake_render::parallax::ShParallax;
 use parbake_render::parallax_variants::shift_map::{ShiftMap, Vantage};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -48,6 +48,13 @@ pub struct SampleSet {
 }
 
 impl Sample {
+    /// A pixel that is fetched at this coordinate; the rest as it is kept.
+    #[inline]
+    fn at(uv: Vec2, size: usize, light: [i16; 9], target: [u16; 3], weight: u16) -> Self {
+        let (texel, fraction) = place(uv, size);
+        Self { texel, fraction, light, target, weight }
+    }
+
     /// Fractions as numbers in [0, 1).
     #[inline]
     pub fn fractions(&self) -> (f32, f32) {
@@ -120,45 +127,50 @@ struct Sorted {
     begin: Vec<u32>,
 }
 
-/// Collects the samples of all references on a texture of `texture_size`², their
-/// coordinates shifted by the parallax map.
+/// Collects the samples of all references on a texture of `texture_size`².
 pub fn collect_samples(
     walker: &Walker,
     references: &[Reference],
     texture_size: usize,
-    parallax: Option<&ShParallax>,
     watch: &impl Watch,
 ) -> SampleSet {
-    let shift = |seen: &Seen| parallax.map_or(Vec2::ZERO, |map| map.shift(seen.uv, &seen.sight));
-    collect(walker, references, texture_size, shift, watch)
+    collect(references.par_iter(), texture_size, watch, |reference, out| {
+        walker.walk(reference, |seen| {
+            out.push(Sample::at(seen.uv, texture_size, packed(&seen.light), seen.target, seen.weight));
+        });
+    })
 }
 
-/// The same with any map that shifts coordinates.
-pub fn collect_shifted_samples(
-    walker: &Walker,
-    references: &[Reference],
+/// The same of views that were walked before, their coordinates shifted by a map. Views that are
+/// handed over rather than lent are gone as soon as they were read.
+pub fn shifted_samples<V: AsRef<[Sighted]>>(
+    views: impl IntoParallelIterator<Item = V, Iter: IndexedParallelIterator>,
     texture_size: usize,
     map: &impl ShiftMap,
     watch: &impl Watch,
 ) -> SampleSet {
-    let shift = |seen: &Seen| map.shift(seen.uv, &Vantage::under_headlight(seen.sight, &seen.light));
-    collect(walker, references, texture_size, shift, watch)
+    collect(views.into_par_iter(), texture_size, watch, |view, out| {
+        out.extend(view.as_ref().iter().map(|seen| {
+            let from = Vantage::under_headlight(seen.sight(), &seen.light());
+            let uv = seen.uv + map.shift(seen.uv, &from);
+            Sample::at(uv, texture_size, seen.light, seen.target, seen.weight)
+        }));
+    })
 }
 
-fn collect(
-    walker: &Walker,
-    references: &[Reference],
+fn collect<V>(
+    views: impl IndexedParallelIterator<Item = V>,
     texture_size: usize,
-    shift: impl Fn(&Seen) -> Vec2 + Sync,
     watch: &impl Watch,
+    of_view: impl Fn(V, &mut Vec<Sample>) + Sync,
 ) -> SampleSet {
     let layout = Layout { size: texture_size, tiles_across: texture_size.div_ceil(TILE) };
-    let done = AtomicUsize::new(0);
-    let views: Vec<Sorted> = references
-        .par_iter()
-        .map(|reference| {
-            let samples = view_samples(walker, reference, texture_size, &shift);
-            watch.progress(Stage::Sampling, done.fetch_add(1, Ordering::Relaxed) + 1, references.len());
+    let (done, all) = (AtomicUsize::new(0), views.len());
+    let views: Vec<Sorted> = views
+        .map(|view| {
+            let mut samples = Vec::new();
+            of_view(view, &mut samples);
+            watch.progress(Stage::Sampling, done.fetch_add(1, Ordering::Relaxed) + 1, all);
             sort(samples, &layout)
         })
         .collect();
@@ -197,26 +209,6 @@ fn sort(samples: Vec<Sample>, layout: &Layout) -> Sorted {
         *place += 1;
     }
     Sorted { samples: sorted, begin }
-}
-
-fn view_samples(
-    walker: &Walker,
-    reference: &Reference,
-    texture_size: usize,
-    shift: impl Fn(&Seen) -> Vec2,
-) -> Vec<Sample> {
-    let mut out = Vec::with_capacity(reference.pixels.len() / 3);
-    walker.walk(reference, |seen| {
-        let (texel, fraction) = place(seen.uv + shift(&seen), texture_size);
-        out.push(Sample {
-            texel,
-            fraction,
-            light: packed(&seen.light),
-            target: seen.target,
-            weight: seen.weight,
-        });
-    });
-    out
 }
 
 /// Inverse of [`packed`].

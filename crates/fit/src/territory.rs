@@ -9,8 +9,7 @@
 //! not depend on the number of threads.
 
 use crate::atlas::{Atlas, NO_CHART};
-use crate::reference::Reference;
-use crate::view_walk::Walker;
+use crate::sighted::Sighted;
 use parbake_model::glam::Vec2;
 use parbake_render::parallax::{ShParallax, Sight};
 use parbake_render::spherical_harmonics::functions;
@@ -54,13 +53,8 @@ const ROUNDS: usize = 32;
 
 /// Shrinks coefficients until no shift crosses a border, but for pixels that lie on one.
 /// Returns the share of pixels whose shifts did at first, and at the end.
-pub fn keep_at_home(
-    walker: &Walker,
-    references: &[Reference],
-    territory: &Territory,
-    map: &mut ShParallax,
-) -> [f64; 2] {
-    let (first, mut stray) = strays(walker, references, territory, map);
+pub fn keep_at_home(views: &[Vec<Sighted>], territory: &Territory, map: &mut ShParallax) -> [f64; 2] {
+    let (first, mut stray) = strays(views, territory, map);
     let count = functions(map.order);
     for _ in 0..ROUNDS {
         stray.retain(|(uv, sight)| territory.strays(map, *uv, sight));
@@ -76,31 +70,18 @@ pub fn keep_at_home(
         }
     }
     // A shift that became smaller ends elsewhere, and that may be another chart's bay.
-    [first, if first > 0.0 { strays(walker, references, territory, map).0 } else { 0.0 }]
+    [first, if first > 0.0 { strays(views, territory, map).0 } else { 0.0 }]
 }
 
 /// The pixels that stray, and their share in all.
-fn strays(
-    walker: &Walker,
-    references: &[Reference],
-    territory: &Territory,
-    map: &ShParallax,
-) -> (f64, Vec<(Vec2, Sight)>) {
-    let each: Vec<(usize, Vec<(Vec2, Sight)>)> = references
-        .par_iter()
-        .map(|reference| {
-            let (mut seen, mut stray) = (0, Vec::new());
-            walker.walk(reference, |pixel| {
-                seen += 1;
-                if territory.strays(map, pixel.uv, &pixel.sight) {
-                    stray.push((pixel.uv, pixel.sight));
-                }
-            });
-            (seen, stray)
+fn strays(views: &[Vec<Sighted>], territory: &Territory, map: &ShParallax) -> (f64, Vec<(Vec2, Sight)>) {
+    let stray: Vec<(Vec2, Sight)> = (views.par_iter())
+        .flat_map_iter(|view| {
+            let pixels = view.iter().map(|pixel| (pixel.uv, pixel.sight()));
+            pixels.filter(|(uv, sight)| territory.strays(map, *uv, sight))
         })
         .collect();
-    let all: usize = each.iter().map(|e| e.0).sum();
-    let stray: Vec<_> = each.into_iter().flat_map(|e| e.1).collect();
+    let all: usize = views.iter().map(Vec::len).sum();
     (stray.len() as f64 / all.max(1) as f64, stray)
 }
 

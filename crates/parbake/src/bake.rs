@@ -22,8 +22,9 @@ use crate::unfold::{Source, mend_with_room, unfold};
 use crate::uv_animation::UvMoves;
 use parbake_fit::quantise::{color_image, normal_image};
 use parbake_fit::reference::render_references;
-use parbake_fit::samples::collect_samples;
+use parbake_fit::samples::{collect_samples, shifted_samples};
 use parbake_fit::schedule::fit_textures;
+use parbake_fit::sighted::sighted_views;
 use parbake_fit::start::project;
 use parbake_fit::view_walk::{Beyond, Walker};
 use parbake_fit::views::{Rig, view_pool};
@@ -32,6 +33,7 @@ use parbake_model::{Image, Material, Mesh, Model, TextureSlot, Wrap};
 use parbake_render::camera::Projection;
 use parbake_render::scene::Scene;
 use parbake_render::shade::Lambert;
+use std::mem::take;
 use std::time::Instant;
 
 /// The training cameras: the paper's distance, and the field of view at which a
@@ -155,7 +157,7 @@ pub(crate) fn bake_pair(
         weight => Beyond::Background(options.backdrop.light(), weight),
     };
     let srgb = convention.decodes_srgb();
-    let mut walker = Walker::new(&placed, plan.reference.size, &display, beyond);
+    let walker = Walker::new(&placed, plan.reference.size, &display, beyond);
     let mut depth = None;
     if let Some(plan) = options.depth_plan().filter(|_| !same) {
         let share = bridge.share(DEPTH_SHARE);
@@ -164,11 +166,22 @@ pub(crate) fn bake_pair(
     }
     drop(surface);
     let of_paper = map_of_paper.map(|parallax| DepthMaps { parallax, cutout: None });
+    let mut sighted = depth.as_mut().map(|d| take(&mut d.views)).unwrap_or_default();
     let maps = depth.as_ref().map(|d| &d.maps).or(of_paper.as_ref());
-    walker = walker.with_cutout(maps.and_then(|m| m.cutout.as_ref()));
-    let samples = collect_samples(&walker, &references, size, maps.map(|m| &m.parallax), &bridge);
     let views = references.len();
-    drop(references);
+    let samples = match maps {
+        None => {
+            let samples = collect_samples(&walker, &references, size, &bridge);
+            drop(references);
+            samples
+        }
+        Some(DepthMaps { parallax, cutout }) => {
+            let walker = walker.with_cutout(cutout.as_ref());
+            sighted.extend(sighted_views(&walker, &references[sighted.len()..]));
+            drop(references);
+            shifted_samples(sighted, size, parallax, &bridge)
+        }
+    };
     if samples.is_empty() {
         return Err(BakeError::OutOfView { low: low.name.clone(), high: high.name.clone() });
     }

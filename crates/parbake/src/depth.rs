@@ -20,11 +20,12 @@ use crate::low::LowPoly;
 use crate::shape::Target;
 use parbake_fit::atlas::Atlas;
 use parbake_fit::cutout::{CutoutOptions, examples, fit_cutout};
-use parbake_fit::parallax::{ParallaxOptions, State, fit_parallax, mean_square, sighted_views};
+use parbake_fit::parallax::{ParallaxOptions, State, fit_parallax, mean_square};
 use parbake_fit::quantise::{color_canvas, normal_canvas};
 use parbake_fit::reference::Reference;
-use parbake_fit::samples::collect_samples;
+use parbake_fit::samples::shifted_samples;
 use parbake_fit::schedule::{Schedule, fit_textures};
+use parbake_fit::sighted::{Sighted, sighted_views};
 use parbake_fit::start::project;
 use parbake_fit::territory::{Territory, keep_at_home};
 use parbake_fit::view_walk::Walker;
@@ -106,6 +107,8 @@ pub struct DepthReport {
 pub struct Depth {
     /// The maps.
     pub maps: DepthMaps,
+    /// What the views that they were fitted to show of the low-poly, with the cutout.
+    pub views: Vec<Vec<Sighted>>,
     /// What was done.
     pub report: DepthReport,
 }
@@ -168,8 +171,8 @@ pub fn fit_depth(
         let LowPoly { placed, map: texels, atlas, .. } = LowPoly::new(low, frame, pass.texture_size)?;
         let start = project(&placed, &texels, &atlas, target.scene, target.surface, target.reach);
         let solved_with = |map: ShParallax| {
-            let some = &references[..references.len().min(BEGIN_VIEWS)];
-            let samples = collect_samples(&walker, some, pass.texture_size, Some(&map), watch);
+            let some = &views[..views.len().min(BEGIN_VIEWS)];
+            let samples = shifted_samples(some, pass.texture_size, &map, watch);
             let schedule = Schedule { rounds: ROUNDS, final_steps: 0, ..Schedule::default() };
             let begin = fit_textures(&samples, &atlas, &start, target.display, srgb, &schedule, watch);
             let (color, normal) = (color_canvas(&begin.color, srgb), normal_canvas(&begin.normal));
@@ -200,7 +203,7 @@ pub fn fit_depth(
     report.mean_square = losses.iter().map(ends).collect();
     let LowPoly { placed, map: texels, .. } = LowPoly::new(low, frame, TERRITORY)?;
     let territory = Territory::new(&Atlas::new(&texels, &charts(&placed), TERRITORY));
-    report.strayed = keep_at_home(&walker, references, &territory, &mut map);
+    report.strayed = keep_at_home(&views, &territory, &mut map);
     let parallax = map.as_stored();
     if let Some((color, normal)) = textures {
         let mut state = State { map, color, normal };
@@ -208,7 +211,7 @@ pub fn fit_depth(
         state.map = parallax.clone();
         report.rounding[1] = mean_square(&judged, &state, &display);
     }
-    Ok(Depth { maps: DepthMaps { parallax, cutout }, report })
+    Ok(Depth { maps: DepthMaps { parallax, cutout }, views, report })
 }
 
 #[cfg(test)]

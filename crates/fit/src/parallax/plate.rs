@@ -4,7 +4,7 @@
 //! Contract: only texels that some view fetches count, so no chart holds another; maps without
 //! texels have no plate.
 
-use super::Sighted;
+use crate::sighted::Sighted;
 use crate::thin_plate::ThinPlate;
 use parbake_model::Wrap;
 use parbake_model::glam::Vec4;

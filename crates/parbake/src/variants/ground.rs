@@ -14,11 +14,12 @@ use crate::message::{Message, Watcher};
 use crate::pair::{common_frame, placed};
 use crate::studio::shown;
 use parbake_fit::canvas::Canvas;
-use parbake_fit::parallax::{Sighted, State, fit_parallax, sighted_views};
+use parbake_fit::parallax::{State, fit_parallax};
 use parbake_fit::quantise::{color_canvas, normal_canvas};
 use parbake_fit::reference::{Reference, render_references};
-use parbake_fit::samples::collect_shifted_samples;
+use parbake_fit::samples::shifted_samples;
 use parbake_fit::schedule::fit_textures;
+use parbake_fit::sighted::{Sighted, sighted_views};
 use parbake_fit::start::{Start, project};
 use parbake_fit::view_walk::{Beyond, Walker};
 use parbake_fit::views::{Rig, view_pool};
@@ -115,7 +116,6 @@ impl Subject {
 pub struct Ground<'a> {
     subject: &'a Subject,
     options: &'a VariantsOptions,
-    walker: Walker<'a>,
     views: Vec<Vec<Sighted>>,
     /// Small textures that were solved for without parallax.
     begin: [Canvas; 2],
@@ -129,9 +129,8 @@ impl<'a> Ground<'a> {
     pub fn new(subject: &'a Subject, options: &'a VariantsOptions, watch: &impl Watch) -> Self {
         let walker = subject.walker(options);
         let (low, start) = &subject.small;
-        let references = &subject.references;
-        let samples =
-            collect_shifted_samples(&walker, references, options.fitted_texels(), &Unshifted, watch);
+        let views = sighted_views(&walker, &subject.references);
+        let samples = shifted_samples(&views, options.fitted_texels(), &Unshifted, watch);
         let (display, srgb) = (subject.display, subject.srgb);
         let begin = fit_textures(&samples, &low.atlas, start, display, srgb, &options.schedule(), watch);
         let evaluate = EvaluateOptions { resolution: options.resolution, ..EvaluateOptions::default() };
@@ -144,11 +143,10 @@ impl<'a> Ground<'a> {
             })
             .collect();
         Self {
-            views: sighted_views(&walker, references),
+            views,
             begin: [color_canvas(&begin.color, srgb), normal_canvas(&begin.normal)],
             subject,
             options,
-            walker,
             evaluate,
             wanted,
         }
@@ -178,7 +176,7 @@ impl<'a> Ground<'a> {
     /// Fits a map, keeps it, solves for textures, and looks at the result.
     pub fn variant<M: Stored>(&self, name: &str, map: M, watch: &impl Watch) -> (VariantFigures, Vec<Rgb>) {
         let (since, options) = (Instant::now(), self.options);
-        let Subject { display, srgb, low, start, references, .. } = self.subject;
+        let Subject { display, srgb, low, start, .. } = self.subject;
         let [color, normal] = self.begin.clone();
         let fit = options.fit();
         let stays = map.is_height() && self.subject.heights.is_some();
@@ -188,7 +186,7 @@ impl<'a> Ground<'a> {
             false => fit_parallax(&self.views, &mut state, &DisplayTable::new(display), &fit, watch),
         };
         let (map, cost) = state.map.stored();
-        let samples = collect_shifted_samples(&self.walker, references, options.texture_size, &map, watch);
+        let samples = shifted_samples(&self.views, options.texture_size, &map, watch);
         let fitted = fit_textures(&samples, &low.atlas, start, *display, *srgb, &options.schedule(), watch);
         drop(samples);
         let seconds = since.elapsed().as_secs_f64();
