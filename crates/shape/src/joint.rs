@@ -82,7 +82,7 @@ impl Default for ShapeOptions {
         Self {
             motion: Motion::Free,
             steps: 160,
-            coarse: 0.75,
+            coarse: 0.5,
             views_per_step: 12,
             rate: 4e-3,
             steps_in_gap: 7.0,
