@@ -25,6 +25,9 @@ const ROOM: f64 = 0.25;
 /// see, a better picture at full size is worth nothing, and coordinates that were drawn out for it cost
 /// parallax maps 0.2 to 0.3 dB. A model's own smaller texture need only not be worse.
 const MINIFIED: f64 = 0.95;
+/// A low-poly's that is still worse than that by this much after a turn stays so: further turns bring it a
+/// hundredth nearer.
+const HOPELESS: f64 = 0.05;
 /// Turns of the refinement; in between showings are weighted anew.
 const TURNS: usize = 3;
 /// Steps of the start times triangles at most, a second or so: charts by the dozen need a hundred
@@ -65,14 +68,16 @@ pub fn moved(
     // A low-poly's texture is fitted to views, which reads its first level alone.
     let judge = &Judge::new(problem, start, source.surface.is_none());
     let tensors = &tensors(problem, start);
+    let unmoved = judge.kept.len() as f64;
     let packed = packed(problem, start, &packing(asked), tensors)
-        .filter(|packed| judge.total(packed) < judge.kept.len() as f64);
+        .map(|packed| (judge.total(&packed), packed))
+        .filter(|(left, _)| *left < unmoved);
     let is_packed = packed.is_some();
-    let mut layout = packed.unwrap_or_else(|| start.clone());
+    let (left, mut layout) = packed.unwrap_or_else(|| (unmoved, start.clone()));
     let mut frames = vec![as_f32(&start.points), as_f32(&layout.points)];
     let most = options.refine_steps + FLAT.len() * options.shape_steps;
     let steps = &mut Steps { done: 0, most, watcher };
-    frames.extend(shaped(judge, &mut layout, tensors, options, steps));
+    frames.extend(shaped(judge, &mut layout, left, tensors, options, steps));
     let (layout, relative) = refined(judge, start, layout, options, &mut frames, steps)?;
     report.packed |= is_packed;
     report.steps = frames.len() - 2;
@@ -123,17 +128,18 @@ impl<W: Watcher> Steps<'_, W> {
     }
 }
 
-/// Moves the layout to the better one of the signal-specialised starts, and returns the way there. The start is
-/// a guess: how plain the plain is depends on the texture's size, and where both guesses are bad,
+/// Moves the layout, which leaves this error in total, to the better one of the signal-specialised starts, and
+/// returns the way there. The start is a guess: how plain the plain is depends on the texture's size, and where both guesses are bad,
 /// none is better.
 fn shaped<W: Watcher>(
     judge: &Judge,
     layout: &mut Layout,
+    mut least: f64,
     tensors: &[DMat2],
     options: &UvOptions,
     steps: &mut Steps<W>,
 ) -> Vec<Vec<Vec2>> {
-    let (before, mut least, mut shaped) = (layout.clone(), judge.total(layout), Vec::new());
+    let (before, mut shaped) = (layout.clone(), Vec::new());
     for flat in FLAT {
         let (mut guess, mut way) = (before.clone(), Vec::new());
         let own = UvOptions { flat, ..*options };
@@ -164,10 +170,10 @@ fn refined<W: Watcher>(
     // Views see a surface under all angles: half of it is minified.
     balance.weights.fill(1.0);
     // A bake's last thousandths lie in parallax and outlines, not in coordinates.
-    let (tolerance, solve, minified) = if judge.all_sizes {
-        (options.tolerance, options.solve, 1.0)
+    let (tolerance, solve, minified, hopeless) = if judge.all_sizes {
+        (options.tolerance, options.solve, 1.0, f64::INFINITY)
     } else {
-        (1e-3, Solve::ROUGH, MINIFIED)
+        (1e-3, Solve::ROUGH, MINIFIED, MINIFIED + HOPELESS)
     };
     let turn = UvOptions { refine_steps: options.refine_steps.div_ceil(TURNS), tolerance, solve, ..*options };
     let mut best: Option<(f64, Layout, Vec<f64>)> = None;
@@ -179,12 +185,13 @@ fn refined<W: Watcher>(
         let relative = judge.relative(&layout);
         // By what the texture that will be solved for leaves.
         balance.update(&relative);
-        let sound = relative[0] < WORTH_IT && relative[1..].iter().all(|r| *r < minified);
+        let worst_minified = relative[1..].iter().copied().fold(0.0, f64::max);
+        let sound = relative[0] < WORTH_IT && worst_minified < minified;
         let sum: f64 = relative.iter().sum();
         if sound && best.as_ref().is_none_or(|(least, ..)| sum < *least) {
             best = Some((sum, layout.clone(), relative));
         }
-        if steps.watcher.stopped() {
+        if steps.watcher.stopped() || worst_minified > hopeless {
             break;
         }
     }
