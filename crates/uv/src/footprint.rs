@@ -94,7 +94,8 @@ impl OnLevel {
         let last = (self.size - 1) as f32;
         let axis = |p: f32| {
             let inside = p.clamp(0.0, last);
-            let texel = (inside as usize).min(self.size - 2);
+            // By way of an i32, which CPUs convert to at once.
+            let texel = (inside as i32 as usize).min(self.size - 2);
             (texel, inside - texel as f32, if p == inside { 1.0 } else { 0.0 })
         };
         let ((x, fx, dx), (y, fy, dy)) = (axis(p.x), axis(p.y));

@@ -20,8 +20,12 @@ pub struct Runs {
 /// overlap little.
 const RUNS: usize = 32;
 
+/// How much larger rectangles may be in the triangles' own order than along the curve: samples lie in
+/// that order, and to read them as they lie takes a fifth less time.
+const OWN_ORDER: f64 = 2.5;
+
 impl Runs {
-    /// Sorts triangles along a Morton curve through their centres.
+    /// Sorts triangles along a Morton curve through their centres, unless their own order is as good.
     pub fn new(points: &[DVec2], triangles: &[[u32; 3]], signal: &Signal) -> Self {
         let mut keyed: Vec<(u32, u32)> = triangles
             .iter()
@@ -32,7 +36,14 @@ impl Runs {
             })
             .collect();
         keyed.sort_unstable();
-        let order: Vec<u32> = keyed.into_iter().map(|(_, t)| t).collect();
+        let along_curve = Self::cut(keyed.into_iter().map(|(_, t)| t).collect(), signal);
+        let own = Self::cut((0..triangles.len() as u32).collect(), signal);
+        let rectangles = |runs: &Self| runs.rectangles(points, triangles);
+        if rectangles(&own) <= OWN_ORDER * rectangles(&along_curve) { own } else { along_curve }
+    }
+
+    /// Cuts this order into runs of about as many samples.
+    fn cut(order: Vec<u32>, signal: &Signal) -> Self {
         let share = signal.samples.len().div_ceil(RUNS).max(1);
         let (mut first, mut sum) = (vec![0], 0);
         for (place, &t) in order.iter().enumerate() {
@@ -46,6 +57,17 @@ impl Runs {
             first.push(order.len());
         }
         Self { order, first }
+    }
+
+    /// Area of all runs' rectangles together.
+    fn rectangles(&self, points: &[DVec2], triangles: &[[u32; 3]]) -> f64 {
+        let area = |run: usize| {
+            let corners = self.triangles(run).flat_map(|t| triangles[t]).map(|i| points[i as usize]);
+            let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+            let (low, high) = corners.fold(none, |(low, high), p| (low.min(p), high.max(p)));
+            (high - low).max(DVec2::ZERO).element_product()
+        };
+        (0..self.count()).map(area).sum()
     }
 
     /// How many runs there are.
