@@ -5,6 +5,8 @@
 //! 512², a fifth of a default bake. Items are samples, or texels and solver steps; all
 //! benches run on rayon's threads (set `RAYON_NUM_THREADS=1` for one core).
 
+mod scene;
+
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use parbake_fit::atlas::Atlas;
@@ -14,27 +16,18 @@ use parbake_fit::conjugate_gradient::{Effort, solve};
 use parbake_fit::membrane::Membrane;
 use parbake_fit::normal::normal_step;
 use parbake_fit::outliers::Cauchy;
-use parbake_fit::reference::{Reference, Sampling, render_references};
+use parbake_fit::reference::Reference;
 use parbake_fit::samples::{SampleSet, collect_samples};
 use parbake_fit::stencil::{Block, Diagonal, Row, Stencil, Symmetric, add_diagonal, add_symmetric};
 use parbake_fit::view_walk::{Beyond, Walker};
-use parbake_fit::views::{Rig, view_pool};
-use parbake_mesh::demo::{demo_low, demo_model};
-use parbake_mesh::{charts, compute_tangents, ensure_normals, texel_map};
+use parbake_mesh::{charts, texel_map};
 use parbake_model::Mesh;
 use parbake_model::glam::{Vec3, Vec4};
-use parbake_render::camera::Projection;
-use parbake_render::display::{Curve, Display};
 use parbake_render::display_table::DisplayTable;
-use parbake_render::interpretation::Interpretation;
-use parbake_render::scene::Scene;
-use parbake_render::shade::Lambert;
+use scene::{DISPLAY, VIEW_SIZE};
 use std::sync::LazyLock;
 
-const VIEWS: usize = 128;
-const VIEW_SIZE: usize = 192;
 const TEXTURE_SIZE: usize = 512;
-const DISPLAY: Display = Display { gain: 1.0, curve: Curve::Srgb };
 
 /// Solver steps of a bench: those of a step of the fit.
 const EFFORT: Effort = Effort { steps: 6, tolerance: 0.0 };
@@ -55,16 +48,7 @@ struct Bench {
 
 /// Rendering the references takes longer than all benches.
 static BENCH: LazyLock<Bench> = LazyLock::new(|| {
-    let mut high = demo_model();
-    let mut low = demo_low(&high);
-    ensure_normals(&mut high.mesh);
-    ensure_normals(&mut low);
-    compute_tangents(&mut low);
-    let scene = Scene::new(high.mesh, &high.materials, &high.images, Interpretation::default());
-    let rig = Rig { radius: 3.5, projection: Projection::Perspective(0.4) };
-    let pool = view_pool(VIEWS, &rig, 0);
-    let sampling = Sampling { size: VIEW_SIZE, filter: 0.1875, samples: 1 };
-    let references = render_references(&scene, &Lambert, &pool, &sampling, VIEWS, &());
+    let (low, references) = scene::rendered();
     let atlas = Atlas::new(&texel_map(&low, TEXTURE_SIZE), &charts(&low), 2);
     Bench {
         samples: collect(&low, &references),

@@ -152,6 +152,7 @@ pub fn fit_parallax<M: ShiftMap>(
         let count: usize = chosen.iter().map(|pixels| pixels.len()).sum();
         losses.push(sums.iter().map(|s| s.loss).sum::<f64>() / (3 * count.max(1)) as f64);
         let share = rate_at(step, options.steps);
+        // Texels' sums are left as zeros for the next step.
         if let [first, others @ ..] = sums.as_mut_slice() {
             gather(&mut first.texels, others.iter_mut().map(|s| s.texels.as_mut_slice()));
             adam_texels.step(texels.texels.as_flattened_mut(), first.texels.as_flattened(), share);
