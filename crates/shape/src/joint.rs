@@ -156,6 +156,8 @@ impl Fit<'_> {
     }
 }
 
+/// Side in pixels of a view of half the size at least: smaller ones show no outlines.
+const LEAST_COARSE: usize = 64;
 /// Views at most whose outlines are measured before and after.
 const MEASURED: usize = 48;
 /// Distance between outlines in pixels from which on overhang has the full discount.
@@ -205,7 +207,9 @@ pub fn fit_shape(
     let mut values = vec![Vec4::ZERO; home.len()];
     let mut at = home.clone();
     let mut losses = Vec::new();
-    let coarse_steps = (gap_in_pixels - 1.0).clamp(0.0, options.coarse) * options.steps as f64;
+    let coarse =
+        if size >= 2 * LEAST_COARSE { (gap_in_pixels - 1.0).clamp(0.0, options.coarse) } else { 0.0 };
+    let coarse_steps = coarse * options.steps as f64;
     let halved: Vec<Rendered> = match coarse_steps {
         0.0 => Vec::new(),
         _ => references.par_iter().map(Rendered::halved).collect(),
