@@ -17,6 +17,7 @@ use crate::outliers::{Cauchy, Loss};
 use crate::quantise::{color_canvas, color_image, normal_canvas, normal_image};
 use crate::samples::SampleSet;
 use crate::start::Start;
+use crate::stencil::{Diagonal, Row, Symmetric};
 use crate::watch::{Stage, Watch};
 use parbake_model::Image;
 use parbake_render::display::Display;
@@ -116,12 +117,94 @@ struct Log {
 }
 
 impl Log {
+    fn new(samples: &SampleSet) -> Self {
+        let weight: f64 = samples.bands.iter().flatten().map(|s| f64::from(s.weight())).sum();
+        Self { begin: Instant::now(), terms: (3.0 * weight).max(1e-9), losses: Vec::new(), best: None }
+    }
+
     /// Notes the loss of this state, and the state itself if it is the best so far.
     fn note(&mut self, moved: Move, loss: Loss, color: &Canvas, normal: &Canvas) {
         let seconds = self.begin.elapsed().as_secs_f64();
         self.losses.push(LossPoint { moved, seconds, mean_square: loss.square / self.terms });
         if self.best.as_ref().is_none_or(|b| loss.minimised < b.0) {
             self.best = Some((loss.minimised, color.clone(), normal.clone()));
+        }
+    }
+}
+
+/// Both textures on their way.
+struct Descent<'a, W> {
+    color: Canvas,
+    normal: Canvas,
+    /// What the projection showed: texels that nothing says more of stay there.
+    start: &'a Start,
+    color_rows: Vec<Row<Diagonal>>,
+    normal_rows: Vec<Row<Symmetric>>,
+    damping: f32,
+    /// What moved last; its loss is known at the next step.
+    last: Move,
+    log: Log,
+    watch: &'a W,
+    /// Steps that were taken, and all there are.
+    steps: [usize; 2],
+    stopped: bool,
+}
+
+impl<W: Watch> Descent<'_, W> {
+    /// Counts a step; false where it shall not be taken.
+    fn advance(&mut self) -> bool {
+        if !self.stopped {
+            self.watch.progress(Stage::Solve, self.steps[0], self.steps[1]);
+            self.steps[0] += 1;
+            self.stopped = self.watch.should_stop();
+        }
+        !self.stopped
+    }
+
+    fn color_steps(&mut self, problem: &Problem, count: usize) {
+        for _ in 0..count {
+            if !self.advance() {
+                return;
+            }
+            let (before, start) = (self.color.clone(), &self.start.color);
+            let (loss, _) = color_step(problem, &mut self.color, &self.normal, start, &mut self.color_rows);
+            self.log.note(self.last, loss, &before, &self.normal);
+            self.last = Move::Color;
+        }
+    }
+
+    fn normal_steps(&mut self, problem: &Problem, count: usize) {
+        let mut previous: Option<(f64, Canvas)> = None;
+        for _ in 0..count {
+            if !self.advance() {
+                return;
+            }
+            let (before, start) = (self.normal.clone(), &self.start.normal);
+            let rows = &mut self.normal_rows;
+            let (loss, _) = normal_step(problem, &self.color, &mut self.normal, start, self.damping, rows);
+            self.log.note(self.last, loss, &self.color, &before);
+            self.last = Move::Normal;
+            match &previous {
+                // The step before made it worse: take it back and tread more carefully.
+                Some((was, kept)) if loss.minimised > *was => {
+                    self.normal.clone_from(kept);
+                    self.damping *= 8.0;
+                }
+                _ => {
+                    self.damping *= 0.5;
+                    previous = Some((loss.minimised, before));
+                }
+            }
+        }
+    }
+
+    /// Measures where the last step led, also when there is no time left, and goes back to the best.
+    fn settle(&mut self, problem: &Problem, nothing_moved: Move) {
+        if !problem.samples.is_empty() && self.last != nothing_moved {
+            self.log.note(self.last, loss(problem, &self.color, &self.normal), &self.color, &self.normal);
+        }
+        if let Some((_, color, normal)) = self.log.best.take() {
+            (self.color, self.normal) = (color, normal);
         }
     }
 }
@@ -136,96 +219,49 @@ pub fn fit_textures(
     schedule: &Schedule,
     watch: &impl Watch,
 ) -> Fitted {
-    let weight: f64 = samples.bands.iter().flatten().map(|s| f64::from(s.weight())).sum();
-    let mut log =
-        Log { begin: Instant::now(), terms: (3.0 * weight).max(1e-9), losses: Vec::new(), best: None };
     let display = &DisplayTable::new(&display);
     let outliers = Cauchy::new(schedule.outlier);
-    let problem = |membrane| Problem { samples, atlas, display, membrane, effort: schedule.effort, outliers };
-    let color_problem = problem(schedule.color_membrane);
-    let normal_problem = problem(schedule.normal_membrane);
-    let final_problem = Problem { effort: schedule.final_effort, ..problem(schedule.color_membrane) };
-    let (mut color, mut normal) = (start.color.clone(), start.normal.clone());
-    let (mut color_rows, mut normal_rows) = (Vec::new(), Vec::new());
+    let problem = |membrane, effort| Problem { samples, atlas, display, membrane, effort, outliers };
+    let color_problem = problem(schedule.color_membrane, schedule.effort);
+    let normal_problem = problem(schedule.normal_membrane, schedule.effort);
     let total = schedule.rounds * (schedule.color_steps + schedule.normal_steps) + schedule.final_steps;
-    let (mut done, mut last, mut damping, mut stopped) = (0, Move::Start, schedule.damping, false);
-    let mut advance = |stopped: &mut bool| {
-        watch.progress(Stage::Solve, done, total);
-        done += 1;
-        *stopped = *stopped || watch.should_stop();
-        !*stopped
+    let mut descent = Descent {
+        color: start.color.clone(),
+        normal: start.normal.clone(),
+        start,
+        color_rows: Vec::new(),
+        normal_rows: Vec::new(),
+        damping: schedule.damping,
+        last: Move::Start,
+        log: Log::new(samples),
+        watch,
+        steps: [0, total],
+        stopped: false,
     };
     for _ in 0..schedule.rounds {
-        if stopped {
-            break;
-        }
-        for _ in 0..schedule.color_steps {
-            if !advance(&mut stopped) {
-                break;
-            }
-            let before = color.clone();
-            let (loss, _) = color_step(&color_problem, &mut color, &normal, &start.color, &mut color_rows);
-            log.note(last, loss, &before, &normal);
-            last = Move::Color;
-        }
-        let mut previous: Option<(f64, Canvas)> = None;
-        for _ in 0..schedule.normal_steps {
-            if stopped || !advance(&mut stopped) {
-                break;
-            }
-            let before = normal.clone();
-            let (loss, _) =
-                normal_step(&normal_problem, &color, &mut normal, &start.normal, damping, &mut normal_rows);
-            log.note(last, loss, &color, &before);
-            last = Move::Normal;
-            match previous {
-                // The step before made it worse: take it back and tread more carefully.
-                Some((was, ref kept)) if loss.minimised > was => {
-                    normal = kept.clone();
-                    damping *= 8.0;
-                }
-                _ => {
-                    damping *= 0.5;
-                    previous = Some((loss.minimised, before));
-                }
-            }
-        }
+        descent.color_steps(&color_problem, schedule.color_steps);
+        descent.normal_steps(&normal_problem, schedule.normal_steps);
     }
-    // Also when there is no time left: what the last step brought would be lost.
-    if !samples.is_empty() && last != Move::Start {
-        log.note(last, loss(&color_problem, &color, &normal), &color, &normal);
-    }
-    if let Some((_, c, n)) = log.best.take() {
-        (color, normal) = (c, n);
-    }
+    descent.settle(&color_problem, Move::Start);
 
     let seen = seen(samples);
     let known: Vec<bool> =
         atlas.label.iter().zip(&seen).map(|(&label, &seen)| label != NO_CHART || seen).collect();
-    gutter::fill(&mut normal, &known);
-    let normal_picture = normal_image("normal", &normal);
-    let rounded = normal_canvas(&normal_picture);
-    last = Move::Rounding;
-    for _ in 0..schedule.final_steps {
-        if samples.is_empty() || stopped || !advance(&mut stopped) {
-            break;
-        }
-        let before = color.clone();
-        let (loss, _) = color_step(&final_problem, &mut color, &rounded, &start.color, &mut color_rows);
-        log.note(last, loss, &before, &rounded);
-        last = Move::Color;
+    gutter::fill(&mut descent.normal, &known);
+    let normal_picture = normal_image("normal", &descent.normal);
+    descent.normal = normal_canvas(&normal_picture);
+    descent.last = Move::Rounding;
+    if !samples.is_empty() {
+        let final_problem = problem(schedule.color_membrane, schedule.final_effort);
+        descent.color_steps(&final_problem, schedule.final_steps);
     }
-    if last == Move::Color {
-        log.note(last, loss(&color_problem, &color, &rounded), &color, &rounded);
-    }
-    if let Some((_, best, _)) = log.best.take() {
-        color = best;
-    }
+    descent.settle(&color_problem, Move::Rounding);
+    let Descent { mut color, normal, mut log, stopped, .. } = descent;
     gutter::fill(&mut color, &known);
     let color_picture = color_image("base color", &color, srgb);
     if !samples.is_empty() {
         let written = color_canvas(&color_picture, srgb);
-        log.note(Move::Rounding, loss(&color_problem, &written, &rounded), &written, &rounded);
+        log.note(Move::Rounding, loss(&color_problem, &written, &normal), &written, &normal);
     }
     watch.progress(Stage::Solve, total, total);
     Fitted {

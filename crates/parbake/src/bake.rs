@@ -7,18 +7,17 @@
 //!   (normals)    (vertices) (coordinates) (texel map, charts)  (cutout, parallax)
 //! ```
 
-use crate::algorithm_one::algorithm_one;
 use crate::bridge::{Bridge, Clock};
 use crate::check::{check_mesh, warning};
-use crate::depth::{DepthMaps, fit_depth};
+use crate::depth::{Depth, DepthMaps, fit_depth};
 use crate::error::BakeError;
+use crate::geometry::{Geometry, move_geometry};
 use crate::low::{LowPoly, lit};
 use crate::message::{Message, Stage, Watcher};
 use crate::options::{BakeOptions, UvMode};
 use crate::pair::{common_frame, placed};
 use crate::report::{BakeReport, Work};
-use crate::shape::{Target, shape};
-use crate::unfold::{Source, mend_with_room, unfold};
+use crate::shape::Target;
 use crate::uv_animation::UvMoves;
 use parbake_fit::quantise::{color_image, normal_image};
 use parbake_fit::reference::render_references;
@@ -26,14 +25,14 @@ use parbake_fit::samples::{collect_samples, shifted_samples};
 use parbake_fit::schedule::fit_textures;
 use parbake_fit::sighted::sighted_views;
 use parbake_fit::start::project;
-use parbake_fit::view_walk::{Beyond, Walker};
+use parbake_fit::view_walk::Walker;
 use parbake_fit::views::{Rig, view_pool};
 use parbake_mesh::HighSurface;
-use parbake_model::{Image, Material, Mesh, Model, TextureSlot, Wrap};
+use parbake_model::{Image, Material, Mesh, Model, Placement, TextureSlot, Wrap};
 use parbake_render::camera::Projection;
+use parbake_render::interpretation::Interpretation;
 use parbake_render::scene::Scene;
 use parbake_render::shade::Lambert;
-use std::mem::take;
 use std::time::Instant;
 
 /// The training cameras: the paper's distance, and the field of view at which a
@@ -55,10 +54,12 @@ pub struct Baked {
 
 /// The shares of stages in the time that a budget leaves them: textures are worth most, and
 /// what reference pictures show must be solved for.
-const SHAPE_SHARE: f64 = 0.2;
-const UNFOLD_SHARE: f64 = 0.15;
-const REFERENCE_SHARE: f64 = 0.25;
-const DEPTH_SHARE: f64 = 0.35;
+pub(crate) mod shares {
+    pub const SHAPE: f64 = 0.2;
+    pub const UNFOLD: f64 = 0.15;
+    pub const REFERENCE: f64 = 0.25;
+    pub const DEPTH: f64 = 0.35;
+}
 
 /// Bakes the high-poly's look onto the low-poly.
 ///
@@ -88,98 +89,59 @@ pub(crate) fn bake_pair(
         plan.reference.filter = (0.5 * plan.reference.filter).max(1.0 / 16.0);
     }
     let (convention, size) = (options.convention, options.texture_size);
+    let (display, srgb) = (convention.display(), convention.decodes_srgb());
     let begin = Instant::now();
     let bridge = Bridge::new(watcher, begin, options.time_budget);
     let mut clock = Clock::new(begin);
+    let mut warnings = Warnings { watcher, told: Vec::new() };
     let frame = common_frame(high)?;
     // One model twice keeps its vertices, whatever their normals are like.
-    let (turned, warnings) = (!same).then(|| lit(low)).unzip();
-    let low = turned.as_ref().unwrap_or(low);
-    let mut warnings = warnings.unwrap_or_default();
-    let mesh = placed(high, &frame);
-    let (scene, surface) = rayon::join(
-        || Scene::new(mesh.clone(), &high.materials, &high.images, convention.interpretation()),
-        || HighSurface::new(&mesh),
-    );
-    drop(mesh);
-    let (display, reach) = (convention.display(), 2.0 * options.reach);
-    let (mut shaped, mut unfolded) = (None, None);
-    let target = Target { scene: &scene, surface: &surface, reach, display, rig: RIG };
-    let shape_plan = options.shape_plan().filter(|_| !same);
-    let algorithm_plan = options.algorithm_plan().filter(|_| !same);
-    let mut unfold_options = options.unfold();
-    let mut map_of_paper = None;
-    if options.uv != UvMode::Keep || shape_plan.is_some() || algorithm_plan.is_some() {
-        let mut low = mend_with_room(low, &mut unfold_options)?;
-        clock.lap(Stage::Prepare);
-        if let Some(plan) = &shape_plan {
-            let share = bridge.share(SHAPE_SHARE);
-            shaped = Some(shape(&mut low, &frame, &target, plan, options.seed, &share)?);
-            clock.lap(Stage::Shape);
-        }
-        let source = Source {
-            scene: &scene,
-            surface: (!same).then_some(&surface),
-            reach,
-            encode: convention.decodes_srgb(),
-        };
-        let mut moved = unfold(low, &frame, &source, &unfold_options, &bridge.share(UNFOLD_SHARE));
-        clock.lap(Stage::Unfold);
-        if let Some(plan) = &algorithm_plan {
-            let share = bridge.share(DEPTH_SHARE);
-            let outcome = algorithm_one(&mut moved.model, &frame, &target, plan, options.seed, &share)?;
-            (shaped, map_of_paper) = (outcome.report, outcome.map);
-            clock.lap(Stage::Shape);
-        }
-        unfolded = Some(moved);
-    }
+    let turned = (!same).then(|| lit(low));
+    let low = turned.as_ref().map_or(low, |(model, _)| model);
+    warnings.tell(turned.iter().flat_map(|(_, of_normals)| of_normals.clone()));
+    let (scene, surface) = seen_and_touched(high, &frame, convention.interpretation());
+    let target =
+        Target { scene: &scene, surface: &surface, reach: 2.0 * options.reach, display, srgb, rig: RIG };
+    let Geometry { unfolded, shape, map } =
+        move_geometry(low, same, &frame, &target, options, &bridge, &mut clock)?;
     let low = unfolded.as_ref().map_or(low, |u| &u.model);
-    let LowPoly { written, placed, map, atlas, warnings: of_low } = LowPoly::new(low, &frame, size)?;
-    warnings.extend(of_low);
-    warnings.extend(
-        unfolded.iter().flat_map(|u| u.report.mended.iter().map(|done| format!("{}: {done}", low.name))),
-    );
-    for warning in &warnings {
-        watcher.message(Message::Warning(warning.clone()));
-    }
+    let LowPoly { written, placed, map: texels, atlas, warnings: of_low } = LowPoly::new(low, &frame, size)?;
+    warnings.tell(of_low);
+    let mended = unfolded.iter().flat_map(|u| &u.report.mended);
+    warnings.tell(mended.map(|done| format!("{}: {done}", low.name)));
     clock.lap(Stage::Prepare);
 
-    let start = project(&placed, &map, &atlas, &scene, &surface, reach);
+    let start = project(&placed, &texels, &atlas, &scene, &surface, target.reach);
     clock.lap(Stage::Start);
 
     let pool = view_pool(plan.views, &RIG, options.seed);
-    let references =
-        render_references(&scene, &Lambert, &pool, &plan.reference, 1, &bridge.share(REFERENCE_SHARE));
+    let share = bridge.share(shares::REFERENCE);
+    let references = render_references(&scene, &Lambert, &pool, &plan.reference, 1, &share);
+    let views = references.len();
     clock.lap(Stage::Reference);
 
-    let beyond = match options.silhouette_weight() {
-        0.0 => Beyond::Ignore,
-        weight => Beyond::Background(options.backdrop.light(), weight),
+    let walker = Walker::new(&placed, plan.reference.size, &display, options.beyond());
+    let depth = match options.depth_plan().filter(|_| !same) {
+        Some(plan) => {
+            let share = bridge.share(shares::DEPTH);
+            let depth = fit_depth(low, &frame, &target, &references, &walker, &plan, &share)?;
+            clock.lap(Stage::Parallax);
+            Some(depth)
+        }
+        None => map.map(Depth::given),
     };
-    let srgb = convention.decodes_srgb();
-    let walker = Walker::new(&placed, plan.reference.size, &display, beyond);
-    let mut depth = None;
-    if let Some(plan) = options.depth_plan().filter(|_| !same) {
-        let share = bridge.share(DEPTH_SHARE);
-        depth = Some(fit_depth(low, &frame, &target, &references, &walker, srgb, &plan, &share)?);
-        clock.lap(Stage::Parallax);
-    }
     drop(surface);
-    let of_paper = map_of_paper.map(|parallax| DepthMaps { parallax, cutout: None });
-    let mut sighted = depth.as_mut().map(|d| take(&mut d.views)).unwrap_or_default();
-    let maps = depth.as_ref().map(|d| &d.maps).or(of_paper.as_ref());
-    let views = references.len();
-    let samples = match maps {
+    let (samples, maps, depth_report) = match depth {
         None => {
             let samples = collect_samples(&walker, &references, size, &bridge);
             drop(references);
-            samples
+            (samples, None, None)
         }
-        Some(DepthMaps { parallax, cutout }) => {
-            let walker = walker.with_cutout(cutout.as_ref());
+        Some(Depth { maps, views: mut sighted, report }) => {
+            let walker = walker.with_cutout(maps.cutout.as_ref());
             sighted.extend(sighted_views(&walker, &references[sighted.len()..]));
             drop(references);
-            shifted_samples(sighted, size, parallax, &bridge)
+            (shifted_samples(sighted, size, &maps.parallax, &bridge), Some(maps), report)
         }
     };
     if samples.is_empty() {
@@ -191,14 +153,11 @@ pub(crate) fn bake_pair(
     clock.lap(Stage::Solve);
 
     let uv = check_mesh(&written, size);
-    if let Some(warning) = warning(&low.name, &uv) {
-        watcher.message(Message::Warning(warning.clone()));
-        warnings.push(warning);
-    }
+    warnings.tell(warning(&low.name, &uv));
     let report = BakeReport {
         work: if same { Work::Compress } else { Work::Bake },
-        shape: shaped,
-        depth: depth.as_ref().map(|d| d.report.clone()),
+        shape,
+        depth: depth_report,
         unfold: unfolded.as_ref().filter(|_| options.uv != UvMode::Keep).map(|u| u.report.clone()),
         options: options.clone(),
         high_triangles: high.mesh.triangles.len(),
@@ -207,28 +166,47 @@ pub(crate) fn bake_pair(
         samples: samples.len(),
         covered_texels: fitted.covered,
         unseen_texels: fitted.unseen,
-        overlapping_texels: map.overlaps,
+        overlapping_texels: texels.overlaps,
         missed_texels: start.missed,
         uv,
         losses: fitted.losses.iter().map(Into::into).collect(),
         stages: clock.stages,
         stopped_early: fitted.stopped || views < plan.views || bridge.stopped_a_stage(),
-        warnings,
+        warnings: warnings.told,
         peak_memory: crate::memory::peak_memory(),
     };
-    let projected = textured(
-        low,
-        &written,
-        color_image("base color", &start.color, srgb),
-        normal_image("normal", &start.normal),
-        None,
-    );
+    let (color, normal) =
+        (color_image("base color", &start.color, srgb), normal_image("normal", &start.normal));
     Ok(Baked {
-        model: textured(low, &written, fitted.color, fitted.normal, maps),
-        projected,
+        projected: textured(low, &written, color, normal, None),
+        model: textured(low, &written, fitted.color, fitted.normal, maps.as_ref()),
         report,
-        uv_moves: unfolded.as_ref().and_then(|u| u.moves.clone()),
+        uv_moves: unfolded.and_then(|u| u.moves),
     })
+}
+
+/// The high-poly in the common frame, as cameras see it and as rays touch it.
+fn seen_and_touched(high: &Model, frame: &Placement, interpretation: Interpretation) -> (Scene, HighSurface) {
+    let mesh = placed(high, frame);
+    rayon::join(
+        || Scene::new(mesh.clone(), &high.materials, &high.images, interpretation),
+        || HighSurface::new(&mesh),
+    )
+}
+
+/// What the user is told of as it is found, and reads again in the report.
+struct Warnings<'a, W> {
+    watcher: &'a W,
+    told: Vec<String>,
+}
+
+impl<W: Watcher> Warnings<'_, W> {
+    fn tell(&mut self, found: impl IntoIterator<Item = String>) {
+        for warning in found {
+            self.watcher.message(Message::Warning(warning.clone()));
+            self.told.push(warning);
+        }
+    }
 }
 
 /// The low-poly with one material of these two textures and these maps.

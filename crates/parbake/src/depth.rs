@@ -107,10 +107,18 @@ pub struct DepthReport {
 pub struct Depth {
     /// The maps.
     pub maps: DepthMaps,
-    /// What the views that they were fitted to show of the low-poly, with the cutout.
+    /// What the first views of the pool show of the low-poly, with the cutout: those that maps were
+    /// fitted to.
     pub views: Vec<Vec<Sighted>>,
-    /// What was done.
-    pub report: DepthReport,
+    /// What was done; none for maps that were given.
+    pub report: Option<DepthReport>,
+}
+
+impl Depth {
+    /// A parallax map that is not to be fitted.
+    pub fn given(parallax: ShParallax) -> Self {
+        Self { maps: DepthMaps { parallax, cutout: None }, views: Vec::new(), report: None }
+    }
 }
 
 /// Texels along a side of the map that says which chart is nearest.
@@ -136,14 +144,12 @@ const REPORTED: usize = 10;
 ///
 /// # Errors
 /// Where its texture coordinates have no area.
-#[expect(clippy::too_many_arguments, reason = "each is another part of the bake")]
 pub fn fit_depth(
     low: &Model,
     frame: &Placement,
     target: &Target,
     references: &[Reference],
     walker: &Walker,
-    srgb: bool,
     plan: &DepthPlan,
     watch: &impl Watch,
 ) -> Result<Depth, BakeError> {
@@ -174,8 +180,8 @@ pub fn fit_depth(
             let some = &views[..views.len().min(BEGIN_VIEWS)];
             let samples = shifted_samples(some, pass.texture_size, &map, watch);
             let schedule = Schedule { rounds: ROUNDS, final_steps: 0, ..Schedule::default() };
-            let begin = fit_textures(&samples, &atlas, &start, target.display, srgb, &schedule, watch);
-            let (color, normal) = (color_canvas(&begin.color, srgb), normal_canvas(&begin.normal));
+            let begin = fit_textures(&samples, &atlas, &start, target.display, target.srgb, &schedule, watch);
+            let (color, normal) = (color_canvas(&begin.color, target.srgb), normal_canvas(&begin.normal));
             State { map, color, normal }
         };
         let mut state = solved_with(map);
@@ -211,7 +217,7 @@ pub fn fit_depth(
         state.map = parallax.clone();
         report.rounding[1] = mean_square(&judged, &state, &display);
     }
-    Ok(Depth { maps: DepthMaps { parallax, cutout }, views, report })
+    Ok(Depth { maps: DepthMaps { parallax, cutout }, views, report: Some(report) })
 }
 
 #[cfg(test)]

@@ -25,6 +25,7 @@ mod convergence;
 mod depth;
 mod error;
 mod evaluate;
+mod geometry;
 mod html;
 mod low;
 mod memory;

@@ -10,6 +10,7 @@ use parbake_fit::cutout::CutoutOptions;
 use parbake_fit::parallax::ParallaxOptions;
 use parbake_fit::reference::Sampling;
 use parbake_fit::schedule::Schedule;
+use parbake_fit::view_walk::Beyond;
 use parbake_shape::paper::PaperOptions as AlgorithmOptions;
 use parbake_shape::{Motion, ShapeOptions};
 use parbake_uv::paper::PaperOptions;
@@ -63,8 +64,7 @@ impl BakeOptions {
         };
         // Where triangles are many, outlines are a fraction of a pixel apart, and larger pictures
         // bring vertices closer: with some 900 triangles 0.4 dB from 160 to 256 pixels, 0.2 from 256
-        // to 320. To begin with halves of them gains nothing, be triangles many or few. The larger
-        // the pictures, the fewer samples a pixel needs.
+        // to 320. The larger the pictures, the fewer samples a pixel needs.
         let (views, view_size, samples, texture_size, steps) = match self.preset {
             Preset::Fast => (96, 160, 3, 128, 60),
             Preset::Balanced => (192, 320, 2, 256, 200),
@@ -142,6 +142,14 @@ impl BakeOptions {
     /// How much pixels count beyond the high-poly's silhouette: none where they are cut out.
     pub(crate) fn silhouette_weight(&self) -> f32 {
         self.silhouette.unwrap_or(if self.cuts() { 0.0 } else { 0.5 })
+    }
+
+    /// What pixels beyond the high-poly's silhouette ask of the textures.
+    pub(crate) fn beyond(&self) -> Beyond {
+        match self.silhouette_weight() {
+            0.0 => Beyond::Ignore,
+            weight => Beyond::Background(self.backdrop.light(), weight),
+        }
     }
 
     /// Length of a pixel's display difference at which it counts half. What contradicts itself in a

@@ -25,8 +25,8 @@ use parbake_render::display::Display;
 use parbake_render::interpolate::interpolate;
 use parbake_render::scene::Scene;
 use parbake_render::shade::Lambert;
-use parbake_shape::joint::Provisional;
 use parbake_shape::normals::turned_normals;
+use parbake_shape::provisional::Provisional;
 use parbake_shape::views::Outline;
 use parbake_shape::{ShapeOptions, fit_shape};
 use rayon::prelude::*;
@@ -74,6 +74,8 @@ pub struct Target<'a> {
     pub reach: f32,
     /// How light is shown.
     pub display: Display,
+    /// Whether colours are stored as sRGB of what light is reckoned with.
+    pub srgb: bool,
     /// Where cameras stand.
     pub rig: Rig,
 }

@@ -21,13 +21,13 @@
 //! sane (`guard.rs`), vertices at one position stay together. The result does not depend on
 //! the number of threads.
 
-use crate::guard::Guard;
 use crate::laplacian::Laplacian;
+use crate::moving_points::MovingPoints;
 use crate::points::{Motion, Points};
+use crate::provisional::{MovingTexture, Provisional};
 use crate::views::{Judgement, Outline, Views};
 use glam::{Vec3, Vec4};
-use parbake_adam::{Adam, AdamOptions, rate_at};
-use parbake_fit::canvas::Canvas;
+use parbake_adam::rate_at;
 use parbake_fit::reference::Reference as Rendered;
 use parbake_fit::views::mixed;
 use parbake_fit::watch::{Stage, Watch};
@@ -38,7 +38,6 @@ use parbake_render::display::Display;
 use parbake_render::edges::EdgeAdjacency;
 use parbake_render::loss::{Comparison, LossValue};
 use parbake_render::surface::{Surface, Textures};
-use parbake_render::texture::{Level, Pyramid};
 use rayon::prelude::*;
 
 /// How the shape is fitted.
@@ -97,15 +96,6 @@ impl Default for ShapeOptions {
     }
 }
 
-/// A provisional texture: colours as shading sees them, normals in world space.
-#[derive(Clone, Debug)]
-pub struct Provisional {
-    /// 0 … 1.
-    pub color: Canvas,
-    /// Unit vectors.
-    pub normal: Canvas,
-}
-
 /// Where the vertices came to lie.
 #[derive(Clone, Debug)]
 pub struct Shaped {
@@ -121,20 +111,11 @@ pub struct Shaped {
     pub gap: [f32; 2],
 }
 
-pub(crate) fn pyramid(canvas: &Canvas) -> Pyramid<3> {
-    let texels = canvas.texels.iter().map(|t| [t.x, t.y, t.z]).collect();
-    Pyramid::single(Level { width: canvas.size, height: canvas.size, texels })
-}
-
-pub(crate) fn lanes(level: Option<&Level<3>>) -> Vec<Vec4> {
-    level.map(|l| l.texels.iter().map(|&[x, y, z]| Vec4::new(x, y, z, 0.0)).collect()).unwrap_or_default()
-}
-
 /// What stays through a fit.
 struct Fit<'a> {
     mesh: &'a Mesh,
     edges: EdgeAdjacency,
-    points: Points,
+    points: &'a Points,
     /// The identity's columns, for every vertex.
     frames: (Vec<Vec3>, Vec<Vec4>),
     views: Views<'a>,
@@ -151,7 +132,7 @@ impl Fit<'_> {
             triangles: &self.mesh.triangles,
             edges: &self.edges,
         };
-        let (color, normal) = (pyramid(&texture.color), pyramid(&texture.normal));
+        let [color, normal] = texture.pyramids();
         self.views.look(&surface, &Textures::new(&color, Some(&normal)), views)
     }
 }
@@ -165,6 +146,9 @@ const WIDE_GAP: f64 = 1.0;
 /// The shortest distance that is told from rounding, in pixels.
 const LEAST_GAP: f64 = 0.02;
 
+/// Outlines that agree hardly better than before are not worth another shape.
+const WORTH_MOVING: f64 = 0.9;
+
 /// Fits the positions of a mesh to `references`, pictures of `size`² pixels that were
 /// rendered without jitter.
 pub fn fit_shape(
@@ -177,21 +161,18 @@ pub fn fit_shape(
     watch: &impl Watch,
 ) -> Shaped {
     let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
-    let guard = Guard::new(&points.home, &points.triangles);
     let laplacian = Laplacian::new(points.home.len(), &points.triangles);
     let comparison = Comparison { coverage: options.coverage, ..Comparison::default() };
     let count = mesh.positions.len();
     let mut fit = Fit {
         mesh,
         edges: EdgeAdjacency::new(&mesh.positions, &mesh.triangles),
-        points,
+        points: &points,
         frames: (vec![Vec3::Z; count], vec![Vec4::new(1.0, 0.0, 0.0, 1.0); count]),
         views: Views { references, size, display, comparison, background: options.background },
     };
-    let home = fit.points.home.clone();
-    let mut texture = start;
     let measured: Vec<(usize, u64)> = (0..references.len().min(MEASURED)).map(|i| (i, i as u64)).collect();
-    let before = fit.look(&home, &texture, &measured);
+    let before = fit.look(&points.home, &start, &measured);
     let gap_in_pixels = before.outline.gap().max(LEAST_GAP);
     let discount = options.overhang_discount * (gap_in_pixels / WIDE_GAP).min(1.0) as f32;
     fit.views.comparison.overhang_discount = discount;
@@ -199,19 +180,13 @@ pub fn fit_shape(
     let gap = gap_in_pixels as f32 * pixel;
     let held = before.loss.image as f32 / (options.reach * gap).powi(2).max(1e-12);
 
-    let at_rate = |rate| AdamOptions { rate, ..AdamOptions::default() };
-    let texels = texture.color.texels.len();
-    let mut adam_points = Adam::new(home.len(), at_rate(options.rate.min(gap / options.steps_in_gap)));
-    let mut adam_color = Adam::new(texels, at_rate(options.texture_rate));
-    let mut adam_normal = Adam::new(texels, at_rate(options.texture_rate));
-    let mut values = vec![Vec4::ZERO; home.len()];
-    let mut at = home.clone();
+    let rate = options.rate.min(gap / options.steps_in_gap);
+    let mut moving = MovingPoints::new(&points, options.motion, rate);
+    let mut provisional = MovingTexture::new(start, options.texture_rate, |n| n.normalize_or(Vec3::Z));
     let mut losses = Vec::new();
-    let coarse =
-        if size >= 2 * LEAST_COARSE { (gap_in_pixels - 1.0).clamp(0.0, options.coarse) } else { 0.0 };
-    let coarse_steps = coarse * options.steps as f64;
+    let coarse_steps = coarse_steps(gap_in_pixels, size, options);
     let halved: Vec<Rendered> = match coarse_steps {
-        0.0 => Vec::new(),
+        0 => Vec::new(),
         _ => references.par_iter().map(Rendered::halved).collect(),
     };
     let fine = fit.views;
@@ -226,57 +201,49 @@ pub fn fit_shape(
         let views: Vec<(usize, u64)> = (first..first + options.views_per_step)
             .map(|i| (i % references.len(), mixed(options.seed ^ mixed(i as u64))))
             .collect();
-        fit.views = if (step as f64) < coarse_steps { coarse } else { fine };
-        let Judgement { loss, gradients, .. } = fit.look(&at, &texture, &views);
+        fit.views = if step < coarse_steps { coarse } else { fine };
+        let Judgement { loss, gradients, .. } = fit.look(moving.at(), &provisional.texture, &views);
         losses.push(loss);
         let share = rate_at(step, options.steps);
-
-        let mut to_values = fit.points.adjoint(options.motion, &gradients.positions);
-        let pull = 2.0 * held * views.len() as f32 / values.len().max(1) as f32;
-        for (gradient, value) in to_values.iter_mut().zip(&values) {
-            *gradient += *value * pull;
-        }
-        if options.laplacian > 0.0 {
-            let way: Vec<Vec3> = at.iter().zip(&home).map(|(a, h)| *a - *h).collect();
-            let (_, smooth) = laplacian.energy(&way);
-            let weight = options.laplacian * views.len() as f32;
-            for (gradient, smooth) in to_values.iter_mut().zip(fit.points.lanes(options.motion, &smooth)) {
-                *gradient += smooth * weight;
-            }
-        }
-        adam_points.step(&mut values, &to_values, share);
-        let mut next = fit.points.displaced(options.motion, &values);
-        if guard.hold(&at, &mut next) > 0 {
-            values = fit.points.values(options.motion, &next);
-        }
-        at = next;
-
-        adam_color.step(&mut texture.color.texels, &lanes(gradients.color.levels.first()), share);
-        for texel in &mut texture.color.texels {
-            *texel = texel.clamp(Vec4::ZERO, Vec4::ONE);
-        }
-        let to_normal = gradients.normal.as_ref().and_then(|n| n.levels.first());
-        adam_normal.step(&mut texture.normal.texels, &lanes(to_normal), share);
-        for texel in &mut texture.normal.texels {
-            *texel = texel.truncate().normalize_or(Vec3::Z).extend(0.0);
-        }
+        // Gradients are sums over the step's views.
+        let summed = views.len() as f32;
+        let smoothing = match options.laplacian {
+            0.0 => Vec::new(),
+            weight => scaled(laplacian.energy(&moving.ways()).1, weight * summed),
+        };
+        moving.step(&gradients.positions, &smoothing, held * summed, share);
+        provisional.step(&gradients, share);
     }
     watch.progress(Stage::Shape, options.steps, options.steps);
     fit.views = fine;
-    let mut after = fit.look(&at, &texture, &measured).outline;
+    let mut after = fit.look(moving.at(), &provisional.texture, &measured).outline;
     let cost = |outline: &Outline| f64::from(1.0 - discount) * outline.overhang + outline.underhang;
     if cost(&after) > WORTH_MOVING * cost(&before.outline) {
-        (at, after) = (home.clone(), before.outline);
+        moving.go_home();
+        after = before.outline;
     }
-    let way: Vec<f32> = at.iter().zip(&home).map(|(a, h)| a.distance(*h)).collect();
-    let moved = [way.iter().sum::<f32>() / way.len().max(1) as f32, way.iter().copied().fold(0.0, f32::max)];
     let outline = [before.outline, after];
-    let gap = outline.map(|o| o.gap() as f32 * pixel);
-    Shaped { positions: fit.points.vertices(&at), losses, moved, outline, gap }
+    Shaped {
+        positions: points.vertices(moving.at()),
+        losses,
+        moved: moving.moved(),
+        outline,
+        gap: outline.map(|o| o.gap() as f32 * pixel),
+    }
 }
 
-/// Outlines that agree hardly better than before are not worth another shape.
-const WORTH_MOVING: f64 = 0.9;
+/// How many steps look at views of half the size.
+fn coarse_steps(gap_in_pixels: f64, size: usize, options: &ShapeOptions) -> usize {
+    if size < 2 * LEAST_COARSE {
+        return 0;
+    }
+    ((gap_in_pixels - 1.0).clamp(0.0, options.coarse) * options.steps as f64).ceil() as usize
+}
+
+fn scaled(mut gradient: Vec<Vec3>, by: f32) -> Vec<Vec3> {
+    gradient.iter_mut().for_each(|g| *g *= by);
+    gradient
+}
 
 /// Width of a pixel in the common frame, around its origin.
 fn pixel_width(camera: &Camera, size: usize) -> f32 {

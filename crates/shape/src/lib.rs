@@ -6,6 +6,8 @@
 //! laplacian     the smoothness term of earlier work, for comparison
 //! normals       vertex normals that turn with the faces around them
 //! views         what rendered views say: loss, gradients
+//! moving_points points that follow them by Adam, behind the guard
+//! provisional   a texture that follows them, and is thrown away
 //! joint         the fit: vertices and a provisional texture, against rendered views
 //! paper         the paper's optimiser: textures, parallax and displacement from nothing
 //! ```
@@ -13,9 +15,11 @@
 pub mod guard;
 pub mod joint;
 pub mod laplacian;
+pub mod moving_points;
 pub mod normals;
 pub mod paper;
 pub mod points;
+pub mod provisional;
 pub mod views;
 
 pub use joint::{ShapeOptions, Shaped, fit_shape};

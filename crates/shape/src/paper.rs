@@ -10,10 +10,10 @@
 //!
 //! Contract: as of `joint.rs`. The mesh has normals and tangents.
 
-use crate::guard::Guard;
-use crate::joint::{lanes, pyramid};
+use crate::moving_points::MovingPoints;
 use crate::points::{Motion, Points};
-use crate::views::Views;
+use crate::provisional::{MovingTexture, Provisional};
+use crate::views::{Judgement, Views};
 use glam::{Vec2, Vec3, Vec4};
 use parbake_adam::{Adam, AdamOptions, rate_at};
 use parbake_fit::canvas::Canvas;
@@ -101,6 +101,43 @@ fn map_lanes(map: &ShParallax) -> [Vec<Vec4>; 2] {
     [pairs, depth]
 }
 
+/// A parallax map on its way.
+struct MovingMap {
+    map: ShParallax,
+    /// Of coefficients and of depth.
+    values: [Vec<Vec4>; 2],
+    adams: [Adam; 2],
+}
+
+impl MovingMap {
+    fn new(order: usize, size: usize, options: &PaperOptions) -> Self {
+        let map = start_map(order, size, options.epsilon);
+        let values = map_lanes(&map);
+        let adam =
+            |count: &Vec<Vec4>, rate| Adam::new(count.len(), AdamOptions { rate, ..AdamOptions::default() });
+        let adams = [adam(&values[0], options.coefficient_rate), adam(&values[1], options.rate)];
+        Self { map, values, adams }
+    }
+
+    fn step(&mut self, to_map: &ShParallax, share: f32) {
+        for ((adam, values), gradient) in self.adams.iter_mut().zip(&mut self.values).zip(map_lanes(to_map)) {
+            adam.step(values, &gradient, share);
+        }
+        let [coefficients, depth] = &self.values;
+        for (c, value) in self.map.coefficients.iter_mut().zip(coefficients) {
+            *c = Vec2::new(value.x, value.y);
+        }
+        for (d, value) in self.map.depth.iter_mut().flat_map(|d| &mut d.texels).zip(depth) {
+            d[0] = value.x;
+        }
+    }
+}
+
+/// A normal of the tangent frame that looks out of the surface.
+fn outwards(normal: Vec3) -> Vec3 {
+    Vec3::new(normal.x, normal.y, normal.z.max(0.02)).normalize()
+}
+
 /// Runs the algorithm.
 pub fn paper_fit(
     mesh: &Mesh,
@@ -110,22 +147,14 @@ pub fn paper_fit(
     watch: &impl Watch,
 ) -> PaperResult {
     let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
-    let guard = Guard::new(&points.home, &points.triangles);
     let edges = EdgeAdjacency::new(&mesh.positions, &mesh.triangles);
-    let mut color = Canvas::solid(options.texture_size, Vec3::splat(0.5).extend(0.0));
-    let mut normal = Canvas::solid(options.texture_size, Vec4::Z);
-    let mut map = options.parallax.map(|(order, size)| start_map(order, size, options.epsilon));
-    let mut map_values = map.as_ref().map(map_lanes).unwrap_or_default();
-    let mut values = vec![Vec4::ZERO; points.home.len()];
-    let mut at = points.home.clone();
-
-    let adam = |count, rate| Adam::new(count, AdamOptions { rate, ..AdamOptions::default() });
-    let texels = color.texels.len();
-    let mut adam_color = adam(texels, options.rate);
-    let mut adam_normal = adam(texels, options.rate);
-    let mut adam_map = adam(map_values[0].len(), options.coefficient_rate);
-    let mut adam_depth = adam(map_values[1].len(), options.rate);
-    let mut adam_points = adam(values.len(), options.vertex_rate);
+    let mut moving = MovingPoints::new(&points, options.motion.unwrap_or_default(), options.vertex_rate);
+    let grey = Provisional {
+        color: Canvas::solid(options.texture_size, Vec3::splat(0.5).extend(0.0)),
+        normal: Canvas::solid(options.texture_size, Vec4::Z),
+    };
+    let mut provisional = MovingTexture::new(grey, options.rate, outwards);
+    let mut map = options.parallax.map(|(order, size)| MovingMap::new(order, size, options));
     let mut losses = Vec::new();
     let total = options.steps + options.last_steps;
     for step in 0..total {
@@ -137,7 +166,7 @@ pub fn paper_fit(
         let chosen: Vec<(usize, u64)> = (first..first + options.views_per_step)
             .map(|i| (i % views.references.len(), seed ^ i as u64))
             .collect();
-        let positions = points.vertices(&at);
+        let positions = points.vertices(moving.at());
         let surface = Surface {
             positions: &positions,
             normals: &mesh.normals,
@@ -146,53 +175,27 @@ pub fn paper_fit(
             triangles: &mesh.triangles,
             edges: &edges,
         };
-        let (colors, normals) = (pyramid(&color), pyramid(&normal));
-        let textures = Textures::new(&colors, Some(&normals)).with_parallax(map.as_ref());
-        let judged = views.look(&surface, &textures, &chosen);
-        losses.push(judged.loss.image);
+        let [colors, normals] = provisional.texture.pyramids();
+        let textures = Textures::new(&colors, Some(&normals)).with_parallax(map.as_ref().map(|m| &m.map));
+        let Judgement { loss, gradients, .. } = views.look(&surface, &textures, &chosen);
+        losses.push(loss.image);
         let share = rate_at(
             step.saturating_sub(options.steps),
             if step < options.steps { 0 } else { options.last_steps },
         );
-
-        let gradients = judged.gradients;
-        adam_color.step(&mut color.texels, &lanes(gradients.color.levels.first()), share);
-        for texel in &mut color.texels {
-            *texel = texel.clamp(Vec4::ZERO, Vec4::ONE);
-        }
-        let to_normal = gradients.normal.as_ref().and_then(|n| n.levels.first());
-        adam_normal.step(&mut normal.texels, &lanes(to_normal), share);
-        for texel in &mut normal.texels {
-            let [x, y, z, _] = texel.to_array();
-            *texel = Vec3::new(x, y, z.max(0.02)).normalize().extend(0.0);
-        }
+        provisional.step(&gradients, share);
         if let (Some(map), Some(to_map)) = (&mut map, &gradients.parallax) {
-            let [to_coefficients, to_depth] = map_lanes(to_map);
-            adam_map.step(&mut map_values[0], &to_coefficients, share);
-            adam_depth.step(&mut map_values[1], &to_depth, share);
-            for (c, value) in map.coefficients.iter_mut().zip(&map_values[0]) {
-                *c = Vec2::new(value.x, value.y);
-            }
-            for (d, value) in map.depth.iter_mut().flat_map(|d| &mut d.texels).zip(&map_values[1]) {
-                d[0] = value.x;
-            }
+            map.step(to_map, share);
         }
-        if let Some(motion) = options.motion {
-            let mut to_values = points.adjoint(motion, &gradients.positions);
-            let pull = 2.0 * options.displacement * chosen.len() as f32 / values.len().max(1) as f32;
-            for (gradient, value) in to_values.iter_mut().zip(&values) {
-                *gradient += *value * pull;
-            }
-            adam_points.step(&mut values, &to_values, share);
-            let mut next = points.displaced(motion, &values);
-            if guard.hold(&at, &mut next) > 0 {
-                values = points.values(motion, &next);
-            }
-            at = next;
+        if options.motion.is_some() {
+            moving.step(&gradients.positions, &[], options.displacement * chosen.len() as f32, share);
         }
     }
     watch.progress(Stage::Shape, total, total);
-    let way: Vec<f32> = at.iter().zip(&points.home).map(|(a, h)| a.distance(*h)).collect();
-    let moved = [way.iter().sum::<f32>() / way.len().max(1) as f32, way.iter().copied().fold(0.0, f32::max)];
-    PaperResult { positions: points.vertices(&at), map, losses, moved }
+    PaperResult {
+        positions: points.vertices(moving.at()),
+        map: map.map(|m| m.map),
+        losses,
+        moved: moving.moved(),
+    }
 }
