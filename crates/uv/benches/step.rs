@@ -12,7 +12,7 @@ use glam::{DMat2, Vec4};
 use parbake_atlas::Layout;
 use parbake_uv::contact::ContactOptions;
 use parbake_uv::optimise::{Balance, Problem, UvOptions, refine, shape, tensors};
-use parbake_uv::signal::{Sample, Signal};
+use parbake_uv::signal::{Pixels, Sample, Signal};
 use std::hint::black_box;
 
 /// Samples of the larger showing.
@@ -42,7 +42,7 @@ fn showing(layout: &Layout, samples: usize) -> Signal {
         })
         .collect();
     let mut signal = Signal::new(layout.triangles.len(), &all);
-    signal.pixels = layout.rest.iter().map(|rest| rest.inverse() / 512.0).collect();
+    signal.pixels = Pixels::Each(layout.rest.iter().map(|rest| rest.inverse() / 512.0).collect());
     signal
 }
 

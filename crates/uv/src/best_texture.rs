@@ -14,7 +14,7 @@
 //! The derivative for texture coordinates is in `residual.rs`. Results do not depend on the
 //! number of threads.
 
-use crate::footprint::{Footprint, OnLevel, pixel, shares};
+use crate::footprint::{Footprint, OnLevel, shares};
 use crate::normal_matrix::{NormalMatrix, Patch};
 use crate::pyramid::{gather, level_count, levels};
 use crate::runs::Runs;
@@ -125,7 +125,7 @@ impl System {
             (0..mapped.runs.count()).into_par_iter().map(|run| patches(mapped, run, size, count)).collect();
         let used = (0..count)
             .rev()
-            .find(|&level| runs.iter().any(|patches| !patches[level].rows.is_empty()))
+            .find(|&level| runs.iter().any(|patches| !patches[level].is_empty()))
             .map_or(1, |level| level + 1);
         let mut levels: Vec<NormalMatrix> = (0..used)
             .map(|level| NormalMatrix::sum(size >> level, runs.iter().map(|patches| &patches[level])))
@@ -241,7 +241,7 @@ fn patches(mapped: &Mapped, run: usize, size: usize, count: usize) -> Vec<Patch>
         for signal in mapped.showings {
             let samples = signal.of(t);
             if !samples.is_empty() {
-                let shown = footprint.level(pixel(signal, t), size, count);
+                let shown = footprint.level(signal.pixels.of(t), size, count);
                 for (level, share) in shares(&shown) {
                     parts[level].push(Part { place: footprint.on(size >> level), samples, share });
                 }

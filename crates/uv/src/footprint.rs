@@ -5,7 +5,7 @@
 //! level is `λ = log₂ max(|dx|, |dy|)`, clamped; the fetch blends levels ⌊λ⌋ and ⌊λ⌋ + 1.
 //! Both steps are constant on a triangle.
 
-use crate::signal::{Sample, Signal};
+use crate::signal::Sample;
 use glam::{DMat2, DVec2, Vec2};
 
 /// A triangle in the texture.
@@ -38,7 +38,7 @@ impl Footprint {
         Self { origin: a, edges: DMat2::from_cols(b - a, c - a) }
     }
 
-    /// The levels of a triangle whose pixels are `pixel` (see [`Signal::pixels`]) in a
+    /// The levels of a triangle whose pixels are `pixel` (see [`Pixels`](crate::signal::Pixels)) in a
     /// texture of `size`² texels with `levels` levels.
     pub fn level(&self, pixel: Option<&DMat2>, size: usize, levels: usize) -> Level {
         let still = Level { fine: 0, coarse_share: 0.0, slope: DMat2::ZERO };
@@ -94,9 +94,9 @@ impl OnLevel {
         let last = (self.size - 1) as f32;
         let axis = |p: f32| {
             let inside = p.clamp(0.0, last);
-            // By way of an i32, which CPUs convert to at once.
-            let texel = (inside as i32 as usize).min(self.size - 2);
-            (texel, inside - texel as f32, if p == inside { 1.0 } else { 0.0 })
+            // CPUs convert from and to an i32 at once.
+            let texel = (inside as i32).min(self.size as i32 - 2);
+            (texel as usize, inside - texel as f32, if p == inside { 1.0 } else { 0.0 })
         };
         let ((x, fx, dx), (y, fy, dy)) = (axis(p.x), axis(p.y));
         ([x, y], [fx, fy], [dx, dy])
@@ -117,12 +117,6 @@ impl OnLevel {
 pub fn shares(level: &Level) -> impl Iterator<Item = (usize, f32)> + use<> {
     let coarse = level.coarse_share as f32;
     [(level.fine, 1.0 - coarse), (level.fine + 1, coarse)].into_iter().filter(|(_, share)| *share > 0.0)
-}
-
-/// A signal's pixel of a triangle, if it has a size.
-#[inline]
-pub fn pixel(signal: &Signal, triangle: usize) -> Option<&DMat2> {
-    signal.pixels.get(triangle)
 }
 
 #[cfg(test)]

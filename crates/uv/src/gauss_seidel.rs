@@ -62,42 +62,77 @@ pub struct GaussSeidel<'a> {
     inverse: Vec<DMat2>,
 }
 
+/// A triangle's matrix, by pairs of its edges from the first corner
+/// ([`Element::curvature`](crate::distortion::Element::curvature)).
+pub type Blocks = [[DMat2; 2]; 2];
+
+/// Triangles whose blocks are made at a time, while those before are added up.
+const AT_ONCE: usize = 4096;
+
 impl<'a> GaussSeidel<'a> {
-    /// The sum of F triangles' `blocks`, by pairs of their edges from the first corner
-    /// ([`Element::curvature`](crate::distortion::Element::curvature)), and of `shift` > 0 on the
-    /// diagonal; for each of P points `free` has 1 where a coordinate may move and 0 where not.
+    /// The sum of what `blocks` gives for each of F triangles and of `shift` > 0 on the diagonal; for
+    /// each of P points `free` has 1 where a coordinate may move and 0 where not.
     pub fn new(
         pattern: &'a Pattern,
         triangles: &[[u32; 3]],
-        blocks: &[[[DMat2; 2]; 2]],
+        blocks: impl Fn(usize) -> Blocks + Sync,
         shift: f64,
         free: &[DVec2],
     ) -> Self {
-        let mut before = vec![DMat2::ZERO; pattern.earlier.len()];
-        let mut own = vec![DMat2::from_diagonal(DVec2::splat(shift)); free.len()];
-        for ((corners, [[ee, ef], [fe, ff]]), sides) in triangles.iter().zip(blocks).zip(&pattern.sides) {
+        let mut matrix = Self {
+            pattern,
+            before: vec![DMat2::ZERO; pattern.earlier.len()],
+            own: vec![DMat2::from_diagonal(DVec2::splat(shift)); free.len()],
+            inverse: Vec::new(),
+        };
+        let made = |part: usize| -> Vec<Blocks> {
+            let end = triangles.len().min((part + 1) * AT_ONCE);
+            (part * AT_ONCE..end).map(&blocks).collect()
+        };
+        let mut next = made(0);
+        for part in 0..triangles.len().div_ceil(AT_ONCE) {
+            let now = std::mem::take(&mut next);
+            let add = || matrix.add(triangles, part * AT_ONCE, &now);
+            (next, ()) = rayon::join(|| made(part + 1), add);
+        }
+        matrix.hold(free);
+        matrix.inverse = matrix.own.par_iter().map(DMat2::inverse).collect();
+        matrix
+    }
+
+    /// Adds blocks of the triangles from `first` on.
+    fn add(&mut self, triangles: &[[u32; 3]], first: usize, blocks: &[Blocks]) {
+        let triangles = &triangles[first..first + blocks.len()];
+        let sides = &self.pattern.sides[first..first + blocks.len()];
+        for ((corners, [[ee, ef], [fe, ff]]), sides) in triangles.iter().zip(blocks).zip(sides) {
             let [a, b, c] = *corners;
-            own[a as usize] += *ee + *ef + *fe + *ff;
-            own[b as usize] += *ee;
-            own[c as usize] += *ff;
+            self.own[a as usize] += *ee + *ef + *fe + *ff;
+            self.own[b as usize] += *ee;
+            self.own[c as usize] += *ff;
             // The block for rows of the first and columns of the second point.
             let pairs = [(a, b, -(*ee + *fe)), (b, c, *ef), (c, a, -(*fe + *ff))];
             for ((i, j, block), side) in pairs.into_iter().zip(sides) {
-                before[*side as usize] += if i > j { block } else { block.transpose() };
+                self.before[*side as usize] += if i > j { block } else { block.transpose() };
             }
         }
+    }
+
+    /// Leaves a coordinate that is not free nothing but its own one.
+    fn hold(&mut self, free: &[DVec2]) {
         let masked = |block: DMat2, rows: DVec2, columns: DVec2| {
             DMat2::from_cols(block.x_axis * rows * columns.x, block.y_axis * rows * columns.y)
         };
         for (i, &rows) in free.iter().enumerate() {
-            // A coordinate that is not free has nothing but its own one.
-            own[i] = masked(own[i], rows, rows) + DMat2::from_diagonal(DVec2::ONE - rows);
-            for k in pattern.row(i) {
-                before[k] = masked(before[k], rows, free[pattern.earlier[k] as usize]);
+            if rows != DVec2::ONE {
+                self.own[i] = masked(self.own[i], rows, rows) + DMat2::from_diagonal(DVec2::ONE - rows);
+            }
+            for k in self.pattern.row(i) {
+                let columns = free[self.pattern.earlier[k] as usize];
+                if rows != DVec2::ONE || columns != DVec2::ONE {
+                    self.before[k] = masked(self.before[k], rows, columns);
+                }
             }
         }
-        let inverse = own.iter().map(DMat2::inverse).collect();
-        Self { pattern, before, own, inverse }
     }
 }
 
@@ -163,7 +198,7 @@ mod tests {
         let blocks = [springs(1.0), springs(100.0), springs(0.1)];
         let mut free = vec![DVec2::ONE; 5];
         free[3] = DVec2::X;
-        let matrix = GaussSeidel::new(&pattern, &triangles, &blocks, 0.01, &free);
+        let matrix = GaussSeidel::new(&pattern, &triangles, |t| blocks[t], 0.01, &free);
         let vector = |seed: usize| -> Vec<DVec2> {
             (0..5)
                 .map(|i| dvec2((seed + 3 * i) as f64 % 7.0 - 3.0, (seed * i) as f64 % 5.0 - 2.0) * free[i])
@@ -193,8 +228,8 @@ mod tests {
     fn a_common_motion_meets_the_shift_alone() {
         let triangles = [[2, 0, 1], [1, 3, 2]];
         let pattern = Pattern::new(4, &triangles);
-        let matrix =
-            GaussSeidel::new(&pattern, &triangles, &[springs(1.0), springs(3.0)], 0.5, &[DVec2::ONE; 4]);
+        let blocks = [springs(1.0), springs(3.0)];
+        let matrix = GaussSeidel::new(&pattern, &triangles, |t| blocks[t], 0.5, &[DVec2::ONE; 4]);
         let motion = dvec2(1.0, -2.0);
         let mut sums: Vec<DVec2> = matrix.own.iter().map(|own| *own * motion).collect();
         for i in 0..4 {

@@ -21,27 +21,34 @@ pub struct Row {
     pub south_east: f32,
 }
 
+/// A texel's row and right-hand side while samples are added, laid out for lanes of four.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sum {
+    /// Centre, east, south, south-east.
+    couplings: Vec4,
+    right: Vec4,
+    south_west: f32,
+}
+
 impl Row {
-    fn add(&mut self, other: &Self) {
-        self.centre += other.centre;
-        self.east += other.east;
-        self.south_west += other.south_west;
-        self.south += other.south;
-        self.south_east += other.south_east;
+    fn add(&mut self, sum: &Sum) {
+        self.centre += sum.couplings.x;
+        self.east += sum.couplings.y;
+        self.south_west += sum.south_west;
+        self.south += sum.couplings.z;
+        self.south_east += sum.couplings.w;
     }
 }
 
-/// A rectangle of rows that one run of triangles fills.
+/// A rectangle of texels that one run of triangles fills.
 #[derive(Clone, Debug, Default)]
 pub struct Patch {
     /// Its upper left texel.
-    pub origin: [usize; 2],
+    origin: [usize; 2],
     /// Texels in a row.
-    pub width: usize,
-    /// Its rows, one after another.
-    pub rows: Vec<Row>,
-    /// Their right-hand sides.
-    pub right: Vec<Vec4>,
+    width: usize,
+    /// Its texels, row after row.
+    sums: Vec<Sum>,
 }
 
 impl Patch {
@@ -49,7 +56,12 @@ impl Patch {
     pub fn new(low: [usize; 2], high: [usize; 2]) -> Self {
         let width = high[0] - low[0];
         let texels = width * (high[1] - low[1]);
-        Self { origin: low, width, rows: vec![Row::default(); texels], right: vec![Vec4::ZERO; texels] }
+        Self { origin: low, width, sums: vec![Sum::default(); texels] }
+    }
+
+    /// Whether it has no texels.
+    pub fn is_empty(&self) -> bool {
+        self.sums.is_empty()
     }
 
     /// Adds a sample of weight `weight` whose upper left texel is `texel`, with fractions `f`.
@@ -57,25 +69,21 @@ impl Patch {
     pub fn add_sample(&mut self, texel: [usize; 2], f: [f32; 2], weight: f32, target: Vec4) {
         let [fx, fy] = f;
         let (gx, gy) = (1.0 - fx, 1.0 - fy);
-        let w = [gx * gy, fx * gy, gx * fy, fx * fy];
-        let s = w.map(|w| w * weight);
+        // Upper left, upper right, lower left, lower right.
+        let w = Vec4::new(gx, fx, gx, fx) * Vec4::new(gy, gy, fy, fy);
+        let s = w * weight;
         let place = (texel[1] - self.origin[1]) * self.width + texel[0] - self.origin[0];
-        let (upper, lower) = self.rows[place..].split_at_mut(self.width);
-        upper[0].centre += s[0] * w[0];
-        upper[0].east += s[0] * w[1];
-        upper[0].south += s[0] * w[2];
-        upper[0].south_east += s[0] * w[3];
-        upper[1].centre += s[1] * w[1];
-        upper[1].south_west += s[1] * w[2];
-        upper[1].south += s[1] * w[3];
-        lower[0].centre += s[2] * w[2];
-        lower[0].east += s[2] * w[3];
-        lower[1].centre += s[3] * w[3];
-        let (upper, lower) = self.right[place..].split_at_mut(self.width);
-        upper[0] += target * s[0];
-        upper[1] += target * s[1];
-        lower[0] += target * s[2];
-        lower[1] += target * s[3];
+        let (upper, lower) = self.sums[place..].split_at_mut(self.width);
+        let ([a, b, ..], [c, d, ..]) = (upper, lower) else { return };
+        a.couplings += w * s.x;
+        a.right += target * s.x;
+        b.couplings += Vec4::new(w.y, 0.0, w.w, 0.0) * s.y;
+        b.south_west += w.z * s.y;
+        b.right += target * s.y;
+        c.couplings += Vec4::new(w.z, w.w, 0.0, 0.0) * s.z;
+        c.right += target * s.z;
+        d.couplings += Vec4::new(w.w, 0.0, 0.0, 0.0) * s.w;
+        d.right += target * s.w;
     }
 }
 
@@ -96,21 +104,20 @@ const BAND: usize = 16;
 impl NormalMatrix {
     /// The sum of patches, added in their order.
     pub fn sum<'a>(size: usize, patches: impl Iterator<Item = &'a Patch> + Clone + Sync) -> Self {
-        let patches: Vec<&Patch> = patches.filter(|p| !p.rows.is_empty()).collect();
+        let patches: Vec<&Patch> = patches.filter(|p| !p.is_empty()).collect();
         let mut rows = vec![Row::default(); size * size];
         let mut right = vec![Vec4::ZERO; size * size];
         rows.par_chunks_mut(size).zip(right.par_chunks_mut(size)).enumerate().for_each(
             |(y, (rows, right))| {
                 for patch in &patches {
-                    let (from, height) = (patch.origin[0], patch.rows.len() / patch.width);
+                    let (from, height) = (patch.origin[0], patch.sums.len() / patch.width);
                     if (patch.origin[1]..patch.origin[1] + height).contains(&y) {
                         let local = (y - patch.origin[1]) * patch.width;
-                        let local = local..local + patch.width;
-                        rows[from..]
-                            .iter_mut()
-                            .zip(&patch.rows[local.clone()])
-                            .for_each(|(to, add)| to.add(add));
-                        right[from..].iter_mut().zip(&patch.right[local]).for_each(|(to, add)| *to += *add);
+                        let sums = &patch.sums[local..local + patch.width];
+                        for ((row, right), sum) in rows[from..].iter_mut().zip(&mut right[from..]).zip(sums) {
+                            row.add(sum);
+                            *right += sum.right;
+                        }
                     }
                 }
             },

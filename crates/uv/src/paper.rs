@@ -24,7 +24,7 @@ use crate::best_texture::{Mapped, Texture};
 use crate::contact::Contact;
 use crate::descent::{Place, Reach, Region, Step};
 use crate::lbfgs::{Identity, Lbfgs};
-use crate::signal::Signal;
+use crate::signal::{Pixels, Signal};
 use parbake_adam::{Adam, AdamOptions};
 
 use energy::Problem;
@@ -165,7 +165,7 @@ pub fn paper_method(
     mut watch: impl FnMut(&PaperProgress) -> bool,
 ) -> PaperResult {
     let signal = match mapped.showings.first() {
-        Some(signal) => Signal { pixels: Vec::new(), ..signal.clone() },
+        Some(signal) => Signal { pixels: Pixels::Sizeless, ..signal.clone() },
         None => Signal::new(mapped.triangles.len(), &[]),
     };
     let mapped = Mapped { showings: std::slice::from_ref(&signal), ..*mapped };

@@ -8,7 +8,7 @@
 //! (variable projection).
 
 use crate::best_texture::{Mapped, Texture};
-use crate::footprint::{Footprint, OnLevel, pixel, shares};
+use crate::footprint::{Footprint, OnLevel, shares};
 use crate::pyramid::{level_count, levels};
 use crate::signal::Sample;
 use glam::{DVec2, Vec2, Vec4};
@@ -67,7 +67,7 @@ fn triangle(mapped: &Mapped, pyramid: &[Vec<Vec4>], size: usize, t: usize, error
         if samples.is_empty() {
             continue;
         }
-        let shown = footprint.level(pixel(signal, t), size, pyramid.len());
+        let shown = footprint.level(signal.pixels.of(t), size, pyramid.len());
         let mut by_level = 0.0;
         for (level, share) in shares(&shown) {
             let own = size >> level;
@@ -99,8 +99,8 @@ fn on_level(place: &OnLevel, samples: &[Sample], texels: &[Vec4], size: usize) -
     for sample in samples {
         let ([x, y], [fx, fy], [dx, dy]) = place.place(sample);
         let texel = y * size + x;
-        let (a, b) = (texels[texel], texels[texel + 1]);
-        let (c, d) = (texels[texel + size], texels[texel + size + 1]);
+        let (upper, lower) = (&texels[texel..texel + 2], &texels[texel + size..texel + size + 2]);
+        let (a, b, c, d) = (upper[0], upper[1], lower[0], lower[1]);
         let (upper, lower) = (a + (b - a) * fx, c + (d - c) * fx);
         let r = upper + (lower - upper) * fy - sample.target;
         let weighted = r * sample.weight;

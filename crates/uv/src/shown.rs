@@ -2,7 +2,7 @@
 //! not the bound that is minimised (`best_texture.rs`).
 
 use crate::best_texture::{Mapped, Texture};
-use crate::footprint::{Footprint, pixel, shares};
+use crate::footprint::{Footprint, shares};
 use crate::pyramid::{level_count, levels};
 use glam::Vec4;
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ pub fn shown_errors(mapped: &Mapped, texture: &Texture) -> Vec<f64> {
             for t in mapped.runs.triangles(run) {
                 let footprint = Footprint::new(mapped.points, mapped.triangles[t]);
                 for (signal, error) in mapped.showings.iter().zip(&mut errors) {
-                    let level = footprint.level(pixel(signal, t), texture.size, pyramid.len());
+                    let level = footprint.level(signal.pixels.of(t), texture.size, pyramid.len());
                     for sample in signal.of(t) {
                         let mut shown = Vec4::ZERO;
                         for (l, share) in shares(&level) {

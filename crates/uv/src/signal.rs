@@ -26,10 +26,34 @@ pub struct Signal {
     pub first: Vec<u32>,
     /// S samples.
     pub samples: Vec<Sample>,
-    /// What a pixel is on each of the F triangles: how the barycentric weights of the second
-    /// and the third point (rows) change from one pixel to the next along x and y (columns).
-    /// Decides on mip levels; empty for a picture that never minifies.
-    pub pixels: Vec<DMat2>,
+    /// What a pixel is on each triangle, which decides on mip levels.
+    pub pixels: Pixels,
+}
+
+/// What a pixel is on triangles: how the barycentric weights of the second and the third point
+/// (rows) change from one pixel to the next along x and y (columns).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Pixels {
+    /// Without a size, for what never minifies.
+    #[default]
+    Sizeless,
+    /// One kind on even triangles, another on odd ones, as on a plane of cells: a third of what is
+    /// read there otherwise.
+    ByTurns([DMat2; 2]),
+    /// F entries.
+    Each(Vec<DMat2>),
+}
+
+impl Pixels {
+    /// That of a triangle, if it has a size.
+    #[inline]
+    pub fn of(&self, triangle: usize) -> Option<&DMat2> {
+        match self {
+            Self::Sizeless => None,
+            Self::ByTurns(pair) => Some(&pair[triangle % 2]),
+            Self::Each(all) => all.get(triangle),
+        }
+    }
 }
 
 impl Signal {
@@ -50,7 +74,7 @@ impl Signal {
             sorted[*place as usize] = *sample;
             *place += 1;
         }
-        Self { first, samples: sorted, pixels: Vec::new() }
+        Self { first, samples: sorted, pixels: Pixels::Sizeless }
     }
 
     /// The samples of a triangle.

@@ -19,7 +19,6 @@ use crate::distortion::Distortion;
 use crate::gauss_seidel::{GaussSeidel, Pattern};
 use crate::metric::steepness;
 use glam::{DMat2, DVec2};
-use rayon::prelude::*;
 
 /// Share of the error's stiffness with the texture held that is left with the best one.
 const SHARE: f64 = 0.06;
@@ -65,19 +64,13 @@ impl<'a> Stiffness<'a> {
         // A side of a triangle is half an edge: |e|² + |f|² + |e − f|², e and f its edges from the
         // first corner.
         let side = DMat2::IDENTITY * (0.5 * self.error);
-        let blocks: Vec<[[DMat2; 2]; 2]> = (self.distortion.elements.par_iter())
-            .zip(self.triangles)
-            .map(|(element, corners)| {
-                let [a, b, c] = corners.map(|i| points[i as usize]);
-                let [[ee, ef], [fe, ff]] = element.curvature(DMat2::from_cols(b - a, c - a));
-                let weight = self.distortion_weight;
-                [
-                    [ee * weight + side * 2.0, ef * weight - side],
-                    [fe * weight - side, ff * weight + side * 2.0],
-                ]
-            })
-            .collect();
+        let blocks = |t: usize| {
+            let [a, b, c] = self.triangles[t].map(|i| points[i as usize]);
+            let [[ee, ef], [fe, ff]] = self.distortion.elements[t].curvature(DMat2::from_cols(b - a, c - a));
+            let weight = self.distortion_weight;
+            [[ee * weight + side * 2.0, ef * weight - side], [fe * weight - side, ff * weight + side * 2.0]]
+        };
         let shift = (SHIFT * self.error).max(LEAST_SHIFT);
-        GaussSeidel::new(&self.pattern, self.triangles, &blocks, shift, free)
+        GaussSeidel::new(&self.pattern, self.triangles, blocks, shift, free)
     }
 }

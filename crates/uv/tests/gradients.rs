@@ -16,7 +16,7 @@ use parbake_uv::distortion::Distortion;
 use parbake_uv::metric::{signal_specialised, structure_tensors};
 use parbake_uv::residual::residual;
 use parbake_uv::runs::Runs;
-use parbake_uv::signal::Signal;
+use parbake_uv::signal::{Pixels, Signal};
 use parbake_uv::variable_projection::{Best, VariableProjection};
 
 const SIZE: usize = 16;
@@ -35,14 +35,13 @@ fn scene() -> (Layout, Vec<Signal>) {
     let layout = quarters(2, 2, 0.08, 5);
     let full = signal(&layout, 14, waves);
     let mut small = signal(&layout, 9, waves);
-    small.pixels = (0..layout.triangles.len())
-        .map(|t| {
-            // Never a power of two: the slope has a kink where a level begins.
-            let texels = 1.33 + (0.2 * t as f64) % 1.9;
-            let step = DMat2::from_diagonal(dvec2(texels, 0.6 * texels)) * (1.0 / SIZE as f64);
-            layout.rest[t].inverse() * step
-        })
-        .collect();
+    let pixel = |t: usize| {
+        // Never a power of two: the slope has a kink where a level begins.
+        let texels = 1.33 + (0.2 * t as f64) % 1.9;
+        let step = DMat2::from_diagonal(dvec2(texels, 0.6 * texels)) * (1.0 / SIZE as f64);
+        layout.rest[t].inverse() * step
+    };
+    small.pixels = Pixels::Each((0..layout.triangles.len()).map(pixel).collect());
     (layout, vec![full, small])
 }
 

@@ -4,6 +4,7 @@
 use parbake_atlas::Layout;
 use parbake_model::Mesh;
 use parbake_model::glam::{DMat2, DVec2, Vec2, Vec3, dvec2, vec2};
+use parbake_uv::signal::Pixels;
 
 /// A grid of `cells` × `cells`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,12 +63,12 @@ impl Plane {
     }
 
     /// What a pixel of a `width` × `height` picture is on each triangle
-    /// ([`parbake_uv::signal::Signal::pixels`]).
-    pub fn pixels(self, width: usize, height: usize) -> Vec<DMat2> {
+    /// ([`Pixels`]).
+    pub fn pixels(self, width: usize, height: usize) -> Pixels {
         let (x, y) = (self.cells as f64 / width as f64, self.cells as f64 / height as f64);
         let upper = DMat2::from_cols(dvec2(x, 0.0), dvec2(-y, y));
         let lower = DMat2::from_cols(dvec2(x, -x), dvec2(0.0, y));
-        (0..self.cells * self.cells).flat_map(|_| [upper, lower]).collect()
+        Pixels::ByTurns([upper, lower])
     }
 
     /// A grid of twice as many cells whose points lie on the triangles of this one.
@@ -127,7 +128,7 @@ mod tests {
             let [p, q, r] = layout.corners(t as usize);
             let edges = DMat2::from_cols(q - p, r - p);
             assert!((p + edges * dvec2(b.into(), c.into()) - dvec2(x, y)).length() < 1e-6);
-            let step = edges * pixels[t as usize];
+            let step = edges * *pixels.of(t as usize).expect("pixels have a size");
             assert!((step.x_axis - dvec2(0.01, 0.0)).length() < 1e-6);
             assert!((step.y_axis - dvec2(0.0, 0.02)).length() < 1e-6);
             assert!(layout.doubled_area(t as usize) > 0.0);

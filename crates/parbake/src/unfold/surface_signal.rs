@@ -11,7 +11,7 @@ use parbake_render::display::encode_srgb;
 use parbake_render::interpolate::interpolate;
 use parbake_render::scene::Scene;
 use parbake_uv::distortion::{has_area, total_area};
-use parbake_uv::signal::{Sample, Signal};
+use parbake_uv::signal::{Pixels, Sample, Signal};
 use rayon::prelude::*;
 
 /// Where the signal comes from.
@@ -70,8 +70,8 @@ fn showing(mesh: &Mesh, rest: &[DMat2], source: &Source, pixel: f64, spacing: f6
         })
         .collect();
     let mut signal = Signal::new(rest.len(), &samples);
-    signal.pixels =
-        rest.iter().map(|r| if has_area(r, total) { r.inverse() * pixel } else { DMat2::ZERO }).collect();
+    let pixel_on = |r: &DMat2| if has_area(r, total) { r.inverse() * pixel } else { DMat2::ZERO };
+    signal.pixels = Pixels::Each(rest.iter().map(pixel_on).collect());
     signal
 }
 
