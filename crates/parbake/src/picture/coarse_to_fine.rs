@@ -27,7 +27,9 @@ const LEAST_SAMPLES: usize = 1 << 18;
 /// …and on the finest one: with an eighth of them pictures of two million pixels gain 0.35 dB less.
 const LEAST_FINEST_SAMPLES: usize = 1 << 21;
 /// A coarse grid is left once its steps gain less than this share: the next one goes on from there.
-const COARSE_TOLERANCE: f64 = 1e-3;
+/// With a quarter of it pictures take an eighth longer and gain 0.02 dB, with twice as much they
+/// gain 0.05 dB less on average.
+const COARSE_TOLERANCE: f64 = 4e-3;
 /// Weight of the symmetric Dirichlet energy. Eight times as much costs pictures 0.1 to 0.3 dB, half of
 /// it gains next to nothing.
 const DISTORTION_WEIGHT: f64 = 5e-3;
