@@ -138,7 +138,8 @@ fn add_membrane(map: &ShCutout, wanted: &[bool], stiffness: f32, gradient: &mut 
     });
 }
 
-/// Sums that a step's views are added to, at most; their number alone decides the order of sums.
+/// Sums that a step's views are added to, at most, and so the threads that a step keeps busy; their
+/// number alone decides the order of sums.
 const PARTS: usize = 8;
 /// Numbers of one task.
 const BAND: usize = 4096;

@@ -43,8 +43,9 @@ impl Reference {
         pixels
     }
 
-    /// The same picture with half as many pixels along a side: each is the mean of four. Odd sizes
-    /// lose their last row and column.
+    /// The same picture with half as many pixels along a side: each is the mean of four. For views
+    /// without jitter and of even sizes; odd ones lose their last row and column, and with them a part
+    /// of the field.
     pub fn halved(&self) -> Self {
         let (size, pixels) = (self.pixels.len().isqrt(), self.linear());
         let half = size / 2;

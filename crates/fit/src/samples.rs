@@ -2,10 +2,10 @@
 //! light meets it there, and what the high-poly shows in its place.
 //!
 //! Forward: a walk over the views' pixels (`view_walk.rs`), or those of an earlier walk and the
-//! shift of the coordinate where there is a parallax map (`sighted.rs`); what is left for the solvers is a bilinear
-//! fetch and the shading. Samples are binned by texture tile (a stable counting sort a view, then views in order within a
-//! tile), so that bands of the texture can be summed by many threads without
-//! atomics and always in the same order, and each band's texels stay in cache.
+//! shift of the coordinate where there is a parallax map (`sighted.rs`); what is left for the solvers
+//! is a bilinear fetch and the shading. Samples are binned by texture tile (a stable counting sort a
+//! view, then views in order within a tile), so that bands of the texture can be summed by many
+//! threads without atomics and always in the same order, and each band's texels stay in cache.
 //!
 //! Contract: the low-poly has normals, tangents and texture coordinates (wrapped by
 //! repetition); fetches are bilinear on the finest level.

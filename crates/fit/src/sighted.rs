@@ -1,8 +1,8 @@
 //! A training view's pixels before their coordinates shift: what fits of maps and checks of them
-//! read again and again, so that no view has to be walked twice.
+//! read again and again, so that no view has to be walked for them twice.
 //!
-//! Contract: directions and light are rounded to 32767ths, which moves a shift by a thirty
-//! thousandth of its length; pixels are in the walk's order (`view_walk.rs`).
+//! Contract: directions and light are rounded to 32767ths, which moves a shift by up to some ten
+//! thousandths of its length, where sight is grazing; pixels are in the walk's order (`view_walk.rs`).
 
 use crate::reference::Reference;
 use crate::samples::{packed, unpacked};

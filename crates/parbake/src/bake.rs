@@ -7,7 +7,7 @@
 //!   (normals)    (vertices) (coordinates) (texel map, charts)  (cutout, parallax)
 //! ```
 
-use crate::bridge::{Bridge, Clock};
+use crate::bridge::{Bridge, Clock, shares};
 use crate::check::{check_mesh, warning};
 use crate::depth::{Depth, DepthMaps, fit_depth};
 use crate::error::BakeError;
@@ -50,15 +50,6 @@ pub struct Baked {
     pub report: BakeReport,
     /// The way of the texture coordinates through the run, where they moved.
     pub uv_moves: Option<UvMoves>,
-}
-
-/// The shares of stages in the time that a budget leaves them: textures are worth most, and
-/// what reference pictures show must be solved for.
-pub(crate) mod shares {
-    pub const SHAPE: f64 = 0.2;
-    pub const UNFOLD: f64 = 0.15;
-    pub const REFERENCE: f64 = 0.25;
-    pub const DEPTH: f64 = 0.35;
 }
 
 /// Bakes the high-poly's look onto the low-poly.

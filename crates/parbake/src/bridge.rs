@@ -8,6 +8,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+/// The shares of stages in the time that a budget leaves them: textures are worth most, and
+/// what reference pictures show must be solved for.
+pub(crate) mod shares {
+    pub const SHAPE: f64 = 0.2;
+    pub const UNFOLD: f64 = 0.15;
+    pub const REFERENCE: f64 = 0.25;
+    pub const DEPTH: f64 = 0.35;
+}
+
 /// Passes the stages' messages on, and their question whether to stop.
 pub(crate) struct Bridge<'a, W> {
     watcher: &'a W,

@@ -9,8 +9,7 @@
 //! Contract: what is not moved keeps its value to the bit; with nothing to move there is no copy.
 
 use crate::algorithm_one::algorithm_one;
-use crate::bake::shares;
-use crate::bridge::{Bridge, Clock};
+use crate::bridge::{Bridge, Clock, shares};
 use crate::error::BakeError;
 use crate::message::{Stage, Watcher};
 use crate::options::{BakeOptions, UvMode};

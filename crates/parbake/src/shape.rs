@@ -166,7 +166,7 @@ fn in_world(mesh: &Mesh, map: &TexelMap, normals: &Canvas) -> Canvas {
 #[cfg(test)]
 mod tests {
     use crate::options::{BakeOptions, Method, Preset, ShapeMode, UvMode};
-    use crate::{bake, demo_pair};
+    use crate::{bake, demo_pair, with_threads};
     use parbake_model::Mesh;
 
     fn quick(shape: ShapeMode) -> BakeOptions {
@@ -209,6 +209,22 @@ mod tests {
             let report = baked.report.shape.unwrap();
             assert!(report.steps > 0 && report.moved[1] > report.moved[0] && report.moved[0] > 0.0);
         }
+    }
+
+    /// Protects views of half the size, with which vertices that are far off begin: they bring outlines
+    /// closer, the mesh stays what it was, and threads change nothing.
+    #[test]
+    fn coarse_views_bring_outlines_closer_whatever_the_number_of_threads() {
+        let (high, low) = demo_pair();
+        let options = BakeOptions { view_size: Some(128), ..quick(ShapeMode::Free) };
+        let baked = |threads| with_threads(threads, || bake(&high, &low, &options, &())).unwrap().unwrap();
+        let one = baked(1);
+        assert!(one.model == baked(3).model, "threads change the result");
+        assert!(is_sane(&low.mesh, &one.model.mesh));
+        let report = one.report.shape.unwrap();
+        // In pixels, of which 128 show 1.4 times the model's length: coarse views are used at all.
+        assert!(128.0 / 1.4 * report.gap[0] > 1.1, "{:?}", report.gap);
+        assert!(report.gap[1] < 0.8 * report.gap[0], "{:?}", report.gap);
     }
 
     /// Protects who wants their vertices as they are.

@@ -480,7 +480,7 @@ fn display_with_derivative(bencher: Bencher) {
     });
 }
 
-/// The same from the table that the solvers use.
+/// The same from the table that the composer and the solvers use.
 #[divan::bench]
 fn display_table_with_derivative(bencher: Bencher) {
     let b = Bench::new();

@@ -5,6 +5,8 @@
 //! Adjoint: `dL/drgb = gain · curve'(x) · dL/de`, `dL/da = −Σ background · curve'(x) · dL/de`.
 //! The curve is read from a table (`display_table.rs`), in a quarter of the time of three powers.
 //!
+//! Contract: no light is below 0, no alpha above 1; the table knows nothing of darker than dark.
+//!
 //! A fit on one background learns to paint that colour where the model ought to end;
 //! backgrounds that change from view to view leave nothing to gain by it. Plain greys
 //! are no help against grey models, so [`Background::Random`] draws black, white and
@@ -147,6 +149,7 @@ fn compose(curve: Option<&DisplayTable>, light: [f32; 3]) -> Composed {
         return Composed { value: light, slope: [1.0; 3] };
     };
     let [r, g, b] = light;
+    // `map` on an array is a call here.
     let [r, g, b] =
         [curve.encode_with_derivative(r), curve.encode_with_derivative(g), curve.encode_with_derivative(b)];
     Composed { value: [r.0, g.0, b.0], slope: [r.1, g.1, b.1] }

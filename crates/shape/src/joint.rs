@@ -184,8 +184,8 @@ pub fn fit_shape(
     let mut moving = MovingPoints::new(&points, options.motion, rate);
     let mut provisional = MovingTexture::new(start, options.texture_rate, |n| n.normalize_or(Vec3::Z));
     let mut losses = Vec::new();
-    let coarse_steps = coarse_steps(gap_in_pixels, size, options);
-    let halved: Vec<Rendered> = match coarse_steps {
+    let coarse_until = coarse_steps(gap_in_pixels, size, options);
+    let halved: Vec<Rendered> = match coarse_until {
         0 => Vec::new(),
         _ => references.par_iter().map(Rendered::halved).collect(),
     };
@@ -201,7 +201,7 @@ pub fn fit_shape(
         let views: Vec<(usize, u64)> = (first..first + options.views_per_step)
             .map(|i| (i % references.len(), mixed(options.seed ^ mixed(i as u64))))
             .collect();
-        fit.views = if step < coarse_steps { coarse } else { fine };
+        fit.views = if step < coarse_until { coarse } else { fine };
         let Judgement { loss, gradients, .. } = fit.look(moving.at(), &provisional.texture, &views);
         losses.push(loss);
         let share = rate_at(step, options.steps);
@@ -232,12 +232,13 @@ pub fn fit_shape(
     }
 }
 
-/// How many steps look at views of half the size.
+/// How many steps look at views of half the size; none where such a view would not show the same
+/// field, as half of an odd size does not.
 fn coarse_steps(gap_in_pixels: f64, size: usize, options: &ShapeOptions) -> usize {
-    if size < 2 * LEAST_COARSE {
+    if size < 2 * LEAST_COARSE || !size.is_multiple_of(2) {
         return 0;
     }
-    ((gap_in_pixels - 1.0).clamp(0.0, options.coarse) * options.steps as f64).ceil() as usize
+    ((gap_in_pixels - WIDE_GAP).clamp(0.0, options.coarse) * options.steps as f64).ceil() as usize
 }
 
 fn scaled(mut gradient: Vec<Vec3>, by: f32) -> Vec<Vec3> {
@@ -252,4 +253,19 @@ fn pixel_width(camera: &Camera, size: usize) -> f32 {
         Projection::Orthographic(half) => half,
     };
     2.0 * half / size as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects outlines that are close from coarse views, which would not show them, and all from
+    /// views that are too small or show another field.
+    #[test]
+    fn coarse_views_serve_where_outlines_are_far_apart() {
+        let options = ShapeOptions { steps: 100, coarse: 0.5, ..ShapeOptions::default() };
+        let at = |gap, size| coarse_steps(gap, size, &options);
+        assert_eq!([at(0.7, 160), at(1.25, 160), at(9.0, 160)], [0, 25, 50]);
+        assert_eq!([at(9.0, 126), at(9.0, 128), at(9.0, 129)], [0, 50, 0]);
+    }
 }

@@ -67,7 +67,7 @@ pub struct GaussSeidel<'a> {
 pub type Blocks = [[DMat2; 2]; 2];
 
 /// Triangles whose blocks are made at a time, while those before are added up.
-const AT_ONCE: usize = 4096;
+const AT_ONCE: usize = 16_384;
 
 impl<'a> GaussSeidel<'a> {
     /// The sum of what `blocks` gives for each of F triangles and of `shift` > 0 on the diagonal; for
@@ -87,7 +87,7 @@ impl<'a> GaussSeidel<'a> {
         };
         let made = |part: usize| -> Vec<Blocks> {
             let end = triangles.len().min((part + 1) * AT_ONCE);
-            (part * AT_ONCE..end).map(&blocks).collect()
+            (part * AT_ONCE..end).into_par_iter().map(&blocks).collect()
         };
         let mut next = made(0);
         for part in 0..triangles.len().div_ceil(AT_ONCE) {

@@ -74,7 +74,10 @@ impl Patch {
         let s = w * weight;
         let place = (texel[1] - self.origin[1]) * self.width + texel[0] - self.origin[0];
         let (upper, lower) = self.sums[place..].split_at_mut(self.width);
-        let ([a, b, ..], [c, d, ..]) = (upper, lower) else { return };
+        let ([a, b, ..], [c, d, ..]) = (upper, lower) else {
+            debug_assert!(false, "a patch has room for the four texels of each of its samples");
+            return;
+        };
         a.couplings += w * s.x;
         a.right += target * s.x;
         b.couplings += Vec4::new(w.y, 0.0, w.w, 0.0) * s.y;

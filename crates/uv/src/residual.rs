@@ -99,6 +99,7 @@ fn on_level(place: &OnLevel, samples: &[Sample], texels: &[Vec4], size: usize) -
     for sample in samples {
         let ([x, y], [fx, fy], [dx, dy]) = place.place(sample);
         let texel = y * size + x;
+        // Two checks of bounds rather than four.
         let (upper, lower) = (&texels[texel..texel + 2], &texels[texel + size..texel + size + 2]);
         let (a, b, c, d) = (upper[0], upper[1], lower[0], lower[1]);
         let (upper, lower) = (a + (b - a) * fx, c + (d - c) * fx);

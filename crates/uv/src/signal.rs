@@ -37,8 +37,8 @@ pub enum Pixels {
     /// Without a size, for what never minifies.
     #[default]
     Sizeless,
-    /// One kind on even triangles, another on odd ones, as on a plane of cells: a third of what is
-    /// read there otherwise.
+    /// One kind on even triangles, another on odd ones, as on a plane of cells, where F entries would
+    /// be a third of all that a pass over the samples reads.
     ByTurns([DMat2; 2]),
     /// F entries.
     Each(Vec<DMat2>),

@@ -25,8 +25,8 @@ const ROOM: f64 = 0.25;
 /// see, a better picture at full size is worth nothing, and coordinates that were drawn out for it cost
 /// parallax maps 0.2 to 0.3 dB. A model's own smaller texture need only not be worse.
 const MINIFIED: f64 = 0.95;
-/// A low-poly's that is still worse than that by this much after a turn stays so: further turns bring it a
-/// hundredth nearer.
+/// Minified errors that are above that by more than this after a turn stay so: further turns bring them
+/// a hundredth nearer.
 const HOPELESS: f64 = 0.05;
 /// Turns of the refinement; in between showings are weighted anew.
 const TURNS: usize = 3;
@@ -128,9 +128,9 @@ impl<W: Watcher> Steps<'_, W> {
     }
 }
 
-/// Moves the layout, which leaves this error in total, to the better one of the signal-specialised starts, and
-/// returns the way there. The start is a guess: how plain the plain is depends on the texture's size, and where both guesses are bad,
-/// none is better.
+/// Moves the layout, which leaves this error in total, to the better one of the signal-specialised
+/// starts, and returns the way there. The start is a guess: how plain the plain is depends on the
+/// texture's size, and where both guesses are bad, none is better.
 fn shaped<W: Watcher>(
     judge: &Judge,
     layout: &mut Layout,
@@ -185,13 +185,13 @@ fn refined<W: Watcher>(
         let relative = judge.relative(&layout);
         // By what the texture that will be solved for leaves.
         balance.update(&relative);
-        let worst_minified = relative[1..].iter().copied().fold(0.0, f64::max);
-        let sound = relative[0] < WORTH_IT && worst_minified < minified;
+        let sound = relative[0] < WORTH_IT && relative[1..].iter().all(|error| *error < minified);
+        let lost = relative[1..].iter().any(|error| *error > hopeless);
         let sum: f64 = relative.iter().sum();
         if sound && best.as_ref().is_none_or(|(least, ..)| sum < *least) {
             best = Some((sum, layout.clone(), relative));
         }
-        if steps.watcher.stopped() || worst_minified > hopeless {
+        if steps.watcher.stopped() || lost {
             break;
         }
     }
