@@ -2,8 +2,12 @@
 //!
 //! The surface stays, so nothing has to be seen from anywhere: what the texture shall show is
 //! read off the model's own texture all over its surface, texture coordinates are moved for
-//! it, and the texture is one least-squares problem, mip levels included. Colours are
-//! compared as they are stored, as when a picture is scaled.
+//! it, and the texture is one least-squares problem, mip levels included.
+//!
+//! Texels are compared as they are stored, as when a picture is scaled. So are the colours that
+//! coordinates are moved for, which is about what viewers of glTF show; in the paper's pictures
+//! stored values are light, and its curve makes far more of dark colours: by that convention
+//! they are compared as shown.
 
 use crate::bake::{Baked, bake_pair};
 use crate::bridge::Bridge;
@@ -23,7 +27,7 @@ const STEPS_FACTOR: usize = 8;
 /// Bakes a model onto itself with a smaller texture.
 ///
 /// A model with a normal map is baked as a pair is, since its normal map must follow the
-/// coordinates; `options.convention` is not looked at otherwise.
+/// coordinates.
 ///
 /// # Errors
 /// As of [`crate::bake`].
@@ -36,13 +40,14 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         return bake_pair(model, model, true, options, watcher);
     }
     options.check()?;
-    let options = &BakeOptions { convention: Convention::Paper, ..options.clone() };
     let begin = Instant::now();
     let watcher = &Bridge::new(watcher, begin, options.time_budget);
     let frame = common_frame(model)?;
-    let interpretation = options.convention.interpretation();
+    // Colours are read as they are stored.
+    let interpretation = Convention::Paper.interpretation();
     let scene = Scene::new(placed(model, &frame), &model.materials, &model.images, interpretation);
-    let source = Source { scene: &scene, surface: None, reach: 0.0, encode: false };
+    let stored = Source { scene: &scene, surface: None, reach: 0.0, encode: false, pixel: Source::SAMPLE };
+    let shown = Source { encode: options.convention == Convention::Paper, ..stored };
     let mut stages = Vec::new();
     let mut lap = |stage, since: &mut Instant| {
         stages.push(StageTime { stage, seconds: since.elapsed().as_secs_f64() });
@@ -53,11 +58,11 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     let solved = |low: &Model| {
         let mut mesh = low.mesh.clone();
         frame.apply(&mut mesh);
-        solve_on_surface(&mesh, &source, options.texture_size)
+        solve_on_surface(&mesh, &stored, options.texture_size)
             .ok_or_else(|| BakeError::FlatTextureCoordinates { model: model.name.clone() })
     };
     let as_it_is = options.unfold_as(UvMode::Keep);
-    let kept = unfold(mend(model, &as_it_is)?, &frame, &source, &as_it_is, watcher);
+    let kept = unfold(mend(model, &as_it_is)?, &frame, &shown, &as_it_is, watcher);
     if kept.model.mesh.uvs.is_empty() {
         return Err(BakeError::NoTextureCoordinates { model: model.name.clone() });
     }
@@ -67,7 +72,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     let factor = if options.method == Method::Fit { STEPS_FACTOR } else { 1 };
     let steps = options.uv_steps.unwrap_or(factor * asked.steps);
     let asked = UnfoldOptions { steps, ..asked };
-    let mut unfolded = unfold(mend(model, &asked)?, &frame, &source, &asked, watcher);
+    let mut unfolded = unfold(mend(model, &asked)?, &frame, &shown, &asked, watcher);
     lap(Stage::Unfold, &mut since);
     let written = solved(&unfolded.model)?;
     lap(Stage::Solve, &mut since);

@@ -62,6 +62,7 @@ pub fn move_geometry<W: Watcher>(
         surface: (!same).then_some(target.surface),
         reach: target.reach,
         encode: target.srgb,
+        pixel: Source::PIXEL,
     };
     let mut unfolded = unfold(low, frame, &source, &unfold_options, &bridge.share(shares::UNFOLD));
     clock.lap(Stage::Unfold);

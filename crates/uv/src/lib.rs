@@ -3,7 +3,8 @@
 //! ```text
 //! signal, runs                        what the surface shall show
 //! footprint, pyramid                  where that falls, on which mip level
-//! normal_matrix, best_texture         the best texture for given coordinates
+//! normal_matrix, normal_equations,
+//! best_texture, rounding              the best texture for given coordinates, and in bytes
 //! residual, shown                     what it leaves: as minimised, and as seen
 //! distortion, metric                  energies of triangles; the signal's structure tensors
 //! contact, inversion, region          what keeps a layout bijective
@@ -25,12 +26,14 @@ pub mod inversion;
 pub mod laplacian;
 pub mod lbfgs;
 pub mod metric;
+pub(crate) mod normal_equations;
 pub mod normal_matrix;
 pub mod optimise;
 pub mod paper;
 pub mod pyramid;
 pub mod region;
 pub mod residual;
+pub(crate) mod rounding;
 pub mod runs;
 pub mod shown;
 pub mod signal;

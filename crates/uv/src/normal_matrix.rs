@@ -1,7 +1,8 @@
 //! The normal matrix of a bilinear texture that is clamped at its borders: nine points a
 //! texel, symmetric, one number for all channels.
 //!
-//! Forward: [`NormalMatrix::add_product`] is `y += A x`. The matrix is its own adjoint.
+//! Forward: [`NormalMatrix::add_product`] is `y += A x`, [`NormalMatrix::add_column`] the same for an x
+//! that is zero but for one texel. The matrix is its own adjoint.
 
 use glam::Vec4;
 use rayon::prelude::*;
@@ -177,6 +178,41 @@ impl NormalMatrix {
         }
     }
 
+    /// `y += A eᵢ v`: what texel i, in column and row `place`, adds where it is `v`.
+    #[inline]
+    pub fn add_column(&self, place: [usize; 2], v: Vec4, y: &mut [Vec4]) {
+        let (size, rows) = (self.size, &self.rows);
+        let at = place[1] * size + place[0];
+        let (row, west, east) = (&rows[at], place[0] > 0, place[0] + 1 < size);
+        if place[1] > 0 {
+            let above = at - size;
+            if west {
+                y[above - 1] += v * rows[above - 1].south_east;
+            }
+            y[above] += v * rows[above].south;
+            if east {
+                y[above + 1] += v * rows[above + 1].south_west;
+            }
+        }
+        if west {
+            y[at - 1] += v * rows[at - 1].east;
+        }
+        y[at] += v * row.centre;
+        if east {
+            y[at + 1] += v * row.east;
+        }
+        if place[1] + 1 < size {
+            let below = at + size;
+            if west {
+                y[below - 1] += v * row.south_west;
+            }
+            y[below] += v * row.south;
+            if east {
+                y[below + 1] += v * row.south_east;
+            }
+        }
+    }
+
     /// One texel's product, wherever it lies.
     fn near_border(&self, column: usize, y: usize, x: &[Vec4]) -> Vec4 {
         let (size, rows) = (self.size, &self.rows);
@@ -238,5 +274,11 @@ mod tests {
         matrix.add_product(&x, &mut y);
         let energy: f32 = x.iter().zip(&y).map(|(a, b)| a.x * b.x).sum();
         assert!((energy / want - 1.0).abs() < 1e-4);
+        // Column by column it is the same.
+        let mut by_columns = vec![Vec4::ZERO; 25];
+        for (i, &v) in x.iter().enumerate() {
+            matrix.add_column([i % size, i / size], v, &mut by_columns);
+        }
+        assert!(y.iter().zip(&by_columns).all(|(a, b)| (a.x - b.x).abs() < 1e-4));
     }
 }

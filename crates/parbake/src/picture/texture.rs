@@ -2,7 +2,7 @@
 //! picture at its sizes.
 
 use parbake_atlas::Layout;
-use parbake_uv::best_texture::{Mapped, Solve, Texture, best_texture_in_box};
+use parbake_uv::best_texture::{Mapped, Solve, Texture, best_texture_in_bytes};
 use parbake_uv::runs::Runs;
 use parbake_uv::shown::shown_errors;
 use parbake_uv::signal::Signal;
@@ -11,9 +11,7 @@ use parbake_uv::signal::Signal;
 pub fn written_texture(layout: &Layout, showings: &[Signal], start: Texture) -> Texture {
     let runs = Runs::new(&layout.points, &layout.triangles, &showings[0]);
     let mapped = Mapped { points: &layout.points, triangles: &layout.triangles, showings, runs: &runs };
-    let mut texture = best_texture_in_box(&mapped, start, &Solve::FINAL);
-    texture.texels.iter_mut().for_each(|t| *t = (*t * 255.0).round() / 255.0);
-    texture
+    best_texture_in_bytes(&mapped, start, &Solve::FINAL)
 }
 
 /// Mean squared errors of the sizes at which the picture is shown, by channel.

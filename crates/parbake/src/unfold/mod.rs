@@ -29,7 +29,7 @@ use parbake_atlas::{
 use parbake_mesh::ensure_normals;
 use parbake_model::glam::{DVec2, Vec2, Vec4};
 use parbake_model::{Material, Mesh, Model, Placement};
-use parbake_uv::best_texture::{Mapped, Solve, Texture, best_texture_in_box};
+use parbake_uv::best_texture::{Mapped, Solve, Texture, best_texture_in_box, best_texture_in_bytes};
 use parbake_uv::contact::{Border, ContactOptions};
 use parbake_uv::optimise::Problem;
 use parbake_uv::paper::Guide;
@@ -38,7 +38,7 @@ use parbake_uv::shown::shown_errors;
 use parbake_uv::signal::Signal;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use surface_signal::showings;
+use surface_signal::{FORESHORTENED, FULL_AND_HALF, Size, showings};
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -93,11 +93,11 @@ pub struct Unfolded {
 
 /// Samples for each texel of a texture that is solved for on the surface.
 const SAMPLES_PER_TEXEL: usize = 8;
-/// Samples of the surface at most while coordinates move.
+/// Samples of a low-poly's surface at most while coordinates move…
 const MOST_SAMPLES: usize = 400_000;
-/// Width of a pixel in the common frame, in which a model is 2 long: a model that fills
-/// some 700 pixels.
-const PIXEL: f64 = 2.8 / 1024.0;
+/// …and of a model's own: with fewer, small textures of plainly coloured parts follow the samples (mask,
+/// 128²: 1 dB more than with 131,000).
+const OWN_SAMPLES: usize = 800_000;
 
 /// A copy of a model whose texture coordinates are mended or made anew as the mode asks, for a
 /// texture of this size, and not moved.
@@ -234,8 +234,11 @@ struct Moved {
 
 /// What the surface shows at its sizes; None where nothing of it is seen.
 fn signal(mesh: &Mesh, start: &Layout, source: &Source, size: usize) -> Option<Vec<Signal>> {
-    let most = MOST_SAMPLES.min((8 * size * size).max(1 << 16));
-    let showings = showings(mesh, &start.rest, source, PIXEL, most);
+    let most = match source.surface {
+        Some(_) => MOST_SAMPLES.min((8 * size * size).max(1 << 16)),
+        None => OWN_SAMPLES,
+    };
+    let showings = showings(mesh, &start.rest, source, &FULL_AND_HALF, most);
     (!showings[0].samples.is_empty()).then_some(showings)
 }
 
@@ -250,11 +253,14 @@ fn contact(asked: &UnfoldOptions, activation_texels: f64) -> ContactOptions {
     }
 }
 
-/// What 8-bit texels leave of each showing, with the texture that will be solved for: for all
-/// sizes at once where `all_sizes` says so, else for the full one.
+/// What 8-bit texels leave of each showing, with a texture that is about the one that will be
+/// solved for: for all sizes at once where `all_sizes` says so, else for the full one.
 fn errors(problem: &Problem, layout: &Layout, all_sizes: bool) -> Vec<f64> {
     let solved = if all_sizes { problem.showings } else { &problem.showings[..1] };
-    let texture = surface_texture(layout, solved, problem.texture_size, &Solve { steps: 40, ..Solve::ROUGH });
+    let start = Texture::solid(problem.texture_size, Vec4::splat(0.5));
+    let rough = Solve { steps: 40, ..Solve::ROUGH };
+    let mut texture = best_texture_in_box(&mapped(layout, solved, &runs(layout, solved)), start, &rough);
+    texture.texels.par_iter_mut().for_each(|t| *t = (*t * 255.0).round() / 255.0);
     shown_errors(&mapped(layout, problem.showings, &runs(layout, problem.showings)), &texture)
 }
 
@@ -266,38 +272,35 @@ fn mapped<'a>(layout: &'a Layout, showings: &'a [Signal], runs: &'a Runs) -> Map
     Mapped { points: &layout.points, triangles: &layout.triangles, showings, runs }
 }
 
-/// The best texture of 8-bit texels for a surface's signal.
-fn surface_texture(layout: &Layout, showings: &[Signal], size: usize, solve: &Solve) -> Texture {
-    let runs = runs(layout, showings);
-    let start = Texture::solid(size, Vec4::splat(0.5));
-    let mut texture = best_texture_in_box(&mapped(layout, showings, &runs), start, solve);
-    texture.texels.par_iter_mut().for_each(|t| *t = (*t * 255.0).round() / 255.0);
-    texture
-}
-
 /// A texture solved for on the surface alone.
 pub struct SurfaceTexture {
-    /// Its stored values.
+    /// Its stored values, 255ths.
     pub texture: Texture,
     /// Mean squared errors of the three colour channels at full size and half.
-    pub errors: Vec<f64>,
+    pub errors: [f64; 2],
     /// Samples it was solved for.
     pub samples: usize,
 }
 
-/// Solves for a mesh's texture without any view: for the surface at full size and half,
-/// mip levels included. The mesh lies in the common frame. None where it has no area.
+/// Solves for a mesh's texture without any view: for the surface as it is seen from all around, mip
+/// levels included. The mesh lies in the common frame. None where it has no area.
 pub fn solve_on_surface(mesh: &Mesh, source: &Source, size: usize) -> Option<SurfaceTexture> {
     let layout = Layout::new(mesh);
-    let most = (SAMPLES_PER_TEXEL * size * size).clamp(1 << 18, 1 << 22);
-    let showings = showings(mesh, &layout.rest, source, PIXEL, most);
+    let most = (SAMPLES_PER_TEXEL * size * size).clamp(1 << 21, 1 << 22);
+    let showings = showings(mesh, &layout.rest, source, &FORESHORTENED, most);
     if showings[0].samples.is_empty() {
         return None;
     }
-    let texture = surface_texture(&layout, &showings, size, &Solve::FINAL);
-    let errors = shown_errors(&mapped(&layout, &showings, &runs(&layout, &showings)), &texture);
-    let samples = showings.iter().map(|s| s.samples.len()).sum();
-    Some(SurfaceTexture { texture, errors: errors.into_iter().map(|e| e / 3.0).collect(), samples })
+    let runs = runs(&layout, &showings);
+    let mapped = mapped(&layout, &showings, &runs);
+    let texture = best_texture_in_bytes(&mapped, Texture::solid(size, Vec4::splat(0.5)), &Solve::FINAL);
+    let left = shown_errors(&mapped, &texture);
+    let errors = FULL_AND_HALF.map(|at| {
+        let own = |(size, _): &(&Size, &f64)| size.width == at.width;
+        let found = FORESHORTENED.iter().zip(&left).find(own);
+        found.map_or(0.0, |(size, left)| left / (3.0 * size.share))
+    });
+    Some(SurfaceTexture { texture, errors, samples: showings.iter().map(|s| s.samples.len()).sum() })
 }
 
 fn as_f32(points: &[DVec2]) -> Vec<Vec2> {

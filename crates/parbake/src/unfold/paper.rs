@@ -16,7 +16,7 @@
 //! is better.
 
 use super::surface_signal::Source;
-use super::{Moved, PIXEL, UnfoldOptions, UnfoldReport, as_f32, contact, errors, signal};
+use super::{Moved, UnfoldOptions, UnfoldReport, as_f32, contact, errors, signal};
 use crate::message::{Message, Stage, Watcher};
 use parbake_atlas::Layout;
 use parbake_model::Mesh;
@@ -102,7 +102,7 @@ pub fn moved(
 fn scale(start: &Layout, texture_size: usize) -> f64 {
     let drawn: f64 = (0..start.triangles.len()).map(|t| 0.5 * start.doubled_area(t).max(0.0)).sum();
     let at_rest = (total_area(&start.rest) / drawn.max(f64::MIN_POSITIVE)).sqrt();
-    (PIXEL * texture_size as f64).min(at_rest)
+    (Source::PIXEL * texture_size as f64).min(at_rest)
 }
 
 #[cfg(test)]

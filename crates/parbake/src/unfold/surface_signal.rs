@@ -15,6 +15,7 @@ use parbake_uv::signal::{Pixels, Sample, Signal};
 use rayon::prelude::*;
 
 /// Where the signal comes from.
+#[derive(Clone, Copy)]
 pub struct Source<'a> {
     /// The high-poly.
     pub scene: &'a Scene,
@@ -23,29 +24,56 @@ pub struct Source<'a> {
     pub surface: Option<&'a HighSurface>,
     /// How far projection looks to either side, in the common frame.
     pub reach: f32,
-    /// Whether colours are linear and are compared as sRGB.
+    /// Whether colours are shown by sRGB's curve before they are compared.
     pub encode: bool,
+    /// Width of a sample of a view that sees the surface from straight above, in the common frame.
+    pub pixel: f64,
 }
+
+impl Source<'_> {
+    /// Width of a pixel of views that a low-poly is fitted to: it fills some 700 of them.
+    pub const PIXEL: f64 = 2.8 / 1024.0;
+    /// Width of a sample of views that a model's own texture is made for: a model that fills 512²
+    /// pixels of four samples each, where it is nearest.
+    pub const SAMPLE: f64 = 0.0021;
+}
+
+/// A size at which a surface is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Size {
+    /// Width of a sample as a multiple of [`Source::pixel`].
+    pub width: f64,
+    /// How much it counts.
+    pub share: f64,
+}
+
+/// The surface as it is seen from straight above, and from twice as far.
+pub const FULL_AND_HALF: [Size; 2] = [Size { width: 1.0, share: 1.0 }, Size { width: 2.0, share: 1.0 }];
+
+/// The surface as views all around see it. A fetch is as wide as the longer side of what a sample
+/// covers, 1 / cos times as wide as from straight above; of what views see of a round body, the
+/// share c² has a cosine below c. The widths are an octave apart or half of one.
+pub const FORESHORTENED: [Size; 4] = [
+    Size { width: 1.0, share: 0.29 },
+    Size { width: std::f64::consts::SQRT_2, share: 0.35 },
+    Size { width: 2.0, share: 0.23 },
+    Size { width: 4.0, share: 0.13 },
+];
 
 /// How much a normal's change counts against a colour's: light from the camera turns a
 /// change of the angle into about this share of the colour, over the visible half-sphere.
 const NORMAL_WEIGHT: f32 = 0.5;
 
-/// The surface at two sizes: with pixels of width `pixel`, in the common frame, and twice
-/// that. At most about `most` samples are taken at the first one.
-pub fn showings(mesh: &Mesh, rest: &[DMat2], source: &Source, pixel: f64, most: usize) -> Vec<Signal> {
-    let area = total_area(rest);
-    [1.0, 2.0]
-        .into_iter()
-        .map(|size| {
-            let own = pixel * size;
-            let spacing = own.max((area / (most as f64 / (size * size))).sqrt());
-            showing(mesh, rest, source, own, spacing)
-        })
-        .collect()
+/// The surface at these sizes: a sample for each that views take, at most about `most` where the
+/// width is 1 and in proportion at the others.
+pub fn showings(mesh: &Mesh, rest: &[DMat2], source: &Source, sizes: &[Size], most: usize) -> Vec<Signal> {
+    let least = (total_area(rest) / most as f64).sqrt();
+    let spacing = source.pixel.max(least);
+    sizes.iter().map(|size| showing(mesh, rest, source, size, spacing * size.width)).collect()
 }
 
-fn showing(mesh: &Mesh, rest: &[DMat2], source: &Source, pixel: f64, spacing: f64) -> Signal {
+fn showing(mesh: &Mesh, rest: &[DMat2], source: &Source, size: &Size, spacing: f64) -> Signal {
+    let pixel = source.pixel * size.width;
     let total = total_area(rest);
     // What one triangle is too small for goes to the next: the sum is right.
     let mut carried = 0.0;
@@ -59,7 +87,7 @@ fn showing(mesh: &Mesh, rest: &[DMat2], source: &Source, pixel: f64, spacing: f6
         })
         .collect();
     let all: usize = counts.iter().sum();
-    let weight = 1.0 / all.max(1) as f32;
+    let weight = size.share as f32 / all.max(1) as f32;
     let samples: Vec<(u32, Sample)> = (counts.par_iter().enumerate())
         .flat_map_iter(|(t, &count)| {
             (0..count).filter_map(move |i| {

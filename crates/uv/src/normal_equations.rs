@@ -1,0 +1,132 @@
+//! The normal equations `A x = b` of the best texture for given texture coordinates
+//! (`best_texture.rs` has the problem): `A = Σ_l Dˡᵀ Aˡ Dˡ` is kept as one nine-point matrix a mip
+//! level and is never multiplied out.
+//!
+//! Contract: all channels share the matrix; sums are made run by run in order, so that they do not
+//! depend on the number of threads.
+
+use crate::best_texture::Mapped;
+use crate::footprint::{Footprint, OnLevel, shares};
+use crate::normal_matrix::{NormalMatrix, Patch};
+use crate::pyramid::{gather, level_count, levels};
+use crate::signal::{Sample, Signal};
+use glam::Vec4;
+use rayon::prelude::*;
+
+/// The normal equations: one matrix a level, the first with the smoothness.
+pub(crate) struct NormalEquations {
+    /// Texels along a side.
+    pub size: usize,
+    /// Of the texture itself, and of each time it is halved.
+    pub levels: Vec<NormalMatrix>,
+    /// Right-hand side of the texture itself.
+    pub right: Vec<Vec4>,
+    /// Inverse of the whole matrix's diagonal.
+    pub inverse: Vec<f32>,
+}
+
+impl NormalEquations {
+    /// The sums over all samples of all showings.
+    pub fn assemble(mapped: &Mapped, size: usize, smoothness: f32) -> Self {
+        let count = level_count(size);
+        let runs: Vec<Vec<Patch>> =
+            (0..mapped.runs.count()).into_par_iter().map(|run| patches(mapped, run, size, count)).collect();
+        let used = (0..count)
+            .rev()
+            .find(|&level| runs.iter().any(|patches| !patches[level].is_empty()))
+            .map_or(1, |level| level + 1);
+        let mut levels: Vec<NormalMatrix> = (0..used)
+            .map(|level| NormalMatrix::sum(size >> level, runs.iter().map(|patches| &patches[level])))
+            .collect();
+        let weight: f64 = mapped.showings.iter().map(Signal::weight).sum();
+        let mean = weight as f32 / (size * size) as f32;
+        levels[0].add_smoothness((smoothness * mean).max(1e-20));
+        let mut rights: Vec<Vec<Vec4>> = levels.iter_mut().map(|m| std::mem::take(&mut m.right)).collect();
+        gather(&mut rights, size);
+        let inverse = (0..size * size)
+            .into_par_iter()
+            .map(|texel| {
+                let (x, y) = (texel % size, texel / size);
+                let diagonal: f32 = levels
+                    .iter()
+                    .enumerate()
+                    .map(|(l, m)| m.rows[(y >> l) * m.size + (x >> l)].centre / (1 << (4 * l)) as f32)
+                    .sum();
+                1.0 / diagonal.max(1e-30)
+            })
+            .collect();
+        Self { size, levels, right: rights.swap_remove(0), inverse }
+    }
+
+    /// `A x`.
+    pub fn product(&self, x: &[Vec4]) -> Vec<Vec4> {
+        if let [only] = &self.levels[..] {
+            let mut y = vec![Vec4::ZERO; x.len()];
+            only.add_product(x, &mut y);
+            return y;
+        }
+        let pyramid = levels(x, self.size, self.levels.len());
+        let mut products: Vec<Vec<Vec4>> = pyramid.iter().map(|l| vec![Vec4::ZERO; l.len()]).collect();
+        for ((matrix, x), y) in self.levels.iter().zip(&pyramid).zip(&mut products) {
+            matrix.add_product(x, y);
+        }
+        gather(&mut products, self.size);
+        products.swap_remove(0)
+    }
+
+    /// `b − A x`.
+    pub fn residual(&self, x: &[Vec4]) -> Vec<Vec4> {
+        let mut r = self.product(x);
+        r.par_iter_mut().zip(&self.right).for_each(|(r, b)| *r = *b - *r);
+        r
+    }
+}
+
+/// What a run of triangles adds to the matrices of the `count` levels.
+fn patches(mapped: &Mapped, run: usize, size: usize, count: usize) -> Vec<Patch> {
+    let mut parts: Vec<Vec<Part>> = vec![Vec::new(); count];
+    for t in mapped.runs.triangles(run) {
+        let footprint = Footprint::new(mapped.points, mapped.triangles[t]);
+        for signal in mapped.showings {
+            let samples = signal.of(t);
+            if !samples.is_empty() {
+                let shown = footprint.level(signal.pixels.of(t), size, count);
+                for (level, share) in shares(&shown) {
+                    parts[level].push(Part { place: footprint.on(size >> level), samples, share });
+                }
+            }
+        }
+    }
+    parts.into_iter().enumerate().map(|(level, parts)| patch(&parts, size >> level)).collect()
+}
+
+/// A triangle's samples on one level, of whose error this share counts.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    place: OnLevel,
+    samples: &'a [Sample],
+    share: f32,
+}
+
+/// What these parts add to the matrix of a level of `size`² texels.
+fn patch(parts: &[Part], size: usize) -> Patch {
+    if parts.is_empty() {
+        return Patch::default();
+    }
+    let (mut low, mut high) = ([size; 2], [0; 2]);
+    for part in parts {
+        let [from, to] = part.place.bounds();
+        for k in 0..2 {
+            low[k] = low[k].min(from[k]);
+            high[k] = high[k].max(to[k]);
+        }
+    }
+    let mut patch = Patch::new(low, high);
+    for part in parts {
+        for sample in part.samples {
+            let (texel, fractions, _) = part.place.place(sample);
+            patch.add_sample(texel, fractions, sample.weight * part.share, sample.target);
+        }
+    }
+    patch
+}
