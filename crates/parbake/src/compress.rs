@@ -16,7 +16,7 @@ use crate::message::{Message, Stage, Watcher};
 use crate::options::{BakeOptions, Convention, Method, Parallax, UvMode};
 use crate::pair::{common_frame, placed};
 use crate::report::{BakeReport, LossStep, StageTime, Work};
-use crate::unfold::{Source, SurfaceTexture, UnfoldOptions, mend, solve_on_surface, unfold};
+use crate::unfold::{Source, SurfaceTexture, UnfoldOptions, Unfolded, mend, solve_on_surface, unfold};
 use parbake_model::{Image, Material, Model, TextureSlot, Wrap};
 use parbake_render::scene::Scene;
 use std::time::Instant;
@@ -74,7 +74,13 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     let asked = UnfoldOptions { steps, ..asked };
     let mut unfolded = unfold(mend(model, &asked)?, &frame, &shown, &asked, watcher);
     lap(Stage::Unfold, &mut since);
-    let written = solved(&unfolded.model)?;
+    let mut written = solved(&unfolded.model)?;
+    if asked.mode == UvMode::Optimize && written.errors[0] > ordinary.errors[0] {
+        // Fewer samples had said otherwise.
+        unfolded = Unfolded { model: kept.model.clone(), moves: None, ..unfolded };
+        unfolded.report.utilisation[1] = unfolded.report.utilisation[0];
+        written = ordinary.clone();
+    }
     lap(Stage::Solve, &mut since);
     let mut warnings = Vec::new();
     for done in &unfolded.report.mended {

@@ -273,6 +273,7 @@ fn mapped<'a>(layout: &'a Layout, showings: &'a [Signal], runs: &'a Runs) -> Map
 }
 
 /// A texture solved for on the surface alone.
+#[derive(Clone)]
 pub struct SurfaceTexture {
     /// Its stored values, 255ths.
     pub texture: Texture,

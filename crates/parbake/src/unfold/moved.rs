@@ -39,6 +39,9 @@ const MOST_SHAPE_STEPS: usize = 200;
 /// What a triangle without signal weighs in the start: what surfaces of all kinds like, and what suits
 /// plainly coloured parts with small textures (toy figure, 128²: +0.5 dB).
 const FLAT: [f64; 2] = [0.1, 1e-3];
+/// Samples that a texel needs before coordinates are refined for what a model's own texture leaves:
+/// with fewer, a texture can please each of them wherever it falls.
+const SAMPLES_PER_TEXEL: usize = 2;
 /// A moved layout must be better than the one before by this much.
 const WORTH_IT: f64 = 0.98;
 /// Width of the barrier between charts: the paper's 5 texels would keep packed charts from
@@ -166,29 +169,35 @@ fn refined<W: Watcher>(
     frames: &mut Vec<Vec<Vec2>>,
     steps: &mut Steps<W>,
 ) -> Option<(Layout, Vec<f64>)> {
-    let (mut balance, mut texture) = Balance::new(judge.problem, start);
-    // Views see a surface under all angles: half of it is minified.
-    balance.weights.fill(1.0);
     // A bake's last thousandths lie in parallax and outlines, not in coordinates.
     let (tolerance, solve, minified, hopeless) = if judge.all_sizes {
         (options.tolerance, options.solve, 1.0, f64::INFINITY)
     } else {
         (1e-3, Solve::ROUGH, MINIFIED, MINIFIED + HOPELESS)
     };
+    let is_sound =
+        |relative: &[f64]| relative[0] < WORTH_IT && relative[1..].iter().all(|error| *error < minified);
+    let problem = judge.problem;
+    let texels = problem.texture_size * problem.texture_size;
+    if judge.all_sizes && problem.showings[0].samples.len() < SAMPLES_PER_TEXEL * texels {
+        let relative = judge.relative(&layout);
+        return is_sound(&relative).then_some((layout, relative));
+    }
     let turn = UvOptions { refine_steps: options.refine_steps.div_ceil(TURNS), tolerance, solve, ..*options };
+    let (mut balance, mut texture) = Balance::new(problem, start);
+    // Views see a surface under all angles: half of it is minified.
+    balance.weights.fill(1.0);
     let mut best: Option<(f64, Layout, Vec<f64>)> = None;
     for _ in 0..TURNS {
-        let found = refine(judge.problem, &balance, &mut layout, texture, &turn, |points, _| {
-            steps.step(frames, points)
-        });
+        let found =
+            refine(problem, &balance, &mut layout, texture, &turn, |points, _| steps.step(frames, points));
         texture = found.texture;
         let relative = judge.relative(&layout);
         // By what the texture that will be solved for leaves.
         balance.update(&relative);
-        let sound = relative[0] < WORTH_IT && relative[1..].iter().all(|error| *error < minified);
         let lost = relative[1..].iter().any(|error| *error > hopeless);
         let sum: f64 = relative.iter().sum();
-        if sound && best.as_ref().is_none_or(|(least, ..)| sum < *least) {
+        if is_sound(&relative) && best.as_ref().is_none_or(|(least, ..)| sum < *least) {
             best = Some((sum, layout.clone(), relative));
         }
         if steps.watcher.stopped() || lost {
