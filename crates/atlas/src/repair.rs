@@ -2,16 +2,17 @@
 //!
 //! ```text
 //! nothing wrong                      left as it is
-//! only outside the square            all brought in together
+//! only outside the square            all brought in together, unless it would be nearly empty
 //! mirrored charts                    mirrored back
 //! charts folded along few lines      cut there
 //! triangles or charts beyond that    these alone laid out afresh
-//! then, or if charts are too close   all packed again, sizes kept
+//! then, or if charts are too close   those too long for the square cut across, all packed again, sizes kept
 //! ```
 
 mod faults;
 
 use crate::unwrap::corners::{Corners, Surface};
+use crate::unwrap::long::{LEAST_COVER, cut_across};
 use crate::unwrap::sound::{at_fault, settled};
 use crate::{AtlasError, ChartScale, Layout, PackOptions, UnwrapOptions, UvCheck, check, unwrap};
 use faults::{Found, fresh_triangles, unfold};
@@ -73,6 +74,11 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> Result<(Mesh, Vec<String>
     let fresh = fresh_triangles(&surface, &mut corners, &mut found, options.max_chart_angle);
     tell(&mut sentences, &found, fresh);
     let pack = PackOptions { chart_scale: ChartScale::Keep, ..options.pack.clone() };
+    match cut_across(&surface, &mut corners, &pack.chart_scale) {
+        0 => {}
+        1 => sentences.push("1 chart, too long for the square, was cut across.".into()),
+        count => sentences.push(format!("{count} charts, too long for the square, were cut across.")),
+    }
     let packed = settled(&surface, corners, &pack)?;
     let close = delivered.gutter.as_ref().is_some_and(|g| g.texels < options.pack.gutter_texels);
     sentences.push(match (delivered.overlaps.pairs > 0, close) {
@@ -105,7 +111,7 @@ fn corners_of(surface: &Surface) -> Corners {
 }
 
 /// The whole layout moved, and shrunk if need be, into the square, if nothing else is
-/// wrong with it.
+/// wrong with it and shrinking leaves no more of the square empty than it should.
 fn brought_in(surface: &Surface, corners: &Corners, pack: &PackOptions) -> Option<Mesh> {
     let all = || corners.uv.iter().flatten().copied();
     let low = all().reduce(|a, b| a.min(b))?;
@@ -115,7 +121,8 @@ fn brought_in(surface: &Surface, corners: &Corners, pack: &PackOptions) -> Optio
     let mut moved = corners.clone();
     moved.uv.iter_mut().flatten().for_each(|p| *p = (*p - low) * scale + border);
     let mesh = surface.mesh_with(&moved).0;
-    is_good(&check(&Layout::new(&mesh), pack.texture_size), pack).then_some(mesh)
+    let check = check(&Layout::new(&mesh), pack.texture_size);
+    (is_good(&check, pack) && (scale == 1.0 || check.utilisation >= LEAST_COVER)).then_some(mesh)
 }
 
 fn tell(sentences: &mut Vec<String>, found: &Found, fresh: usize) {

@@ -1,11 +1,12 @@
 //! Unwrapping: a new layout for any mesh, with or without texture coordinates.
 //!
-//! `unwrap/flatten.rs` cuts the surface into charts and lays them flat,
-//! `unwrap/sound.rs` takes out what is at fault, decided exactly, and packs.
+//! `unwrap/flatten.rs` cuts the surface into charts and lays them flat, `unwrap/long.rs` cuts those
+//! that are too long for the square, `unwrap/sound.rs` takes out what is at fault, decided exactly, and packs.
 
 pub(crate) mod corners;
 mod dead;
 pub(crate) mod flatten;
+pub(crate) mod long;
 pub(crate) mod sound;
 
 use crate::{AtlasError, ChartScale, PackOptions};
@@ -61,6 +62,7 @@ pub fn unwrap(mesh: &Mesh, options: &UnwrapOptions) -> Result<UnwrappedMesh, Atl
     let live: Vec<u32> = (0..count as u32).filter(|&t| surface.is_live(t as usize)).collect();
     flatten::flatten(&surface, &mut corners, &live, options.max_chart_angle);
     let pack = PackOptions { chart_scale: ChartScale::Equal, ..options.pack.clone() };
+    long::cut_across(&surface, &mut corners, &pack.chart_scale);
     let corners = sound::settled(&surface, corners, &pack)?;
     let (mesh, source) = surface.mesh_with(&corners);
     Ok(UnwrappedMesh { mesh, source })

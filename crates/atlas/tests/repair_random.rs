@@ -27,6 +27,23 @@ fn plane(n: usize) -> Mesh {
     mesh
 }
 
+/// A strip of `n` squares in a row, in space and texture, each split as a plane's are.
+fn strip(n: usize) -> Mesh {
+    let mut mesh = Mesh::default();
+    for x in 0..=n {
+        for y in [0.0, 1.0] {
+            mesh.positions.push(Vec3::new(x as f32, -y, 0.0));
+            mesh.uvs.push(Vec2::new(x as f32, y));
+        }
+    }
+    for x in 0..n as u32 {
+        let v = 2 * x;
+        mesh.triangles.extend([[v, v + 1, v + 2], [v + 2, v + 1, v + 3]]);
+    }
+    mesh.triangle_materials = vec![0; mesh.triangles.len()];
+    mesh
+}
+
 fn pack_options() -> PackOptions {
     PackOptions { texture_size: 256, gutter_texels: 1.0, effort: 0, ..PackOptions::default() }
 }
@@ -144,6 +161,32 @@ fn repairs_are_named() {
     let (folded, text) = said(|m| m.uvs.iter_mut().for_each(|p| p.x = (p.x - 0.5).abs()));
     assert!(text.contains("1 chart, folded onto itself, was cut"), "{text}");
     assert_eq!(check(&Layout::new(&folded), 256).charts, 2);
+}
+
+/// Protects texels: one strip as long as the square would leave nine tenths of it empty, delivered or
+/// made here. Two triangles as long as the strip cannot be cut, and what is compact is not.
+#[test]
+fn charts_too_long_for_the_square_are_cut_across() {
+    let long = strip(20);
+    let (repaired, sentences) = repair(&long, &repair_options()).unwrap();
+    let made =
+        unwrap(&long, &UnwrapOptions { pack: pack_options(), ..UnwrapOptions::default() }).unwrap().mesh;
+    assert!(
+        sentences.join(" ").contains("1 chart, too long for the square, was cut across."),
+        "{sentences:?}"
+    );
+    for mesh in [repaired, made] {
+        assert_sound(&mesh, 1.0);
+        let check = check(&Layout::new(&mesh), 256);
+        assert!(check.charts == 4 && check.utilisation > 0.6, "{} {}", check.charts, check.utilisation);
+    }
+    let mut whole = strip(1);
+    whole.positions.iter_mut().for_each(|p| p.x *= 20.0);
+    whole.uvs.iter_mut().for_each(|p| p.x *= 20.0);
+    for (mesh, wanted) in [(whole, 1), (strip(2), 1)] {
+        let (repaired, _) = repair(&mesh, &repair_options()).unwrap();
+        assert_eq!(check(&Layout::new(&repaired), 256).charts, wanted);
+    }
 }
 
 /// Protects attributes when vertices are split, and triangles' materials.

@@ -6,6 +6,7 @@
 //! projection                    where that point lies on the detailed model
 //! simplify, subdivide           coarser and finer copies of a mesh
 //! deviation                     how far two surfaces are apart
+//! exposure                      how much of a surface is seen from outside
 //! weld, vertices, union_find    what these share
 //! demo                          the built-in pairs of models
 //! ```
@@ -18,6 +19,7 @@ mod bvh;
 pub mod charts;
 pub mod demo;
 pub mod deviation;
+pub mod exposure;
 pub mod facing;
 pub mod normals;
 pub mod projection;
@@ -31,6 +33,7 @@ pub mod weld;
 
 pub use charts::{charts, texel_charts};
 pub use demo::{demo_low, demo_model, wall_low, wall_model};
+pub use exposure::exposures;
 pub use facing::face_outwards;
 pub use normals::{ensure_normals, smooth_normals};
 pub use projection::{HighSurface, SurfacePoint};

@@ -2,7 +2,8 @@
 //!
 //! The surface stays, so nothing has to be seen from anywhere: what the texture shall show is
 //! read off the model's own texture all over its surface, texture coordinates are moved for
-//! it, and the texture is one least-squares problem, mip levels included.
+//! it, and the texture is one least-squares problem, mip levels included. What other parts hide
+//! counts for as much as is seen of it.
 //!
 //! Texels are compared as they are stored, as when a picture is scaled. So are the colours that
 //! coordinates are moved for, which is about what viewers of glTF show; in the paper's pictures
@@ -17,6 +18,7 @@ use crate::options::{BakeOptions, Convention, Method, Parallax, UvMode};
 use crate::pair::{common_frame, placed};
 use crate::report::{BakeReport, LossStep, StageTime, Work};
 use crate::unfold::{Source, SurfaceTexture, UnfoldOptions, Unfolded, mend, solve_on_surface, unfold};
+use parbake_mesh::{HighSurface, exposures};
 use parbake_model::{Image, Material, Model, TextureSlot, Wrap};
 use parbake_render::scene::Scene;
 use std::time::Instant;
@@ -46,7 +48,16 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     // Colours are read as they are stored.
     let interpretation = Convention::Paper.interpretation();
     let scene = Scene::new(placed(model, &frame), &model.materials, &model.images, interpretation);
-    let stored = Source { scene: &scene, surface: None, reach: 0.0, encode: false, pixel: Source::SAMPLE };
+    let surface = placed(model, &frame);
+    let exposures = exposures(&surface, &HighSurface::new(&surface));
+    let stored = Source {
+        scene: &scene,
+        surface: None,
+        exposures: &exposures,
+        reach: 0.0,
+        encode: false,
+        pixel: Source::SAMPLE,
+    };
     let shown = Source { encode: options.convention == Convention::Paper, ..stored };
     let mut stages = Vec::new();
     let mut lap = |stage, since: &mut Instant| {
@@ -139,4 +150,62 @@ fn textured(mut model: Model, solved: &SurfaceTexture) -> Model {
         vec![Material { name: model.name.clone(), base_color_texture: Some(slot), ..Material::default() }];
     model.images = vec![Image { name: "base color".into(), width: size, height: size, pixels }];
     model
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parbake_model::Mesh;
+    use parbake_model::glam::{Vec3, vec2};
+
+    /// A box's six sides in a row of the texture from `top` on, a square each.
+    fn add_box(mesh: &mut Mesh, half: f32, top: f32) {
+        for side in 0..6u32 {
+            let (axis, sign) = (side as usize % 3, if side < 3 { 1.0f32 } else { -1.0 });
+            let first = mesh.positions.len() as u32;
+            for (x, y) in [(0.0f32, 0.0f32), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
+                let mut p = [0.0; 3];
+                p[axis] = sign * half;
+                p[(axis + 1) % 3] = sign * (2.0 * x - 1.0) * half;
+                p[(axis + 2) % 3] = (1.0 - 2.0 * y) * half;
+                mesh.positions.push(Vec3::from(p));
+                mesh.uvs.push(vec2((side as f32 + 0.1 + 0.8 * x) / 6.0, top + 0.02 + 0.13 * y));
+            }
+            mesh.triangles.extend([[first, first + 3, first + 1], [first + 1, first + 3, first + 2]]);
+        }
+        mesh.triangle_materials.resize(mesh.triangles.len(), 0);
+    }
+
+    /// Protects texels of what is seen: a box within another, which nobody sees, gives most of its
+    /// texels to the outer one, though its picture is as detailed.
+    #[test]
+    fn what_is_hidden_gets_few_texels() {
+        let mut mesh = Mesh::default();
+        add_box(&mut mesh, 1.0, 0.1);
+        add_box(&mut mesh, 0.9, 0.6);
+        let size = 192usize;
+        let noise =
+            |i: usize| (i as u32).wrapping_mul(2_654_435_761).rotate_left(13).wrapping_mul(40_503) >> 24;
+        let pixels = (0..size * size).map(|i| [noise(i) as u8, noise(i + 7) as u8, 128, 255]).collect();
+        let slot = TextureSlot { image: 0, wrap: [Wrap::Clamp; 2], ..TextureSlot::default() };
+        let model = Model {
+            name: "boxes".into(),
+            mesh,
+            materials: vec![Material { base_color_texture: Some(slot), ..Material::default() }],
+            images: vec![Image { name: "noise".into(), width: size, height: size, pixels }],
+        };
+        let options = BakeOptions { texture_size: 64, ..BakeOptions::default() };
+        let baked = compress(&model, &options, &()).expect("boxes can be compressed");
+        let mesh = &baked.model.mesh;
+        let area = |triangles: &[[u32; 3]]| -> f32 {
+            let doubled = |t: &[u32; 3]| {
+                let [a, b, c] = t.map(|i| mesh.uvs[i as usize]);
+                (b - a).perp_dot(c - a).abs()
+            };
+            triangles.iter().map(doubled).sum()
+        };
+        let (outer, inner) = mesh.triangles.split_at(12);
+        assert!(area(inner) < 0.5 * area(outer), "{} of {}", area(inner), area(outer));
+        assert!(baked.report.uv.is_bijective());
+    }
 }

@@ -60,6 +60,7 @@ pub fn move_geometry<W: Watcher>(
     let source = Source {
         scene: target.scene,
         surface: (!same).then_some(target.surface),
+        exposures: &[],
         reach: target.reach,
         encode: target.srgb,
         pixel: Source::PIXEL,

@@ -12,20 +12,24 @@ use crate::footprint::Footprint;
 use glam::{DMat2, dvec2};
 use rayon::prelude::*;
 
-/// Structure tensors of the F triangles; zero where a triangle has no samples or area.
+/// Structure tensors of the F triangles, each times what a sample of it counts relative to the mean;
+/// zero where a triangle has no samples or area.
 pub fn structure_tensors(mapped: &Mapped, texture: &Texture, rest: &[DMat2]) -> Vec<DMat2> {
     let total = total_area(rest);
+    let Some(signal) = mapped.showings.first() else { return vec![DMat2::ZERO; rest.len()] };
+    let all = signal.samples.len() as f64 / signal.weight().max(f64::MIN_POSITIVE);
     (0..mapped.triangles.len())
         .into_par_iter()
         .map(|t| {
-            let Some(signal) = mapped.showings.first() else { return DMat2::ZERO };
             if signal.of(t).is_empty() || !has_area(&rest[t], total) {
                 return DMat2::ZERO;
             }
             let in_texture = tensor_in_texture(mapped, texture, t);
             let [a, b, c] = mapped.triangles[t].map(|i| mapped.points[i as usize]);
             let j = DMat2::from_cols(b - a, c - a) * rest[t].inverse();
-            j.transpose() * in_texture * j
+            let weight: f64 = signal.of(t).iter().map(|s| f64::from(s.weight)).sum();
+            let counts = all * weight / signal.of(t).len() as f64;
+            j.transpose() * in_texture * j * counts
         })
         .collect()
 }

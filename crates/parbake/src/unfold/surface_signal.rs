@@ -22,6 +22,8 @@ pub struct Source<'a> {
     /// Its surface to project on; None where the low-poly is the high-poly itself, with the
     /// same triangles.
     pub surface: Option<&'a HighSurface>,
+    /// How much of each triangle is seen (`parbake_mesh::exposures`); empty where all counts alike.
+    pub exposures: &'a [f32],
     /// How far projection looks to either side, in the common frame.
     pub reach: f32,
     /// Whether colours are shown by sRGB's curve before they are compared.
@@ -64,6 +66,10 @@ pub const FORESHORTENED: [Size; 4] = [
 /// change of the angle into about this share of the colour, over the visible half-sphere.
 const NORMAL_WEIGHT: f32 = 0.5;
 
+/// What is never seen from outside counts as if this share of its views showed it: a camera may go
+/// inside.
+const HIDDEN: f32 = 0.05;
+
 /// The surface at these sizes: a sample for each that views take, at most about `most` where the
 /// width is 1 and in proportion at the others.
 pub fn showings(mesh: &Mesh, rest: &[DMat2], source: &Source, sizes: &[Size], most: usize) -> Vec<Signal> {
@@ -86,14 +92,15 @@ fn showing(mesh: &Mesh, rest: &[DMat2], source: &Source, size: &Size, spacing: f
             if has_area(r, total) { count as usize } else { 0 }
         })
         .collect();
-    let all: usize = counts.iter().sum();
-    let weight = size.share as f32 / all.max(1) as f32;
+    let counted = |t: usize| source.exposures.get(t).map_or(1.0, |seen| seen.max(HIDDEN));
+    let all: f64 = counts.iter().enumerate().map(|(t, n)| *n as f64 * f64::from(counted(t))).sum();
+    let unit = (size.share / all.max(f64::MIN_POSITIVE)) as f32;
     let samples: Vec<(u32, Sample)> = (counts.par_iter().enumerate())
         .flat_map_iter(|(t, &count)| {
             (0..count).filter_map(move |i| {
                 let barycentric = spread(t, i);
                 let target = look(mesh, t, barycentric, source, pixel as f32)?;
-                Some((t as u32, Sample { target, barycentric, weight }))
+                Some((t as u32, Sample { target, barycentric, weight: unit * counted(t) }))
             })
         })
         .collect();
