@@ -82,7 +82,8 @@ pub enum RefineBy {
     /// step of all.
     Laplacian,
     /// By what moving a point costs (`stiffness.rs`), with a triangle's points slowed down before it
-    /// turns over: for the many small cells of a picture. Models gain 0.05 dB by it.
+    /// turns over: for the many small cells of a picture, and for a model's own texture, which gains up
+    /// to 0.3 dB in no more time. Coordinates of low-polys gain 0.05 dB by it.
     Stiffness,
 }
 

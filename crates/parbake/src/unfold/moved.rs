@@ -15,7 +15,7 @@ use parbake_model::Mesh;
 use parbake_model::glam::{DMat2, DVec2, Vec2};
 use parbake_uv::best_texture::Solve;
 use parbake_uv::metric::chart_scales;
-use parbake_uv::optimise::{Balance, Problem, UvOptions, refine, shape, tensors};
+use parbake_uv::optimise::{Balance, Problem, RefineBy, UvOptions, refine, shape, tensors};
 
 /// Charts are drawn at most so many times larger or smaller than their area says.
 const MOST_SCALE: f64 = 3.0;
@@ -67,9 +67,11 @@ pub fn moved(
     };
     let most_steps = (SHAPE_WORK / mesh.triangles.len().max(1)).clamp(LEAST_SHAPE_STEPS, MOST_SHAPE_STEPS);
     let shape_steps = most_steps.min(10 * asked.steps);
-    let options = &UvOptions { refine_steps: asked.steps, shape_steps, ..UvOptions::default() };
+    let own = source.surface.is_none();
+    let refine_by = if own { RefineBy::Stiffness } else { RefineBy::Laplacian };
+    let options = &UvOptions { refine_steps: asked.steps, shape_steps, refine_by, ..UvOptions::default() };
     // A low-poly's texture is fitted to views, which reads its first level alone.
-    let judge = &Judge::new(problem, start, source.surface.is_none());
+    let judge = &Judge::new(problem, start, own);
     let tensors = &tensors(problem, start);
     let unmoved = judge.kept.len() as f64;
     let packed = packed(problem, start, &packing(asked), tensors)
