@@ -85,8 +85,10 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     let asked = UnfoldOptions { steps, ..asked };
     let mut unfolded = unfold(mend(model, &asked)?, &frame, &shown, &asked, watcher);
     lap(Stage::Unfold, &mut since);
-    let mut written = solved(&unfolded.model)?;
-    if asked.mode == UvMode::Optimize && written.errors[0] > ordinary.errors[0] {
+    let same = unfolded.model.mesh.uvs == kept.model.mesh.uvs;
+    let mut written = if same { ordinary.clone() } else { solved(&unfolded.model)? };
+    let is_worse = |(now, before): (&f64, &f64)| now > before;
+    if asked.mode == UvMode::Optimize && written.errors.iter().zip(&ordinary.errors).any(is_worse) {
         // Fewer samples had said otherwise.
         unfolded = Unfolded { model: kept.model.clone(), moves: None, ..unfolded };
         unfolded.report.utilisation[1] = unfolded.report.utilisation[0];

@@ -8,7 +8,7 @@
 use crate::best_texture::Mapped;
 use crate::footprint::{Footprint, OnLevel, shares};
 use crate::normal_matrix::{NormalMatrix, Patch};
-use crate::pyramid::{gather, level_count, levels};
+use crate::pyramid::{gather, halve, level_count};
 use crate::signal::{Sample, Signal};
 use glam::Vec4;
 use rayon::prelude::*;
@@ -58,28 +58,43 @@ impl NormalEquations {
         Self { size, levels, right: rights.swap_remove(0), inverse }
     }
 
-    /// `A x`.
-    pub fn product(&self, x: &[Vec4]) -> Vec<Vec4> {
-        if let [only] = &self.levels[..] {
-            let mut y = vec![Vec4::ZERO; x.len()];
-            only.add_product(x, &mut y);
-            return y;
+    /// Room for products.
+    pub fn room(&self) -> Room {
+        let level = |m: &NormalMatrix| vec![Vec4::ZERO; m.size * m.size];
+        Room {
+            halved: self.levels[1..].iter().map(level).collect(),
+            products: self.levels.iter().map(level).collect(),
         }
-        let pyramid = levels(x, self.size, self.levels.len());
-        let mut products: Vec<Vec<Vec4>> = pyramid.iter().map(|l| vec![Vec4::ZERO; l.len()]).collect();
-        for ((matrix, x), y) in self.levels.iter().zip(&pyramid).zip(&mut products) {
-            matrix.add_product(x, y);
+    }
+
+    /// `A x`, which lies in `room`.
+    pub fn product<'a>(&self, x: &[Vec4], room: &'a mut Room) -> &'a mut [Vec4] {
+        let Room { halved, products } = room;
+        for level in 0..halved.len() {
+            let (finer, coarser) = halved.split_at_mut(level);
+            halve(finer.last().map_or(x, |l| l), self.levels[level + 1].size, &mut coarser[0]);
         }
-        gather(&mut products, self.size);
-        products.swap_remove(0)
+        let pyramid = std::iter::once(x).chain(halved.iter().map(|l| &l[..]));
+        for ((matrix, x), y) in self.levels.iter().zip(pyramid).zip(products.iter_mut()) {
+            matrix.product(x, y);
+        }
+        gather(products, self.size);
+        &mut products[0]
     }
 
     /// `b − A x`.
-    pub fn residual(&self, x: &[Vec4]) -> Vec<Vec4> {
-        let mut r = self.product(x);
-        r.par_iter_mut().zip(&self.right).for_each(|(r, b)| *r = *b - *r);
-        r
+    pub fn residual(&self, x: &[Vec4], room: &mut Room) -> Vec<Vec4> {
+        let product = self.product(x, room);
+        product.par_iter().zip(&self.right).map(|(product, b)| *b - *product).collect()
     }
+}
+
+/// What products are made in, from one to the next.
+pub(crate) struct Room {
+    /// The texture halved once, twice, …
+    halved: Vec<Vec<Vec4>>,
+    /// A product a level.
+    products: Vec<Vec<Vec4>>,
 }
 
 /// What a run of triangles adds to the matrices of the `count` levels.

@@ -1,8 +1,8 @@
 //! The normal matrix of a bilinear texture that is clamped at its borders: nine points a
 //! texel, symmetric, one number for all channels.
 //!
-//! Forward: [`NormalMatrix::add_product`] is `y += A x`, [`NormalMatrix::add_column`] the same for an x
-//! that is zero but for one texel. The matrix is its own adjoint.
+//! Forward: [`NormalMatrix::product`] is `y = A x`, [`NormalMatrix::add_column`] adds it for an x that is
+//! zero but for one texel. The matrix is its own adjoint.
 
 use glam::Vec4;
 use rayon::prelude::*;
@@ -143,21 +143,21 @@ impl NormalMatrix {
         });
     }
 
-    /// `y += A x`.
-    pub fn add_product(&self, x: &[Vec4], y: &mut [Vec4]) {
+    /// `y = A x`.
+    pub fn product(&self, x: &[Vec4], y: &mut [Vec4]) {
         y.par_chunks_mut(BAND * self.size).enumerate().for_each(|(band, out)| {
             for (row, out) in out.chunks_mut(self.size).enumerate() {
-                self.add_row(band * BAND + row, x, out);
+                self.product_row(band * BAND + row, x, out);
             }
         });
     }
 
     /// One row of texels. What lies before and after a row in memory is read as its neighbours,
     /// since couplings over the texture's border are zero.
-    fn add_row(&self, y: usize, x: &[Vec4], out: &mut [Vec4]) {
+    fn product_row(&self, y: usize, x: &[Vec4], out: &mut [Vec4]) {
         let size = self.size;
         if y < 2 || y + 2 >= size {
-            out.iter_mut().enumerate().for_each(|(k, out)| *out += self.near_border(k, y, x));
+            out.iter_mut().enumerate().for_each(|(k, out)| *out = self.near_border(k, y, x));
             return;
         }
         let first = y * size;
@@ -166,7 +166,7 @@ impl NormalMatrix {
         let (above, here) = (&self.rows[beside(first - size)], &self.rows[beside(first)]);
         for (k, out) in out.iter_mut().enumerate() {
             let row = &here[k + 1];
-            *out += own[k] * here[k].east
+            *out = own[k] * here[k].east
                 + own[k + 1] * row.centre
                 + own[k + 2] * row.east
                 + lower[k] * row.south_west
@@ -271,7 +271,7 @@ mod tests {
         }
         let matrix = NormalMatrix::sum(size, std::iter::once(&patch));
         let mut y = vec![Vec4::ZERO; 25];
-        matrix.add_product(&x, &mut y);
+        matrix.product(&x, &mut y);
         let energy: f32 = x.iter().zip(&y).map(|(a, b)| a.x * b.x).sum();
         assert!((energy / want - 1.0).abs() < 1e-4);
         // Column by column it is the same.

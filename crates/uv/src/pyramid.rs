@@ -21,18 +21,23 @@ pub fn level_count(size: usize) -> usize {
 pub fn levels(texels: &[Vec4], size: usize, count: usize) -> Vec<Vec<Vec4>> {
     let mut levels = vec![texels.to_vec()];
     for level in 1..count {
-        let (half, from) = (size >> level, &levels[level - 1]);
+        let half = size >> level;
         let mut to = vec![Vec4::ZERO; half * half];
-        to.par_chunks_mut(half).enumerate().for_each(|(y, row)| {
-            let upper = &from[2 * y * 2 * half..][..2 * half];
-            let lower = &from[(2 * y + 1) * 2 * half..][..2 * half];
-            for (x, texel) in row.iter_mut().enumerate() {
-                *texel = 0.25 * (upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1]);
-            }
-        });
+        halve(&levels[level - 1], half, &mut to);
         levels.push(to);
     }
     levels
+}
+
+/// Overwrites the half² texels of `to` with the next level of `from`.
+pub fn halve(from: &[Vec4], half: usize, to: &mut [Vec4]) {
+    to.par_chunks_mut(half).enumerate().for_each(|(y, row)| {
+        let upper = &from[2 * y * 2 * half..][..2 * half];
+        let lower = &from[(2 * y + 1) * 2 * half..][..2 * half];
+        for (x, texel) in row.iter_mut().enumerate() {
+            *texel = 0.25 * (upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1]);
+        }
+    });
 }
 
 /// Adds to the first level what the others hold: a quarter of each texel to the four that

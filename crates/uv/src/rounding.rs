@@ -50,7 +50,7 @@ impl<'a> Rounding<'a> {
         let pyramid = levels(&texture.texels, texture.size, equations.levels.len());
         let product = |(matrix, x): (&NormalMatrix, &Vec<Vec4>)| {
             let mut product = vec![Vec4::ZERO; x.len()];
-            matrix.add_product(x, &mut product);
+            matrix.product(x, &mut product);
             product
         };
         let products = equations.levels.iter().zip(&pyramid).map(product).collect();

@@ -62,7 +62,7 @@ pub fn moved(
     let problem = &Problem {
         rest: &start.rest,
         showings: &showings,
-        texture_size: asked.texture_size,
+        texture_size: told_apart(asked.texture_size, showings[0].samples.len()),
         contact: &contact,
     };
     let most_steps = (SHAPE_WORK / mesh.triangles.len().max(1)).clamp(LEAST_SHAPE_STEPS, MOST_SHAPE_STEPS);
@@ -88,6 +88,16 @@ pub fn moved(
     report.steps = frames.len() - 2;
     report.relative_error = relative;
     Some(Moved { layout, frames })
+}
+
+/// Texels along a side of the texture that layouts are judged by: halved until every other of its texels
+/// has a sample, for finer ones could show so few samples in any layout.
+fn told_apart(texture_size: usize, samples: usize) -> usize {
+    let mut size = texture_size;
+    while 2 * samples < size * size && size.is_multiple_of(2) {
+        size /= 2;
+    }
+    size
 }
 
 /// How much worse or better layouts show the surface than the one that was given.

@@ -31,9 +31,9 @@ impl TextureLoss {
 
     /// Overwrites `gradient` (size² values) with ∂L/∂T at `texels`.
     pub fn gradient(&self, texels: &[Vec4], gradient: &mut [Vec4]) {
-        gradient.par_iter_mut().zip(&self.matrix.right).for_each(|(g, right)| *g = -*right);
-        self.matrix.add_product(texels, gradient);
-        gradient.par_iter_mut().for_each(|g| *g *= self.scale);
+        self.matrix.product(texels, gradient);
+        let right = &self.matrix.right;
+        gradient.par_iter_mut().zip(right).for_each(|(g, right)| *g = (*g - *right) * self.scale);
     }
 }
 
