@@ -149,6 +149,7 @@ pub fn unfold(
 }
 
 /// A low-poly whose coordinates are sound, or as they were where they are to be kept.
+#[derive(Clone)]
 pub struct Mended {
     /// The model's name.
     pub name: String,
