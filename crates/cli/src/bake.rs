@@ -117,7 +117,7 @@ fn check_outputs(command: &BakeCommand) -> Result<(), Failure> {
 }
 
 /// Writes a model as its extension says.
-pub fn write_model(path: &Path, model: &Model) -> Result<(), Failure> {
+pub fn write_model(path: &Path, model: &Model) -> Result<u64, Failure> {
     Ok(if is_obj(path) { write_obj(path, model) } else { write_glb(path, model) }?)
 }
 

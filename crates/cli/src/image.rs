@@ -19,7 +19,8 @@ pub fn run(command: &ImageCommand) -> Result<Ending, Failure> {
     with_threads(command.options.threads, || {
         let picture = read_image(&command.picture, &Limits::default())?;
         let baked = bake_image(&picture, &command.options, &console)?;
-        write_model(&command.output, &baked.model)?;
+        let before = std::fs::metadata(&command.picture).map_or(0, |file| file.len());
+        let bytes = [before, write_model(&command.output, &baked.model)?];
         if let Some(path) = &command.json {
             write_json(path, &baked.report)?;
         }
@@ -28,7 +29,7 @@ pub fn run(command: &ImageCommand) -> Result<Ending, Failure> {
         }
         console.finish();
         if !command.talk.quiet && command.json.as_ref().is_none_or(|p| p.as_os_str() != "-") {
-            print(&summary(&baked.report, &command.picture, &command.output, console.seconds()))?;
+            print(&summary(&baked.report, bytes, &command.output, console.seconds()))?;
         }
         let stopped = interrupted() && baked.report.stopped_early;
         Ok(if stopped { Ending::Interrupted } else { Ending::Finished })
@@ -43,15 +44,11 @@ fn write_animation(path: &Path, baked: &BakedImage, console: &Console) -> Result
     Ok(())
 }
 
-/// Bytes of a file, or of an OBJ with what lies beside it.
-pub fn bytes(path: &Path) -> u64 {
-    std::fs::metadata(path).map_or(0, |m| m.len())
-}
-
 /// Cells whose plane takes a fifth of a megabyte.
 const SMALL_GRID: usize = 100;
 
-fn summary(report: &ImageReport, picture: &Path, output: &Path, seconds: f64) -> String {
+/// `bytes` are those of the picture and of the plane, with all files that belong to it.
+fn summary(report: &ImageReport, [before, after]: [u64; 2], output: &Path, seconds: f64) -> String {
     let size = report.options.texture_size;
     let mut text = format!("shown at         ordinary {size}²   {}\n", output.display());
     for (name, (kept, written)) in
@@ -66,7 +63,6 @@ fn summary(report: &ImageReport, picture: &Path, output: &Path, seconds: f64) ->
         (true, _) => format!("{} triangles, none flipped, none overlapping\n", report.uv.triangles),
         (false, pairs) => format!("{} triangles, {pairs} pairs overlapping\n", report.uv.triangles),
     };
-    let (before, after) = (bytes(picture), bytes(output));
     text += &format!("{before} bytes → {after} bytes, {seconds:.1} s");
     let cells = report.options.settled_grid();
     if after > before && cells > SMALL_GRID && !report.left_as_is {

@@ -3,7 +3,6 @@
 use crate::arguments::TurntableCommand;
 use crate::bake::{check_not_input, check_place, read};
 use crate::failure::{Ending, Failure};
-use crate::image::bytes;
 use crate::progress::{Console, interrupted};
 use parbake::{BakeError, FilmFormat, Loaded, Message, Stage, Watcher, with_threads, write_turntable};
 use std::path::Path;
@@ -36,7 +35,7 @@ pub fn run(command: &TurntableCommand) -> Result<Ending, Failure> {
             "{}: {} frames, {:.1} MB, {:.1} s",
             output.display(),
             options.frames,
-            bytes(output) as f64 / 1e6,
+            std::fs::metadata(output).map_or(0, |file| file.len()) as f64 / 1e6,
             console.seconds()
         ));
         Ok(Ending::Finished)

@@ -8,7 +8,8 @@ use parbake_model::Image;
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::cell::RefCell;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::io;
 use std::path::Path;
 
 /// More warnings than this help nobody; the rest are counted.
@@ -29,17 +30,40 @@ pub(crate) type NamedBytes<'a> = (String, Cow<'a, [u8]>);
 /// Carried through one reading of one file.
 pub(crate) struct Context<'a> {
     pub path: &'a Path,
-    pub resources: &'a dyn Resources,
+    resources: &'a dyn Resources,
     pub limits: &'a Limits,
     pub textures: Textures,
     warnings: RefCell<Vec<String>>,
     seen: RefCell<BTreeSet<String>>,
+    /// Bytes of each file that was read, the model's own under the empty name.
+    read: RefCell<BTreeMap<String, u64>>,
 }
 
 impl<'a> Context<'a> {
     pub fn new(path: &'a Path, resources: &'a dyn Resources, limits: &'a Limits, textures: Textures) -> Self {
-        let (warnings, seen) = Default::default();
-        Self { path, resources, limits, textures, warnings, seen }
+        let (warnings, seen, read) = Default::default();
+        Self { path, resources, limits, textures, warnings, seen, read }
+    }
+
+    /// Counts the model's own file.
+    pub fn count_own(&self, bytes: &[u8]) {
+        self.count("", bytes);
+    }
+
+    /// Reads a file that the model names.
+    pub fn read(&self, relative: &str, max_bytes: u64) -> io::Result<Vec<u8>> {
+        let bytes = self.resources.read(relative, max_bytes)?;
+        self.count(relative, &bytes);
+        Ok(bytes)
+    }
+
+    fn count(&self, name: &str, bytes: &[u8]) {
+        self.read.borrow_mut().insert(name.into(), bytes.len() as u64);
+    }
+
+    /// Bytes of all files that were read, each once.
+    pub fn bytes(&self) -> u64 {
+        self.read.borrow().values().sum()
     }
 
     /// Adds a warning, once.

@@ -44,7 +44,8 @@ pub(crate) fn finish(
     if sizes.iter().any(|&&n| n != 0 && n != mesh.positions.len()) {
         return Err(context.invalid(Place::File, "the attributes of its vertices differ in number"));
     }
-    Ok(Loaded { model, warnings: context.into_warnings() })
+    let bytes = context.bytes();
+    Ok(Loaded { model, warnings: context.into_warnings(), bytes })
 }
 
 /// Twice the area vector, in doubles: products of small floats would vanish.

@@ -1,43 +1,90 @@
 //! Pictures out: PNG, lossless, the same bytes for the same picture.
 //!
 //! An alpha channel that is 255 everywhere is left out: it says nothing, and a
-//! third of the bytes would go to it.
+//! third of the bytes would go to it. What models are written with takes the time to be
+//! small (`oxipng`).
 
-use crate::FileError;
+use crate::{FileError, Place};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
+use oxipng::{BitDepth, ColorType, Deflater, Options, RawImage};
 use parbake_model::Image;
 
-/// Encodes as an 8-bit RGB or RGBA PNG.
+/// Texels up to which packing takes all the time that pays: 2.4 s at 2048².
+const MOST_PATIENT: usize = 1 << 22;
+/// Effort beyond (of 12; 10 otherwise): a fifth of the time, and half of the gain.
+const LESS_EFFORT: u8 = 7;
+
+/// Encodes as an 8-bit RGB or RGBA PNG, fast.
 ///
 /// # Errors
 /// When the image has no texels, more than a PNG can hold, or another number than
 /// `width * height`.
 pub fn encode_png(image: &Image) -> Result<Vec<u8>, FileError> {
-    let refuse = |reason: String| FileError::Invalid {
-        path: image.name.clone().into(),
-        place: crate::Place::Image(image.name.clone()),
-        reason,
-    };
-    let sizes = (u32::try_from(image.width), u32::try_from(image.height));
-    let (Ok(width @ 1..), Ok(height @ 1..)) = sizes else {
-        return Err(refuse(format!("a PNG cannot have {} × {} texels", image.width, image.height)));
-    };
-    if image.width.checked_mul(image.height) != Some(image.pixels.len()) {
-        let (w, h, n) = (image.width, image.height, image.pixels.len());
-        return Err(refuse(format!("{w} × {h} texels were announced, but there are {n}")));
-    }
-    let opaque = image.pixels.iter().all(|p| p[3] == 255);
-    let (samples, kind) = if opaque {
-        (image.pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect(), ExtendedColorType::Rgb8)
-    } else {
-        (image.pixels.as_flattened().to_vec(), ExtendedColorType::Rgba8)
-    };
+    let Raw { width, height, samples, opaque } = Raw::new(image)?;
+    let kind = if opaque { ExtendedColorType::Rgb8 } else { ExtendedColorType::Rgba8 };
     let mut bytes = Vec::new();
     PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive)
         .write_image(&samples, width, height, kind)
-        .map_err(|e| refuse(format!("cannot be encoded as PNG: {e}")))?;
+        .map_err(|e| refuse(image, format!("cannot be encoded as PNG: {e}")))?;
     Ok(bytes)
+}
+
+/// As [`encode_png`], but small: 3 to 30 % smaller, in 0.1 s instead of 2 ms at 512².
+pub(crate) fn pack_png(image: &Image) -> Result<Vec<u8>, FileError> {
+    let Raw { width, height, samples, opaque } = Raw::new(image)?;
+    let kind = if opaque { ColorType::RGB { transparent_color: None } } else { ColorType::RGBA };
+    let mut options = Options {
+        // Readers of data textures count on their channels.
+        bit_depth_reduction: false,
+        color_type_reduction: false,
+        palette_reduction: false,
+        grayscale_reduction: false,
+        interlace: None,
+        ..Options::from_preset(1)
+    };
+    if image.pixels.len() > MOST_PATIENT {
+        options.deflater = Deflater::Libdeflater { compression: LESS_EFFORT };
+    }
+    RawImage::new(width, height, kind, BitDepth::Eight, samples)
+        .and_then(|raw| raw.create_optimized_png(&options))
+        .map_err(|e| refuse(image, format!("cannot be encoded as PNG: {e}")))
+}
+
+/// What a PNG is made from.
+struct Raw {
+    width: u32,
+    height: u32,
+    /// Three channels a texel where all is opaque, else four.
+    samples: Vec<u8>,
+    opaque: bool,
+}
+
+impl Raw {
+    fn new(image: &Image) -> Result<Self, FileError> {
+        let sizes = (u32::try_from(image.width), u32::try_from(image.height));
+        let (Ok(width @ 1..), Ok(height @ 1..)) = sizes else {
+            return Err(refuse(
+                image,
+                format!("a PNG cannot have {} × {} texels", image.width, image.height),
+            ));
+        };
+        if image.width.checked_mul(image.height) != Some(image.pixels.len()) {
+            let (w, h, n) = (image.width, image.height, image.pixels.len());
+            return Err(refuse(image, format!("{w} × {h} texels were announced, but there are {n}")));
+        }
+        let opaque = image.pixels.iter().all(|p| p[3] == 255);
+        let samples = if opaque {
+            image.pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect()
+        } else {
+            image.pixels.as_flattened().to_vec()
+        };
+        Ok(Self { width, height, samples, opaque })
+    }
+}
+
+fn refuse(image: &Image, reason: String) -> FileError {
+    FileError::Invalid { path: image.name.clone().into(), place: Place::Image(image.name.clone()), reason }
 }
 
 #[cfg(test)]
@@ -45,21 +92,24 @@ mod tests {
     use super::*;
     use crate::{Limits, decode_image};
 
-    /// Protects losslessness, with and without alpha, and the dropped channel.
+    /// Protects losslessness, with and without alpha, the dropped channel, and channels that
+    /// others could be told from (here all are alike).
     #[test]
     fn png_is_lossless_and_drops_full_alpha() {
-        let mut image = Image::solid("a", 7, 5, [0, 0, 0, 255]);
-        for (i, p) in image.pixels.iter_mut().enumerate() {
-            *p = [i as u8, (i * 7) as u8, (i * i) as u8, 255];
+        for encode in [encode_png, pack_png] {
+            let mut image = Image::solid("a", 7, 5, [0, 0, 0, 255]);
+            for (i, p) in image.pixels.iter_mut().enumerate() {
+                *p = [(i * 7) as u8, (i * 7) as u8, (i * 7) as u8, 255];
+            }
+            let rgb = encode(&image).unwrap();
+            assert_eq!(rgb[24..26], [8, 2], "eight bits, RGB");
+            assert_eq!(decode_image("a", &rgb, &Limits::default()).unwrap(), image);
+            image.pixels[3] = [200, 100, 50, 17];
+            let rgba = encode(&image).unwrap();
+            assert_eq!(rgba[24..26], [8, 6], "eight bits, RGBA");
+            assert_eq!(decode_image("a", &rgba, &Limits::default()).unwrap(), image);
+            assert_eq!(encode(&image).unwrap(), rgba, "deterministic");
         }
-        let rgb = encode_png(&image).unwrap();
-        assert_eq!(rgb[25], 2, "colour type RGB");
-        assert_eq!(decode_image("a", &rgb, &Limits::default()).unwrap(), image);
-        image.pixels[3][3] = 17;
-        let rgba = encode_png(&image).unwrap();
-        assert_eq!(rgba[25], 6, "colour type RGBA");
-        assert_eq!(decode_image("a", &rgba, &Limits::default()).unwrap(), image);
-        assert_eq!(encode_png(&image).unwrap(), rgba, "deterministic");
     }
 
     /// Protects against a panic on an image that breaks its contract.
@@ -67,7 +117,9 @@ mod tests {
     fn broken_images_are_refused() {
         let mut image = Image::solid("a", 2, 2, [0; 4]);
         image.pixels.pop();
-        assert!(encode_png(&image).is_err());
-        assert!(encode_png(&Image::default()).is_err());
+        for encode in [encode_png, pack_png] {
+            assert!(encode(&image).is_err());
+            assert!(encode(&Image::default()).is_err());
+        }
     }
 }

@@ -15,6 +15,8 @@ pub struct Loaded {
     pub model: Model,
     /// One sentence each, to show to people.
     pub warnings: Vec<String>,
+    /// Bytes of its file and of all others that were read for it.
+    pub bytes: u64,
 }
 
 /// Reads an `.obj`, `.gltf` or `.glb` file with all that it refers to.

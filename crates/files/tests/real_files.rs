@@ -107,7 +107,7 @@ fn real_models_survive_obj() {
     let obj = folder.path().join("a.obj");
     for (path, Loaded { model, .. }) in ["pbr", "pairs"].iter().flat_map(|s| load_all(&data.join(s))) {
         match write_obj(&obj, &model) {
-            Ok(()) => {}
+            Ok(_) => {}
             Err(FileError::Unsupported { .. }) => continue,
             Err(error) => panic!("{error}"),
         }

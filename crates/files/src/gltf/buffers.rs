@@ -73,7 +73,7 @@ impl<'a> Buffers<'a> {
     /// The bytes of another file, all such together within the limit.
     pub fn external(&self, path: &str, place: Place) -> Result<Vec<u8>, FileError> {
         let left = self.context.limits.max_file_bytes.saturating_sub(self.total.get());
-        let read = self.context.resources.read(path, left).map_err(|e| {
+        let read = self.context.read(path, left).map_err(|e| {
             // The file's own name helps more than the pointer to where it is named.
             let source = std::io::Error::new(e.kind(), format!("{:?}: {e}", shown(path)));
             FileError::Read { path: self.context.path.into(), place, source }

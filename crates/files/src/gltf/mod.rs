@@ -55,6 +55,7 @@ pub fn read_gltf_bytes(
 }
 
 pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileError> {
+    context.count_own(bytes);
     let (text, binary) = container::open(bytes, &context)?;
     let document = parse(text, &context)?;
     extensions::check(&document, &context)?;

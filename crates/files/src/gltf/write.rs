@@ -6,17 +6,21 @@
 use super::binary::Binary;
 use super::write_material::Materials;
 use super::write_mesh::primitives;
-use crate::{FileError, Place, encode_png, write_atomically};
+use crate::image_out::pack_png;
+use crate::{FileError, Place, write_atomically};
 use parbake_model::Model;
+use rayon::prelude::*;
 use serde_json::json;
 use std::path::Path;
 
-/// Writes `model` as a GLB file.
+/// Writes `model` as a GLB file, and returns its bytes' number.
 ///
 /// # Errors
 /// When the model breaks its contract, or the file cannot be written.
-pub fn write_glb(path: &Path, model: &Model) -> Result<(), FileError> {
-    write_atomically(path, &to_bytes(path, model)?)
+pub fn write_glb(path: &Path, model: &Model) -> Result<u64, FileError> {
+    let bytes = to_bytes(path, model)?;
+    write_atomically(path, &bytes)?;
+    Ok(bytes.len() as u64)
 }
 
 /// The bytes of a GLB file of `model`. Errors name the model instead of a file.
@@ -33,10 +37,11 @@ fn to_bytes(path: &Path, model: &Model) -> Result<Vec<u8>, FileError> {
     let materials = Materials::of(model);
     let primitives = primitives(&mut binary, model, &materials.used);
     let mut images = Vec::new();
-    for &image in &materials.images {
-        let image = &model.images[image];
-        let view = binary.view(&encode_png(image)?, None);
-        images.push(json!({ "name": image.name, "mimeType": "image/png", "bufferView": view }));
+    let encode = |&image: &usize| pack_png(&model.images[image]);
+    let encoded: Vec<_> = materials.images.par_iter().map(encode).collect::<Result<_, _>>()?;
+    for (&image, png) in materials.images.iter().zip(&encoded) {
+        let view = binary.view(png, None);
+        images.push(json!({ "name": model.images[image].name, "mimeType": "image/png", "bufferView": view }));
     }
     let mut document = json!({
         "asset": { "version": "2.0", "generator": concat!("Parbake ", env!("CARGO_PKG_VERSION")) },

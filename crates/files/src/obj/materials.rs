@@ -107,7 +107,7 @@ fn split_names(words: &str, most: usize) -> Vec<String> {
 
 /// `None` when there is no such file.
 fn read_beside(file: &str, context: &Context<'_>) -> Result<Option<Vec<u8>>, FileError> {
-    match context.resources.read(file, context.limits.max_file_bytes) {
+    match context.read(file, context.limits.max_file_bytes) {
         Ok(bytes) => Ok(Some(bytes)),
         Err(source) if source.kind() == ErrorKind::FileTooLarge => {
             let place = Place::Image(shown(file));

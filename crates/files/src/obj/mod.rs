@@ -34,6 +34,7 @@ pub fn read_obj_bytes(
 }
 
 pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileError> {
+    context.count_own(bytes);
     let mut statements = statements::read(bytes, &context)?;
     if statements.short_faces > 0 {
         let faces = count(statements.short_faces, "face");

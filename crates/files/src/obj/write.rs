@@ -7,33 +7,37 @@
 
 use super::{NamedImage, srgb};
 use crate::atomic::write_together;
+use crate::image_out::pack_png;
 use crate::unit::unit;
-use crate::{FileError, Place, encode_png};
+use crate::{FileError, Place};
 use parbake_model::glam::Vec3;
 use parbake_model::{Material, Mesh, Model, TextureSlot, UvTransform, Wrap};
+use rayon::prelude::*;
 use std::fmt::Write;
 use std::path::Path;
 
 /// Writes `model` to `path`, with `<stem>.mtl` and `<stem>_<use>.png` beside it.
 /// All are written before any takes its place, the OBJ file last, so that it never
-/// names what is not there yet.
+/// names what is not there yet. Returns how many bytes that is together.
 ///
 /// # Errors
 /// When the model breaks its contract or says what OBJ cannot, and when a file
 /// cannot be written.
-pub fn write_obj(path: &Path, model: &Model) -> Result<(), FileError> {
+pub fn write_obj(path: &Path, model: &Model) -> Result<u64, FileError> {
     crate::model_out::check(path, model)?;
     let stem = plain_stem(path);
     let pictures = name_pictures(&stem, model);
     let library = library(path, model, &pictures)?;
     let text = text(&stem, model);
-    let encoded = pictures.iter().flatten().map(|(name, image)| Ok((name, encode_png(image)?)));
+    let pictures: Vec<_> = pictures.iter().flatten().collect();
+    let encoded = pictures.par_iter().map(|(name, image)| Ok((name, pack_png(image)?)));
     let encoded: Vec<_> = encoded.collect::<Result<_, FileError>>()?;
     let mut files: Vec<_> =
         encoded.iter().map(|(name, bytes)| (path.with_file_name(name), bytes.as_slice())).collect();
     files.push((path.with_file_name(format!("{stem}.mtl")), library.as_bytes()));
     files.push((path.to_path_buf(), text.as_bytes()));
-    write_together(&files)
+    write_together(&files)?;
+    Ok(files.iter().map(|(_, bytes)| bytes.len() as u64).sum())
 }
 
 /// The stem without what other programs stumble over in OBJ and MTL files: blanks,
@@ -221,16 +225,20 @@ mod tests {
         Model { name: "m".into(), mesh, materials: vec![colored, textured], images }
     }
 
-    /// Protects every bit on the way through a file, and the pictures' names.
+    /// Protects every bit on the way through a file, the pictures' names, and the count of all
+    /// bytes that were written, which are those that are read.
     #[test]
     fn comes_back_the_same() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("my cup.obj");
         let model = model();
-        write_obj(&path, &model).unwrap();
+        let written = write_obj(&path, &model).unwrap();
         assert!(folder.path().join("my_cup_base_color.png").exists());
         let loaded = read_model(&path, &Limits::default()).unwrap();
         assert_eq!(loaded.warnings, [""; 0]);
+        let lengths =
+            std::fs::read_dir(folder.path()).unwrap().map(|file| file.unwrap().metadata().unwrap().len());
+        assert_eq!([loaded.bytes, written], [lengths.sum::<u64>(); 2]);
         let mut mesh = loaded.model.mesh;
         for (a, b) in mesh.colors.iter_mut().zip(&model.mesh.colors) {
             assert!(a.distance(*b) < 1e-6, "{a} {b}");
