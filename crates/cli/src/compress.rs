@@ -51,5 +51,9 @@ fn summary(report: &BakeReport, [before, after]: [u64; 2], output: &Path, second
         );
     }
     text += &format!("{before} bytes → {after} bytes, ");
+    let [given, now] = [report.high_triangles, report.low_triangles];
+    if now > given {
+        text += &format!("{given} → {now} triangles (--more-triangles 0 keeps them), ");
+    }
     text + &format!("{seconds:.1} s")
 }

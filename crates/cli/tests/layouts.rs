@@ -71,6 +71,29 @@ fn compressed_models_are_sound() {
     assert_eq!(code, Some(0), "{said}");
 }
 
+/// Protects what a user fixes: triangles are added only where they may be, and are told about.
+#[test]
+fn triangles_are_added_as_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    run(folder, &["simplify", "demo_high.glb", "-o", "few.glb", "--triangles", "300", "-q"]);
+    let compress = ["compress", "few.glb", "-o", "small.glb", "--texture-size", "64", "--more-triangles"];
+    let triangles = |more: &str| {
+        let printed = text(&run(folder, &[&compress[..], &[more, "--json", "report.json"]].concat()).stdout);
+        let report: serde_json::Value =
+            serde_json::from_slice(&fs::read(folder.join("report.json")).unwrap()).unwrap();
+        let [given, now] = ["high_triangles", "low_triangles"].map(|name| report[name].as_u64().unwrap());
+        assert_eq!(printed.contains("--more-triangles 0 keeps them"), now > given, "{printed}");
+        let (code, said) = check(folder, "small.glb", "0");
+        assert_eq!(code, Some(0), "{said}");
+        now - given
+    };
+    assert_eq!(triangles("0"), 0);
+    let more = triangles("500");
+    assert!((1..=500).contains(&more), "{more}");
+}
+
 /// Protects `image`: from a picture to a plane that is sound and can be compared, whether its
 /// texture coordinates move or not.
 #[test]

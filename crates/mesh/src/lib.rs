@@ -4,7 +4,7 @@
 //! normals → facing → tangents   what a surface needs before it can be shaded
 //! charts, texel_map             which point of the surface a texel shows
 //! projection                    where that point lies on the detailed model
-//! simplify, subdivide           coarser and finer copies of a mesh
+//! simplify, subdivide, bisect   coarser and finer copies of a mesh
 //! deviation                     how far two surfaces are apart
 //! exposure                      how much of a surface is seen from outside
 //! weld, vertices, union_find    what these share
@@ -15,6 +15,7 @@
 //! contract is taken, however degenerate its triangles, non-manifold its edges or
 //! many its charts; results do not depend on the number of threads.
 
+pub mod bisect;
 mod bvh;
 pub mod charts;
 pub mod demo;
@@ -31,6 +32,7 @@ mod union_find;
 pub mod vertices;
 pub mod weld;
 
+pub use bisect::{Bisected, Piece};
 pub use charts::{charts, texel_charts};
 pub use demo::{demo_low, demo_model, wall_low, wall_model};
 pub use exposure::exposures;

@@ -17,7 +17,7 @@ use crate::message::{Message, Stage, Watcher};
 use crate::options::{BakeOptions, Convention, Method, Parallax, UvMode};
 use crate::pair::{common_frame, placed};
 use crate::report::{BakeReport, LossStep, StageTime, Work};
-use crate::unfold::{Source, SurfaceTexture, UnfoldOptions, mend, solve_on_surface, unfold};
+use crate::unfold::{Source, SurfaceTexture, UnfoldOptions, Unfolded, mend, solve_on_surface, unfold};
 use parbake_mesh::{HighSurface, exposures};
 use parbake_model::{Image, Material, Model, TextureSlot, Wrap};
 use parbake_render::scene::Scene;
@@ -66,10 +66,8 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     };
     let mut since = begin;
     lap(Stage::Prepare, &mut since);
-    let solved = |low: &Model| {
-        let mut mesh = low.mesh.clone();
-        frame.apply(&mut mesh);
-        solve_on_surface(&mesh, &stored, options.texture_size)
+    let solved = |low: &Unfolded| {
+        solve_on_surface(&surface, low, &stored, options.texture_size)
             .ok_or_else(|| BakeError::FlatTextureCoordinates { model: model.name.clone() })
     };
     let as_it_is = options.unfold_as(UvMode::Keep);
@@ -77,7 +75,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     if kept.model.mesh.uvs.is_empty() {
         return Err(BakeError::NoTextureCoordinates { model: model.name.clone() });
     }
-    let ordinary = solved(&kept.model)?;
+    let ordinary = solved(&kept)?;
     lap(Stage::Solve, &mut since);
     let asked = options.unfold();
     let factor = if options.method == Method::Fit { STEPS_FACTOR } else { 1 };
@@ -87,12 +85,12 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     let unmoved = unfold(mended.clone(), &frame, &shown, &UnfoldOptions { steps: 0, ..asked }, watcher);
     let mut unfolded = unfold(mended, &frame, &shown, &asked, watcher);
     lap(Stage::Unfold, &mut since);
-    let solved_anew = |low: &Model| {
-        if low.mesh.uvs == kept.model.mesh.uvs { Ok(ordinary.clone()) } else { solved(low) }
+    let solved_anew = |low: &Unfolded| {
+        if low.model.mesh.uvs == kept.model.mesh.uvs { Ok(ordinary.clone()) } else { solved(low) }
     };
-    let mut written = solved_anew(&unfolded.model)?;
+    let mut written = solved_anew(&unfolded)?;
     if unfolded.moves.is_some() {
-        let begun = solved_anew(&unmoved.model)?;
+        let begun = solved_anew(&unmoved)?;
         if written.errors.iter().zip(&begun.errors).any(|(now, before)| now > before) {
             // Fewer samples had said otherwise.
             (unfolded, written) = (unmoved, begun);
@@ -119,7 +117,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         unfold: Some(unfolded.report.clone()),
         options: options.clone(),
         high_triangles: model.mesh.triangles.len(),
-        low_triangles: model.mesh.triangles.len(),
+        low_triangles: unfolded.model.mesh.triangles.len(),
         views: 0,
         samples: written.samples,
         covered_texels: 0,
@@ -208,15 +206,17 @@ mod tests {
         let options = BakeOptions { texture_size: 64, ..BakeOptions::default() };
         let baked = compress(&model, &options, &()).expect("boxes can be compressed");
         let mesh = &baked.model.mesh;
-        let area = |triangles: &[[u32; 3]]| -> f32 {
+        let area = |of: fn(Vec3) -> bool| -> f32 {
             let doubled = |t: &[u32; 3]| {
                 let [a, b, c] = t.map(|i| mesh.uvs[i as usize]);
                 (b - a).perp_dot(c - a).abs()
             };
-            triangles.iter().map(doubled).sum()
+            let is_of = |t: &&[u32; 3]| t.iter().all(|&i| of(mesh.positions[i as usize]));
+            mesh.triangles.iter().filter(is_of).map(doubled).sum()
         };
-        let (outer, inner) = mesh.triangles.split_at(12);
-        assert!(area(inner) < 0.5 * area(outer), "{} of {}", area(inner), area(outer));
+        let inner = area(|p| p.abs().max_element() < 0.95);
+        let outer = area(|p| p.abs().max_element() > 0.95);
+        assert!(inner > 0.0 && inner < 0.5 * outer, "{inner} of {outer}");
         assert!(baked.report.uv.is_bijective());
     }
 

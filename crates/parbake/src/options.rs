@@ -220,6 +220,12 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
     pub uv_steps: Option<usize>,
 
+    /// Triangles that a compressed model may have more than it had, 0 to 1000000: those with the largest
+    /// errors are halved, so that texture coordinates can bend within them. The surface stays [default: one for
+    /// each 32 texels of the texture, at most 2000]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
+    pub more_triangles: Option<usize>,
+
     /// How colours are understood when pictures are compared
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Convention::Gltf))]
     pub convention: Convention,
@@ -299,6 +305,7 @@ impl Default for BakeOptions {
             no_content_aware: false,
             gutter: None,
             uv_steps: None,
+            more_triangles: None,
             convention: Convention::Gltf,
             backdrop: Backdrop::Black,
             silhouette: None,
@@ -321,6 +328,12 @@ impl BakeOptions {
         self.gutter.unwrap_or((self.texture_size as f64 / 256.0).clamp(1.0, 8.0))
     }
 
+    /// The triangles that a compressed model may have more: as asked, or by the texture's size. Each takes
+    /// some 25 bytes; what they gain falls with the texture's size, what texels gain does not.
+    pub fn more_triangles(&self) -> usize {
+        self.more_triangles.unwrap_or((self.texture_size * self.texture_size / 32).min(2000))
+    }
+
     /// Checks every range; the error names the option and what it may be.
     pub fn check(&self) -> Result<(), BakeError> {
         let within = |option: &'static str, value: f64, low: f64, high: f64| {
@@ -339,6 +352,7 @@ impl BakeOptions {
         within("rounds", self.rounds.unwrap_or(0) as f64, 0.0, 100.0)?;
         within("gutter", self.gutter.unwrap_or(0.0), 0.0, 64.0)?;
         within("uv-steps", self.uv_steps.unwrap_or(0) as f64, 0.0, 10_000.0)?;
+        within("more-triangles", self.more_triangles.unwrap_or(0) as f64, 0.0, 1e6)?;
         within("parallax-order", self.parallax_order as f64, 0.0, 7.0)?;
         within("parallax-size", self.parallax_size as f64, 4.0, 1024.0)?;
         within("cutout-order", self.cutout_order as f64, 0.0, 7.0)?;

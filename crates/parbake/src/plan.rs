@@ -186,6 +186,7 @@ impl BakeOptions {
             gutter_required: self.gutter.is_some(),
             parallax_size: (self.parallax != Parallax::None).then_some(self.parallax_size),
             steps: self.uv_steps.unwrap_or(steps),
+            more_triangles: self.more_triangles(),
         }
     }
 

@@ -55,6 +55,7 @@ pub fn settings(options: &BakeOptions, command: &str) -> String {
             "gutter" => Some(format!("{} texels", options.gutter_texels())),
             "silhouette" => Some(options.silhouette_weight().to_string()),
             "outlier" => Some(plan.schedule.outlier.to_string()),
+            "more_triangles" => Some(options.more_triangles().to_string()),
             "uv_steps" => Some(options.unfold().steps.to_string()),
             "threads" if options.threads == 0 => Some("one a core".into()),
             _ => None,

@@ -11,8 +11,11 @@
 //! if they show the surface better than the ones they began with; those of the paper's method
 //! are taken as they come, for what it does is what one wants to see.
 
+mod finer;
+mod judge;
 mod moved;
 mod paper;
+mod refined;
 mod surface_signal;
 
 pub use surface_signal::Source;
@@ -23,10 +26,11 @@ use crate::low::texture_coordinates;
 use crate::message::Watcher;
 use crate::options::{BakeOptions, Method, UvMode};
 use crate::uv_animation::UvMoves;
+use finer::divided;
 use parbake_atlas::{
     Layout, PackOptions, RepairOptions, TutteOptions, UnwrapOptions, check, repair, tutte, unwrap,
 };
-use parbake_mesh::ensure_normals;
+use parbake_mesh::{Bisected, Piece, ensure_normals};
 use parbake_model::glam::{DVec2, Vec2, Vec4};
 use parbake_model::{Material, Mesh, Model, Placement};
 use parbake_uv::best_texture::{
@@ -62,6 +66,8 @@ pub struct UnfoldOptions {
     pub parallax_size: Option<usize>,
     /// Steps of the refinement, or rounds of the paper's method at most.
     pub steps: usize,
+    /// Triangles that a model's own surface may have more.
+    pub more_triangles: usize,
 }
 
 /// What was done.
@@ -89,6 +95,8 @@ pub struct Unfolded {
     pub model: Model,
     /// How its coordinates moved.
     pub moves: Option<UvMoves>,
+    /// Where its triangles lie on those before; empty where they are the same.
+    pub pieces: Vec<Piece>,
     /// What was done.
     pub report: UnfoldReport,
 }
@@ -129,7 +137,7 @@ pub fn unfold(
     let before = check(&start, options.texture_size).utilisation;
     let mut report =
         UnfoldReport { mended, utilisation: [before; 2], relative_error: vec![1.0; 2], ..Default::default() };
-    let mut moves = None;
+    let (mut moves, mut pieces) = (None, Vec::new());
     if options.mode == UvMode::Optimize && options.steps > 0 {
         let mut placed = mesh.clone();
         frame.apply(&mut placed);
@@ -137,15 +145,19 @@ pub fn unfold(
             Method::Fit => moved::moved(&placed, source, options, &mut report, watcher),
             Method::Paper => paper::moved(&placed, source, options, &mut report, watcher),
         };
-        if let Some(Moved { layout, frames }) = found {
+        if let Some(Moved { layout, frames, bisected }) = found {
             report.utilisation[1] = check(&layout, options.texture_size).utilisation;
+            if let Some(bisected) = bisected {
+                mesh = bisected.of(&mesh);
+                pieces = bisected.pieces;
+            }
             mesh.uvs = layout.uvs();
             moves = Some(UvMoves { frames, triangles: layout.triangles, charts: layout.charts });
         }
     }
     mesh.triangle_materials.fill(0);
     let model = Model { name, mesh, materials: vec![Material::default()], images: Vec::new() };
-    Unfolded { model, moves, report }
+    Unfolded { model, moves, pieces, report }
 }
 
 /// A low-poly whose coordinates are sound, or as they were where they are to be kept.
@@ -236,6 +248,8 @@ fn packing(options: &UnfoldOptions) -> PackOptions {
 struct Moved {
     layout: Layout,
     frames: Vec<Vec<Vec2>>,
+    /// The layout's triangles where the mesh's are too few.
+    bisected: Option<Bisected>,
 }
 
 /// What the surface shows at its sizes; None where nothing of it is seen.
@@ -289,15 +303,24 @@ pub struct SurfaceTexture {
     pub samples: usize,
 }
 
-/// Solves for a mesh's texture without any view: for the surface as it is seen from all around, mip
-/// levels included. The mesh lies in the common frame. None where it has no area.
-pub fn solve_on_surface(mesh: &Mesh, source: &Source, size: usize) -> Option<SurfaceTexture> {
-    let layout = Layout::new(mesh);
+/// Solves for a model's texture without any view: for the surface as it is seen from all around, mip
+/// levels included. `surface` is the source's own in the common frame, `low` what became of its
+/// coordinates. None where it has no area.
+pub fn solve_on_surface(
+    surface: &Mesh,
+    low: &Unfolded,
+    source: &Source,
+    size: usize,
+) -> Option<SurfaceTexture> {
     let most = (SAMPLES_PER_TEXEL * size * size).clamp(1 << 21, 1 << 22);
-    let showings = showings(mesh, &layout.rest, source, &FORESHORTENED, most);
+    let mut showings = showings(surface, &Layout::new(surface).rest, source, &FORESHORTENED, most);
     if showings[0].samples.is_empty() {
         return None;
     }
+    if !low.pieces.is_empty() {
+        showings.iter_mut().for_each(|signal| *signal = divided(signal, &low.pieces));
+    }
+    let layout = Layout::new(&low.model.mesh);
     let runs = runs(&layout, &showings);
     let mapped = mapped(&layout, &showings, &runs);
     let start = rough_texture(&mapped, size);

@@ -1,35 +1,27 @@
 //! The default method on a low-poly's texture coordinates (`parbake_uv::optimise`).
 //!
 //! ```text
-//! as it is ───────────────┬ the better one ─ shape ─ refine
+//! as it is ───────────────┬ the better one (judge.rs) ─ shape ─ refine (refined.rs)
 //! packed, charts scaled ──┘
 //! ```
 //!
 //! Contract: a moved layout is as sound as the one before, and shows the surface better.
 
+use super::judge::Judge;
+use super::refined::refined;
 use super::surface_signal::Source;
-use super::{Moved, UnfoldOptions, UnfoldReport, as_f32, contact, errors, packing, signal};
+use super::{Moved, UnfoldOptions, UnfoldReport, as_f32, contact, packing, signal};
 use crate::message::{Message, Stage, Watcher};
 use parbake_atlas::{ChartScale, Layout, PackOptions, pack};
 use parbake_model::Mesh;
 use parbake_model::glam::{DMat2, DVec2, Vec2};
-use parbake_uv::best_texture::Solve;
 use parbake_uv::metric::chart_scales;
-use parbake_uv::optimise::{Balance, Problem, RefineBy, UvOptions, refine, shape, tensors};
+use parbake_uv::optimise::{Problem, RefineBy, UvOptions, shape, tensors};
 
 /// Charts are drawn at most so many times larger or smaller than their area says.
 const MOST_SCALE: f64 = 3.0;
 /// Packing leaves so many texels more than the gutter: charts that touch cannot turn.
 const ROOM: f64 = 0.25;
-/// Minified, a low-poly's must be better by this much: with a texture that is finer than what views
-/// see, a better picture at full size is worth nothing, and coordinates that were drawn out for it cost
-/// parallax maps 0.2 to 0.3 dB. A model's own smaller texture need only not be worse.
-const MINIFIED: f64 = 0.95;
-/// Minified errors that are above that by more than this after a turn stay so: further turns bring them
-/// a hundredth nearer.
-const HOPELESS: f64 = 0.05;
-/// Turns of the refinement; in between showings are weighted anew.
-const TURNS: usize = 3;
 /// Steps of the start times triangles at most, a second or so: charts by the dozen need a hundred
 /// steps to fill their square, and a step is Newton's, 4 µs a triangle…
 const SHAPE_WORK: usize = 250_000;
@@ -39,11 +31,6 @@ const MOST_SHAPE_STEPS: usize = 200;
 /// What a triangle without signal weighs in the start: what surfaces of all kinds like, and what suits
 /// plainly coloured parts with small textures (toy figure, 128²: +0.5 dB).
 const FLAT: [f64; 2] = [0.1, 1e-3];
-/// Samples that a texel needs before coordinates are refined for what a model's own texture leaves:
-/// with fewer, a texture can please each of them wherever it falls.
-const SAMPLES_PER_TEXEL: usize = 2;
-/// A moved layout must be better than the one before by this much.
-const WORTH_IT: f64 = 0.98;
 /// Width of the barrier between charts: the paper's 5 texels would keep packed charts from
 /// moving at all, and half a texel is enough to not run into them.
 const ACTIVATION_TEXELS: f64 = 0.5;
@@ -70,8 +57,7 @@ pub fn moved(
     let own = source.surface.is_none();
     let refine_by = if own { RefineBy::Stiffness } else { RefineBy::Laplacian };
     let options = &UvOptions { refine_steps: asked.steps, shape_steps, refine_by, ..UvOptions::default() };
-    // A low-poly's texture is fitted to views, which reads its first level alone.
-    let judge = &Judge::new(problem, start, own);
+    let judge = &Judge::new(mesh, start, problem, own);
     let tensors = &tensors(problem, start);
     let unmoved = judge.kept.len() as f64;
     let packed = packed(problem, start, &packing(asked), tensors)
@@ -83,11 +69,12 @@ pub fn moved(
     let most = options.refine_steps + FLAT.len() * options.shape_steps;
     let steps = &mut Steps { done: 0, most, watcher };
     frames.extend(shaped(judge, &mut layout, left, tensors, options, steps));
-    let (layout, relative) = refined(judge, start, layout, options, &mut frames, steps)?;
+    let more_triangles = if own { asked.more_triangles } else { 0 };
+    let (moved, relative) = refined(judge, layout, options, more_triangles, frames, steps)?;
     report.packed |= is_packed;
-    report.steps = frames.len() - 2;
+    report.steps = moved.frames.len() - 2;
     report.relative_error = relative;
-    Some(Moved { layout, frames })
+    Some(moved)
 }
 
 /// Texels along a side of the texture that layouts are judged by: halved until every other of its texels
@@ -100,42 +87,17 @@ fn told_apart(texture_size: usize, samples: usize) -> usize {
     size
 }
 
-/// How much worse or better layouts show the surface than the one that was given.
-struct Judge<'a> {
-    problem: &'a Problem<'a>,
-    /// Whether textures are judged at all their mip levels.
-    all_sizes: bool,
-    /// The given layout's error by showing: at full size, half and so on.
-    kept: Vec<f64>,
-}
-
-impl<'a> Judge<'a> {
-    fn new(problem: &'a Problem<'a>, start: &Layout, all_sizes: bool) -> Self {
-        Self { problem, all_sizes, kept: errors(problem, start, all_sizes) }
-    }
-
-    /// Errors as shares of those of the given layout.
-    fn relative(&self, layout: &Layout) -> Vec<f64> {
-        let errors = errors(self.problem, layout, self.all_sizes);
-        errors.iter().zip(&self.kept).map(|(a, b)| a / b.max(1e-12)).collect()
-    }
-
-    /// The error that counts is that of all sizes.
-    fn total(&self, layout: &Layout) -> f64 {
-        self.relative(layout).iter().sum()
-    }
-}
-
 /// How far along the way is.
-struct Steps<'a, W> {
+pub struct Steps<'a, W> {
     done: usize,
     most: usize,
-    watcher: &'a W,
+    /// Who is told, and may stop it.
+    pub watcher: &'a W,
 }
 
 impl<W: Watcher> Steps<'_, W> {
     /// Notes a step; false to stop.
-    fn step(&mut self, way: &mut Vec<Vec<Vec2>>, points: &[DVec2]) -> bool {
+    pub fn step(&mut self, way: &mut Vec<Vec<Vec2>>, points: &[DVec2]) -> bool {
         way.push(as_f32(points));
         self.done = self.most.min(self.done + 1);
         self.watcher.message(Message::Progress { stage: Stage::Unfold, done: self.done, total: self.most });
@@ -168,55 +130,6 @@ fn shaped<W: Watcher>(
         }
     }
     shaped
-}
-
-/// Refines the layout by variable projection, in turns after each of which showings are weighted anew. The best
-/// of the turns' layouts that are better than `start` at each size, and its errors as shares of
-/// those of `start`.
-fn refined<W: Watcher>(
-    judge: &Judge,
-    start: &Layout,
-    mut layout: Layout,
-    options: &UvOptions,
-    frames: &mut Vec<Vec<Vec2>>,
-    steps: &mut Steps<W>,
-) -> Option<(Layout, Vec<f64>)> {
-    // A bake's last thousandths lie in parallax and outlines, not in coordinates.
-    let (tolerance, solve, minified, hopeless) = if judge.all_sizes {
-        (options.tolerance, options.solve, 1.0, f64::INFINITY)
-    } else {
-        (1e-3, Solve::ROUGH, MINIFIED, MINIFIED + HOPELESS)
-    };
-    let is_sound =
-        |relative: &[f64]| relative[0] < WORTH_IT && relative[1..].iter().all(|error| *error < minified);
-    let problem = judge.problem;
-    let texels = problem.texture_size * problem.texture_size;
-    if judge.all_sizes && problem.showings[0].samples.len() < SAMPLES_PER_TEXEL * texels {
-        let relative = judge.relative(&layout);
-        return is_sound(&relative).then_some((layout, relative));
-    }
-    let turn = UvOptions { refine_steps: options.refine_steps.div_ceil(TURNS), tolerance, solve, ..*options };
-    let (mut balance, mut texture) = Balance::new(problem, start);
-    // Views see a surface under all angles: half of it is minified.
-    balance.weights.fill(1.0);
-    let mut best: Option<(f64, Layout, Vec<f64>)> = None;
-    for _ in 0..TURNS {
-        let found =
-            refine(problem, &balance, &mut layout, texture, &turn, |points, _| steps.step(frames, points));
-        texture = found.texture;
-        let relative = judge.relative(&layout);
-        // By what the texture that will be solved for leaves.
-        balance.update(&relative);
-        let lost = relative[1..].iter().any(|error| *error > hopeless);
-        let sum: f64 = relative.iter().sum();
-        if is_sound(&relative) && best.as_ref().is_none_or(|(least, ..)| sum < *least) {
-            best = Some((sum, layout.clone(), relative));
-        }
-        if steps.watcher.stopped() || lost {
-            break;
-        }
-    }
-    best.map(|(_, layout, relative)| (layout, relative))
 }
 
 /// Charts packed anew, each as large as its signal asks for.

@@ -95,7 +95,7 @@ pub fn moved(
     report.steps = found.rounds;
     report.convergence = Some(found.history.into());
     report.relative_error = relative;
-    Some(Moved { layout, frames })
+    Some(Moved { layout, frames, bisected: None })
 }
 
 /// s for rest shapes in units of the common frame, as said above.

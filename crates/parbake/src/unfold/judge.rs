@@ -1,0 +1,40 @@
+//! How much worse or better layouts show a surface than the one that was given.
+
+use super::errors;
+use parbake_atlas::Layout;
+use parbake_model::Mesh;
+use parbake_uv::optimise::Problem;
+
+/// The given layout, and what others are compared by.
+pub struct Judge<'a> {
+    /// The mesh with the given coordinates.
+    pub mesh: &'a Mesh,
+    /// The layout that was given.
+    pub start: &'a Layout,
+    /// What it shall show.
+    pub problem: &'a Problem<'a>,
+    /// Whether it is a model's own: then textures are judged at all their mip levels. A low-poly's is
+    /// fitted to views, which reads its first level alone.
+    pub own: bool,
+    /// The given layout's error by showing: at full size, half and so on.
+    pub kept: Vec<f64>,
+}
+
+impl<'a> Judge<'a> {
+    /// A judge by the given layout.
+    pub fn new(mesh: &'a Mesh, start: &'a Layout, problem: &'a Problem<'a>, own: bool) -> Self {
+        Self { mesh, start, problem, own, kept: errors(problem, start, own) }
+    }
+
+    /// Errors as shares of those of the given layout; `problem` is its own, or the same on pieces of its
+    /// triangles.
+    pub fn relative(&self, problem: &Problem, layout: &Layout) -> Vec<f64> {
+        let errors = errors(problem, layout, self.own);
+        errors.iter().zip(&self.kept).map(|(a, b)| a / b.max(1e-12)).collect()
+    }
+
+    /// The error that counts is that of all sizes.
+    pub fn total(&self, layout: &Layout) -> f64 {
+        self.relative(self.problem, layout).iter().sum()
+    }
+}
