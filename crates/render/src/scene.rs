@@ -41,28 +41,20 @@ pub struct Scene {
     pyramids: Vec<Pyramid<3>>,
     /// 0 where a face is degenerate.
     face_normals: Vec<Vec3>,
+    /// Whether textures are read as they are stored; vertex colours, which are linear, are encoded then.
+    as_stored: bool,
 }
 
 impl Scene {
     /// Unpacks every texture that a material uses.
     ///
     /// The mesh must have normals, and tangents if a material has a normal map.
-    pub fn new(
-        mut mesh: Mesh,
-        materials: &[Material],
-        images: &[Image],
-        interpretation: Interpretation,
-    ) -> Self {
+    pub fn new(mesh: Mesh, materials: &[Material], images: &[Image], interpretation: Interpretation) -> Self {
         let mut builder = Builder::new(images, interpretation);
         let surfaces = materials.iter().map(|m| builder.surface(m)).collect();
         let pyramids = builder.pyramids;
-        if !interpretation.decode_srgb {
-            for c in &mut mesh.colors {
-                *c = Vec4::from(c.to_array().map(encode_srgb));
-            }
-        }
         let face_normals = (0..mesh.triangles.len()).map(|t| mesh.area_normal(t)).collect();
-        Self { mesh, surfaces, pyramids, face_normals }
+        Self { mesh, surfaces, pyramids, face_normals, as_stored: !interpretation.decode_srgb }
     }
 
     /// The mesh being rendered.
@@ -118,7 +110,10 @@ impl Scene {
             color *= fetch(map);
         }
         if !self.mesh.colors.is_empty() {
-            color *= interpolate(corners.map(|i| self.mesh.colors[i]), weights).truncate();
+            let own: Vec4 = interpolate(corners.map(|i| self.mesh.colors[i]), weights);
+            // Light is what is blended between vertices, whatever is stored.
+            let stored = |x: f32| if self.as_stored { encode_srgb(x) } else { x };
+            color *= Vec3::from(own.truncate().to_array().map(stored));
         }
         color
     }
