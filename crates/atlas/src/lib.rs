@@ -7,6 +7,7 @@
 //! pack        charts into the square
 //! unwrap      a new layout for any mesh
 //! repair      a sound layout from a delivered one
+//! tiles       charts of repeated textures brought into one tile
 //! tutte       an embedding of each piece in a circle or square
 //! ```
 
@@ -16,6 +17,7 @@ pub mod layout;
 pub mod pack;
 pub mod predicates;
 pub mod repair;
+pub mod tiles;
 pub mod tutte;
 pub mod unwrap;
 
@@ -24,5 +26,6 @@ pub use error::AtlasError;
 pub use layout::{BoundaryEdge, Layout};
 pub use pack::{ChartScale, PackOptions, pack};
 pub use repair::{RepairOptions, repair};
+pub use tiles::in_one_tile;
 pub use tutte::{TutteBoundary, TutteOptions, TutteWeights, tutte};
 pub use unwrap::{UnwrapOptions, UnwrappedMesh, unwrap};

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! nothing wrong                      left as it is
+//! only in other tiles                each chart moved by whole tiles
 //! only outside the square            all brought in together, unless it would be nearly empty
 //! mirrored charts                    mirrored back
 //! charts folded along few lines      cut there
@@ -11,6 +12,7 @@
 
 mod faults;
 
+use crate::tiles::in_one_tile;
 use crate::unwrap::corners::{Corners, Surface};
 use crate::unwrap::long::{LEAST_COVER, cut_across};
 use crate::unwrap::sound::{at_fault, settled};
@@ -58,6 +60,17 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> Result<(Mesh, Vec<String>
     if is_good(&delivered, &options.pack) {
         return Ok((mesh.clone(), Vec::new()));
     }
+    if delivered.orientations.outside.count > 0
+        && let Some(uvs) = in_one_tile(mesh)
+    {
+        let home = Mesh { uvs, tangents: Vec::new(), ..mesh.clone() };
+        if is_good(&check(&Layout::new(&home), size), &options.pack) {
+            return Ok((
+                home,
+                vec!["Charts in other tiles of the texture were moved into its square.".into()],
+            ));
+        }
+    }
     let live = (0..mesh.triangles.len()).filter(|&t| surface.is_live(t));
     let mut corners = corners_of(&surface);
     if live.clone().all(|t| surface.delivered.doubled_area(t) == 0.0) {
@@ -87,7 +100,7 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> Result<(Mesh, Vec<String>
         }
         (false, true) => format!(
             "Charts lay closer to each other than {} texels; all were packed again at their relative sizes.",
-            options.pack.gutter_texels
+            (10.0 * options.pack.gutter_texels).round() / 10.0
         ),
         _ => "All charts were packed again at their relative sizes.".into(),
     });

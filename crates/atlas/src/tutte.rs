@@ -89,7 +89,10 @@ pub fn tutte(mesh: &Mesh, options: &TutteOptions) -> Result<UnwrappedMesh, Atlas
         }
         corners.next += 1;
     }
-    let pack = PackOptions { chart_scale: ChartScale::Keep, ..options.pack.clone() };
+    // What is drawn half as large keeps half of its gutters.
+    let shrunk = if options.in_the_middle { 2.0 } else { 1.0 };
+    let gutter_texels = shrunk * options.pack.gutter_texels;
+    let pack = PackOptions { chart_scale: ChartScale::Keep, gutter_texels, ..options.pack.clone() };
     let mut corners = settled(&surface, corners, &pack)?;
     if options.in_the_middle {
         // Halving is exact; adding a quarter may round once more.

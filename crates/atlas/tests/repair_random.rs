@@ -151,7 +151,10 @@ fn repairs_are_named() {
         assert_sound(&repaired, 1.0);
         (repaired, sentences.join(" "))
     };
-    let (moved, text) = said(|m| m.uvs.iter_mut().for_each(|p| p.x += 3.0));
+    let (home, text) = said(|m| m.uvs.iter_mut().for_each(|p| p.x += 3.0));
+    assert_eq!(text, "Charts in other tiles of the texture were moved into its square.");
+    assert!(home.uvs.iter().zip(&plane(4).uvs).all(|(a, b)| a.abs_diff_eq(*b, 1e-6)));
+    let (moved, text) = said(|m| m.uvs.iter_mut().for_each(|p| p.x += 0.7));
     assert_eq!(text, "Texture coordinates outside the square were brought into it.");
     let layout = Layout::new(&moved);
     assert!((layout.doubled_area(0) - 0.04).abs() < 1e-5, "only moved");

@@ -107,7 +107,7 @@ impl OnLevel {
         let (a, b, c) = (self.origin, self.origin + self.second, self.origin + self.third);
         let (low, high) = (a.min(b).min(c) - 0.01, a.max(b).max(c) + 0.01);
         let from = |x: f32| (x.max(0.0) as usize).min(self.size - 2);
-        let to = |x: f32| ((x.max(0.0) as usize) + 2).min(self.size);
+        let to = |x: f32| from(x) + 2;
         [[from(low.x), from(low.y)], [to(high.x), to(high.y)]]
     }
 }
