@@ -45,8 +45,13 @@ fn summary(report: &BakeReport, [before, after]: [u64; 2], output: &Path, second
     let mut text = String::new();
     if let (Some(first), Some(last)) = (report.losses.first(), report.losses.last()) {
         let (ordinary, written) = (decibels(first), decibels(last));
+        let (begun, over) = match first.moved.as_str() {
+            "delivered" => ("with coordinates as they are", "the surface"),
+            "mended" => ("with coordinates mended", "the surface"),
+            _ => ("projected", "training views"),
+        };
         text += &format!(
-            "{}: {ordinary:.2} dB with coordinates as they are, {written:.2} dB written, over the surface\n",
+            "{}: {ordinary:.2} dB {begun}, {written:.2} dB written, over {over}\n",
             output.display()
         );
     }

@@ -57,7 +57,9 @@ impl Bisected {
         let mut work = Work::new(mesh, weights);
         let most = mesh.triangles.len() + more;
         let mut heaviest: BinaryHeap<_> = (0..mesh.triangles.len()).map(|t| work.rank(t)).collect();
-        while let Some((weight, Reverse(t))) = heaviest.pop() {
+        while work.corners.len() < most
+            && let Some((weight, Reverse(t))) = heaviest.pop()
+        {
             if weight == 0 || work.rank(t).0 != weight {
                 continue;
             }
@@ -66,8 +68,9 @@ impl Bisected {
                 continue;
             }
             let edge = work.terminal(edge);
+            // An edge of many triangles may take more than there is left.
             if work.corners.len() + work.around[&edge].len() > most {
-                break;
+                continue;
             }
             let halved = work.halve(edge);
             heaviest.extend(halved.iter().map(|&t| work.rank(t)));

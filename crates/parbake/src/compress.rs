@@ -5,31 +5,43 @@
 //! it, and the texture is one least-squares problem, mip levels included. What other parts hide
 //! counts for as much as is seen of it.
 //!
-//! Texels are compared as they are stored, as when a picture is scaled. So are the colours that
-//! coordinates are moved for, which is about what viewers of glTF show; in the paper's pictures
-//! stored values are light, and its curve makes far more of dark colours: by that convention
-//! they are compared as shown.
+//! ```text
+//! delivered coordinates ─────────────────────────────────────┐
+//! mended, where they are not sound ─┬────────────────────────┼─ textures ─ the best one ─ Model
+//!                                   └─ more triangles, moved ┘
+//! ```
+//!
+//! Contract: what is written is sound, unless coordinates are to be kept, and shows the surface no worse
+//! than coordinates that were only mended. Texels are compared as they are stored, as when a picture is
+//! scaled.
 
 use crate::bake::{Baked, bake_pair};
-use crate::bridge::Bridge;
+use crate::bridge::{Bridge, Clock};
+use crate::check::{check_mesh, warning};
 use crate::error::BakeError;
 use crate::message::{Message, Stage, Watcher};
-use crate::options::{BakeOptions, Convention, Method, Parallax, UvMode};
+use crate::options::{BakeOptions, Convention, Parallax, UvMode};
 use crate::pair::{common_frame, placed};
-use crate::report::{BakeReport, LossStep, StageTime, Work};
-use crate::unfold::{Source, SurfaceTexture, UnfoldOptions, Unfolded, mend, solve_on_surface, unfold};
+use crate::report::{BakeReport, LossStep, Work};
+use crate::unfold::{
+    Mended, Source, SurfaceTexture, UnfoldOptions, Unfolded, mend, solve_on_surface, unfold,
+};
+use parbake_atlas::in_one_tile;
 use parbake_mesh::{HighSurface, exposures};
-use parbake_model::{Image, Material, Model, TextureSlot, Wrap};
+use parbake_model::glam::Vec2;
+use parbake_model::{Image, Material, Mesh, Model, Placement, TextureSlot, Wrap};
 use parbake_render::scene::Scene;
 use std::time::Instant;
 
-/// Here texture coordinates are all that takes time, and may take more steps than in a bake.
-const STEPS_FACTOR: usize = 8;
+/// How far dark colours are brightened before coordinates move for them. Viewers of glTF show stored
+/// values where light has strength 1; stronger light, and the paper's pictures, make more of dark ones.
+/// Halfway between the two is within 0.5 dB of the better one in either.
+const BRIGHTENED: f32 = 0.5;
 
 /// Bakes a model onto itself with a smaller texture.
 ///
 /// A model with a normal map is baked as a pair is, since its normal map must follow the
-/// coordinates.
+/// coordinates; so is one whose texture repeats, if its coordinates are to be kept.
 ///
 /// # Errors
 /// As of [`crate::bake`].
@@ -38,105 +50,158 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         let (option, range) = ("parallax", "none where a model is compressed: its surface stays".into());
         return Err(BakeError::Option { option, value: "sh".into(), range });
     }
-    if model.materials.iter().any(|m| m.normal_texture.is_some()) {
+    options.check()?;
+    let as_it_is = options.unfold_as(UvMode::Keep);
+    let delivered = mend(model, &as_it_is)?;
+    if options.uv == UvMode::Keep && delivered.mesh.uvs.is_empty() {
+        return Err(BakeError::NoTextureCoordinates { model: model.name.clone() });
+    }
+    let delivered = in_the_square(delivered, options.texture_size);
+    let repeats = options.uv == UvMode::Keep && delivered.is_none();
+    if repeats || model.materials.iter().any(|m| m.normal_texture.is_some()) {
         return bake_pair(model, model, true, options, watcher);
     }
-    options.check()?;
     let begin = Instant::now();
     let watcher = &Bridge::new(watcher, begin, options.time_budget);
+    let mut clock = Clock::new(begin);
     let frame = common_frame(model)?;
+    let surface = placed(model, &frame);
     // Colours are read as they are stored.
     let interpretation = Convention::Paper.interpretation();
-    let scene = Scene::new(placed(model, &frame), &model.materials, &model.images, interpretation);
-    let surface = placed(model, &frame);
+    let scene = Scene::new(surface.clone(), &model.materials, &model.images, interpretation);
     let exposures = exposures(&surface, &HighSurface::new(&surface));
     let stored = Source {
         scene: &scene,
         surface: None,
         exposures: &exposures,
         reach: 0.0,
-        encode: false,
+        brightened: 0.0,
+        normals: false,
         pixel: Source::SAMPLE,
     };
-    let shown = Source { encode: options.convention == Convention::Paper, ..stored };
-    let mut stages = Vec::new();
-    let mut lap = |stage, since: &mut Instant| {
-        stages.push(StageTime { stage, seconds: since.elapsed().as_secs_f64() });
-        *since = Instant::now();
+    let own = OwnSurface { model, mesh: &surface, frame: &frame, stored, options };
+    clock.lap(Stage::Prepare);
+
+    let delivered = match delivered {
+        Some(delivered) => Some(own.textured(own.unmoved(delivered, &as_it_is, watcher))?),
+        None => None,
     };
-    let mut since = begin;
-    lap(Stage::Prepare, &mut since);
-    let solved = |low: &Unfolded| {
-        solve_on_surface(&surface, low, &stored, options.texture_size)
-            .ok_or_else(|| BakeError::FlatTextureCoordinates { model: model.name.clone() })
-    };
-    let as_it_is = options.unfold_as(UvMode::Keep);
-    let kept = unfold(mend(model, &as_it_is)?, &frame, &shown, &as_it_is, watcher);
-    if kept.model.mesh.uvs.is_empty() {
-        return Err(BakeError::NoTextureCoordinates { model: model.name.clone() });
-    }
-    let ordinary = solved(&kept)?;
-    lap(Stage::Solve, &mut since);
-    let asked = options.unfold();
-    let factor = if options.method == Method::Fit { STEPS_FACTOR } else { 1 };
-    let steps = options.uv_steps.unwrap_or(factor * asked.steps);
-    let asked = UnfoldOptions { steps, ..asked };
+    clock.lap(Stage::Solve);
+    let asked = options.unfold_for(Work::Compress);
     let mended = mend(model, &asked)?;
-    let unmoved = unfold(mended.clone(), &frame, &shown, &UnfoldOptions { steps: 0, ..asked }, watcher);
-    let mut unfolded = unfold(mended, &frame, &shown, &asked, watcher);
-    lap(Stage::Unfold, &mut since);
-    let solved_anew = |low: &Unfolded| {
-        if low.model.mesh.uvs == kept.model.mesh.uvs { Ok(ordinary.clone()) } else { solved(low) }
+    let unmoved = own.unmoved(mended.clone(), &asked, watcher);
+    let shown = Source { brightened: BRIGHTENED, ..stored };
+    let moved = unfold(mended, &frame, &shown, &asked, watcher);
+    clock.lap(Stage::Unfold);
+    let begun = match &delivered {
+        Some(same) if same.low.model.mesh.uvs == unmoved.model.mesh.uvs => same.clone(),
+        _ => own.textured(unmoved)?,
     };
-    let mut written = solved_anew(&unfolded)?;
-    if unfolded.moves.is_some() {
-        let begun = solved_anew(&unmoved)?;
-        if written.errors.iter().zip(&begun.errors).any(|(now, before)| now > before) {
-            // Fewer samples had said otherwise.
-            (unfolded, written) = (unmoved, begun);
+    let written = if moved.moves.is_some() {
+        // The judges of its moves had fewer samples.
+        Some(own.textured(moved)?).filter(|moved| !moved.is_worse(&begun))
+    } else {
+        None
+    };
+    let written = written.unwrap_or_else(|| begun.clone());
+    clock.lap(Stage::Solve);
+
+    let (kind, baseline) = delivered.as_ref().map_or(("mended", &begun), |solved| ("delivered", solved));
+    let losses = vec![loss(kind, &baseline.solved), loss("color", &written.solved)];
+    let mut report = own.report(baseline, &written, watcher);
+    (report.losses, report.stages) = (losses, clock.stages);
+    Ok(Baked {
+        projected: textured(baseline.low.model.clone(), &baseline.solved),
+        model: textured(written.low.model, &written.solved),
+        report,
+        uv_moves: written.low.moves,
+    })
+}
+
+/// Delivered coordinates as a texture that does not repeat can be read with them: charts in other tiles
+/// are brought home. None where one reaches across a tile's border by more than half a texel.
+fn in_the_square(mut delivered: Mended, texture_size: usize) -> Option<Mended> {
+    let slack = 0.5 / texture_size as f32;
+    let is_inside = |uv: &Vec2| uv.min_element() >= -slack && uv.max_element() <= 1.0 + slack;
+    if delivered.mesh.uvs.is_empty() || !delivered.mesh.uvs.iter().all(is_inside) {
+        delivered.mesh.uvs = in_one_tile(&delivered.mesh)?;
+    }
+    Some(delivered)
+}
+
+/// The surface that a model is compressed for: its own.
+struct OwnSurface<'a> {
+    model: &'a Model,
+    /// Its mesh in the common frame.
+    mesh: &'a Mesh,
+    frame: &'a Placement,
+    /// Its colours as they are stored.
+    stored: Source<'a>,
+    options: &'a BakeOptions,
+}
+
+/// Coordinates and the texture that was solved for them.
+#[derive(Clone)]
+struct Solved {
+    low: Unfolded,
+    solved: SurfaceTexture,
+}
+
+impl Solved {
+    /// Whether it shows the surface worse at full size or half.
+    fn is_worse(&self, than: &Self) -> bool {
+        self.solved.errors.iter().zip(&than.solved.errors).any(|(own, other)| own > other)
+    }
+}
+
+impl OwnSurface<'_> {
+    /// Coordinates as they are.
+    fn unmoved(&self, mended: Mended, options: &UnfoldOptions, watcher: &impl Watcher) -> Unfolded {
+        unfold(mended, self.frame, &self.stored, &UnfoldOptions { steps: 0, ..*options }, watcher)
+    }
+
+    fn textured(&self, low: Unfolded) -> Result<Solved, BakeError> {
+        let solved = solve_on_surface(self.mesh, &low, &self.stored, self.options.texture_size)
+            .ok_or_else(|| BakeError::FlatTextureCoordinates { model: self.model.name.clone() })?;
+        Ok(Solved { low, solved })
+    }
+
+    /// What was done, and said to the user where he should know; losses and stages are left to be told.
+    fn report<W: Watcher>(&self, baseline: &Solved, written: &Solved, watcher: &Bridge<W>) -> BakeReport {
+        let name = &self.model.name;
+        let uv = check_mesh(&written.low.model.mesh, self.options.texture_size);
+        let mended = written.low.report.mended.iter().map(|done| format!("{name}: {done}"));
+        let warnings: Vec<String> = mended.chain(warning(name, &uv)).collect();
+        warnings.iter().for_each(|warning| watcher.message(Message::Warning(warning.clone())));
+        let mut unfold = written.low.report.clone();
+        let errors = written.solved.errors.iter().zip(&baseline.solved.errors);
+        unfold.relative_error = errors.map(|(a, b)| a / b.max(1e-12)).collect();
+        BakeReport {
+            work: Work::Compress,
+            shape: None,
+            depth: None,
+            unfold: (self.options.uv != UvMode::Keep).then_some(unfold),
+            options: self.options.clone(),
+            high_triangles: self.model.mesh.triangles.len(),
+            low_triangles: written.low.model.mesh.triangles.len(),
+            views: 0,
+            samples: written.solved.samples,
+            covered_texels: 0,
+            unseen_texels: 0,
+            overlapping_texels: 0,
+            missed_texels: 0,
+            uv,
+            losses: Vec::new(),
+            stages: Vec::new(),
+            stopped_early: watcher.stopped_a_stage(),
+            warnings,
+            peak_memory: crate::memory::peak_memory(),
         }
     }
-    lap(Stage::Solve, &mut since);
-    let mut warnings = Vec::new();
-    for done in &unfolded.report.mended {
-        let warning = format!("{}: {done}", model.name);
-        watcher.message(Message::Warning(warning.clone()));
-        warnings.push(warning);
-    }
-    unfolded.report.relative_error =
-        written.errors.iter().zip(&ordinary.errors).map(|(a, b)| a / b.max(1e-12)).collect();
-    let loss = |moved: &str, solved: &SurfaceTexture| LossStep {
-        moved: moved.into(),
-        seconds: 0.0,
-        mean_square: solved.errors[0],
-    };
-    let report = BakeReport {
-        work: Work::Compress,
-        shape: None,
-        depth: None,
-        unfold: Some(unfolded.report.clone()),
-        options: options.clone(),
-        high_triangles: model.mesh.triangles.len(),
-        low_triangles: unfolded.model.mesh.triangles.len(),
-        views: 0,
-        samples: written.samples,
-        covered_texels: 0,
-        unseen_texels: 0,
-        overlapping_texels: 0,
-        missed_texels: 0,
-        uv: crate::check::check_mesh(&unfolded.model.mesh, options.texture_size),
-        losses: vec![loss("start", &ordinary), loss("color", &written)],
-        stages,
-        stopped_early: watcher.stopped_a_stage(),
-        warnings,
-        peak_memory: crate::memory::peak_memory(),
-    };
-    Ok(Baked {
-        model: textured(unfolded.model, &written),
-        projected: textured(kept.model, &ordinary),
-        report,
-        uv_moves: unfolded.moves,
-    })
+}
+
+fn loss(moved: &str, solved: &SurfaceTexture) -> LossStep {
+    LossStep { moved: moved.into(), seconds: 0.0, mean_square: solved.errors[0] }
 }
 
 /// The model with its one texture.
@@ -160,7 +225,7 @@ fn textured(mut model: Model, solved: &SurfaceTexture) -> Model {
 mod tests {
     use super::*;
     use parbake_model::Mesh;
-    use parbake_model::glam::{Vec3, vec2};
+    use parbake_model::glam::{Vec3, Vec4, vec2};
 
     /// A box's six sides in a row of the texture from `top` on, a square each.
     fn add_box(mesh: &mut Mesh, half: f32, top: f32) {
@@ -218,6 +283,55 @@ mod tests {
         let outer = area(|p| p.abs().max_element() > 0.95);
         assert!(inner > 0.0 && inner < 0.5 * outer, "{inner} of {outer}");
         assert!(baked.report.uv.is_bijective());
+    }
+
+    /// Protects what textures that repeat show: charts in other tiles are read where they are at home, so
+    /// that delivered coordinates are compared by what they can show.
+    #[test]
+    fn charts_in_other_tiles_are_read_at_home() {
+        let mut mesh = Mesh::default();
+        add_box(&mut mesh, 1.0, 0.1);
+        let options = BakeOptions { texture_size: 64, uv_steps: Some(2), ..BakeOptions::default() };
+        let at_home = compress(&noisy(mesh.clone()), &options, &()).expect("a box can be compressed");
+        mesh.uvs[..4].iter_mut().for_each(|uv| *uv += vec2(2.0, -1.0));
+        let mut away = noisy(mesh);
+        away.materials[0].base_color_texture.iter_mut().for_each(|slot| slot.wrap = [Wrap::Repeat; 2]);
+        let away = compress(&away, &options, &()).expect("a box can be compressed");
+        let delivered =
+            |baked: &Baked| (baked.report.losses[0].moved.clone(), baked.report.losses[0].mean_square);
+        assert_eq!(delivered(&at_home).0, "delivered");
+        assert_eq!(delivered(&away).0, "delivered");
+        assert!((delivered(&away).1 / delivered(&at_home).1 - 1.0).abs() < 0.05);
+        assert!(away.report.warnings.iter().any(|w| w.contains("other tiles")));
+    }
+
+    /// Protects models that have colours and no coordinates yet: they are unwrapped, and what lies between
+    /// two vertices is the light halfway, not the stored value halfway.
+    #[test]
+    fn vertex_colours_become_a_texture() {
+        let mut mesh = Mesh::default();
+        add_box(&mut mesh, 1.0, 0.1);
+        mesh.uvs.clear();
+        mesh.colors = mesh.positions.iter().map(|p| Vec4::splat(if p.x > 0.0 { 1.0 } else { 0.0 })).collect();
+        let model = Model { materials: vec![Material::default()], mesh, ..Model::default() };
+        let keep = BakeOptions { texture_size: 64, uv: UvMode::Keep, ..BakeOptions::default() };
+        assert!(matches!(compress(&model, &keep, &()), Err(BakeError::NoTextureCoordinates { .. })));
+        let options = BakeOptions { uv: UvMode::Unwrap, ..keep };
+        let Baked { model, report, .. } = compress(&model, &options, &()).expect("a box can be unwrapped");
+        assert_eq!(report.losses[0].moved, "mended");
+        // Halfway along edges from black to white; half of the light is stored as 188 of 255.
+        let mesh = &model.mesh;
+        let [red, ..] = mesh
+            .triangles
+            .iter()
+            .find_map(|&[a, b, _]| {
+                let [p, q] = [a, b].map(|v| mesh.positions[v as usize]);
+                let uv = 0.5 * (mesh.uvs[a as usize] + mesh.uvs[b as usize]);
+                let at = (uv * 64.0).as_uvec2();
+                (p.x * q.x < 0.0).then(|| model.images[0].pixels[(at.y * 64 + at.x) as usize])
+            })
+            .expect("an edge from black to white");
+        assert!((180..=196).contains(&red), "{red}");
     }
 
     /// Protects soundness: boxes that share their texels have more of them each, and are given their

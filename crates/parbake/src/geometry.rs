@@ -13,6 +13,7 @@ use crate::bridge::{Bridge, Clock, shares};
 use crate::error::BakeError;
 use crate::message::{Stage, Watcher};
 use crate::options::{BakeOptions, UvMode};
+use crate::report::Work;
 use crate::shape::{ShapeReport, Target, shape};
 use crate::unfold::{Source, Unfolded, mend_with_room, unfold};
 use parbake_model::{Model, Placement};
@@ -49,7 +50,7 @@ pub fn move_geometry<W: Watcher>(
     if options.uv == UvMode::Keep && shape_plan.is_none() && algorithm_plan.is_none() {
         return Ok(geometry);
     }
-    let mut unfold_options = options.unfold();
+    let mut unfold_options = options.unfold_for(if same { Work::Compress } else { Work::Bake });
     let mut low = mend_with_room(low, &mut unfold_options)?;
     clock.lap(Stage::Prepare);
     if let Some(plan) = &shape_plan {
@@ -62,7 +63,8 @@ pub fn move_geometry<W: Watcher>(
         surface: (!same).then_some(target.surface),
         exposures: &[],
         reach: target.reach,
-        encode: target.srgb,
+        brightened: if target.srgb { 1.0 } else { 0.0 },
+        normals: true,
         pixel: Source::PIXEL,
     };
     let mut unfolded = unfold(low, frame, &source, &unfold_options, &bridge.share(shares::UNFOLD));

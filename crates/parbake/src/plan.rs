@@ -4,6 +4,7 @@
 use crate::algorithm_one::AlgorithmPlan;
 use crate::depth::{DepthPlan, ParallaxPass};
 use crate::options::{BakeOptions, Method, Parallax, Preset, ShapeMode, UvMode};
+use crate::report::Work;
 use crate::shape::ShapePlan;
 use crate::unfold::UnfoldOptions;
 use parbake_fit::cutout::CutoutOptions;
@@ -38,6 +39,9 @@ const ALGORITHM_VIEW_SIZE: usize = 256;
 
 /// Weight of the Laplacian term where it is asked for.
 const LAPLACIAN: f32 = 10.0;
+
+/// Where a model is compressed, texture coordinates are all that takes time, and take more steps by this factor.
+const OWN_STEPS: usize = 8;
 
 impl BakeOptions {
     /// Of a stage's views, those that the user's number leaves.
@@ -188,6 +192,13 @@ impl BakeOptions {
             steps: self.uv_steps.unwrap_or(steps),
             more_triangles: self.more_triangles(),
         }
+    }
+
+    /// What to do with texture coordinates in this work.
+    pub(crate) fn unfold_for(&self, work: Work) -> UnfoldOptions {
+        let own = self.unfold();
+        let factor = if (self.method, work) == (Method::Fit, Work::Compress) { OWN_STEPS } else { 1 };
+        UnfoldOptions { steps: self.uv_steps.unwrap_or(factor * own.steps), ..own }
     }
 
     /// Settles what the preset leaves open.

@@ -21,7 +21,8 @@ pub struct StageTime {
 /// The loss after a step of the fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LossStep {
-    /// What moved: start, color, normal or rounding.
+    /// What moved: start, color, normal or rounding; where a model is compressed without views, delivered or
+    /// mended for what coordinates were before they moved, and color.
     pub moved: String,
     /// Seconds since the fit began.
     pub seconds: f64,
@@ -50,6 +51,16 @@ pub enum Work {
     Bake,
     /// A model with a smaller texture.
     Compress,
+}
+
+impl Work {
+    /// The command, as one types it, and what it takes.
+    pub(crate) fn command(self) -> &'static str {
+        match self {
+            Self::Bake => "bake HIGH LOW",
+            Self::Compress => "compress MODEL",
+        }
+    }
 }
 
 /// What a bake saw.
@@ -100,14 +111,6 @@ pub struct BakeReport {
 }
 
 impl BakeReport {
-    /// The command, as one types it, and what it takes.
-    pub(crate) fn command(&self) -> &'static str {
-        match self.work {
-            Work::Bake => "bake HIGH LOW",
-            Work::Compress => "compress MODEL",
-        }
-    }
-
     /// What the textures are that the result is compared with.
     pub(crate) fn start(&self) -> &'static str {
         match self.views {

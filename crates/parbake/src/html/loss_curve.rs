@@ -6,11 +6,13 @@ use parbake_page::text::{decimal, duration};
 use std::fmt::Write;
 
 /// What can move in a step: its name in the report, its name for people.
-const MOVES: [(&str, &str); 4] = [
+const MOVES: [(&str, &str); 6] = [
     ("start", "projected start"),
     ("color", "colours"),
     ("normal", "normals"),
     ("rounding", "rounding to 8 bits"),
+    ("delivered", "coordinates as delivered"),
+    ("mended", "coordinates mended"),
 ];
 
 /// The chart with its legend, or a sentence when nothing was measured.
@@ -82,7 +84,7 @@ fn kind(moved: &str) -> usize {
 /// A shape for each kind, so that colour is not all that tells them apart.
 fn mark(kind: usize, x: f64, y: f64) -> String {
     match kind {
-        0 => format!("M{:.1} {y:.1}a5 5 0 1 0 10 0a5 5 0 1 0 -10 0z", x - 5.0),
+        0 | 4 | 5 => format!("M{:.1} {y:.1}a5 5 0 1 0 10 0a5 5 0 1 0 -10 0z", x - 5.0),
         1 => format!("M{:.1} {:.1}h9v9h-9z", x - 4.5, y - 4.5),
         2 => format!("M{x:.1} {:.1}l5.4 9.6h-10.8z", y - 6.0),
         _ => format!("M{x:.1} {:.1}l6 6l-6 6l-6 -6z", y - 6.0),

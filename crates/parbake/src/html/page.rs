@@ -76,7 +76,7 @@ pub fn page(high: &Model, baked: &Baked, evaluated: &Evaluated, sides: &[Side]) 
             ),
             loss_curve(&report.losses),
             tables::stages(report),
-            settings(&report.options, report.command())
+            settings(&report.options, report.work)
         ),
     );
     Ok(document(&name, &out))

@@ -2,6 +2,7 @@
 //! option can be forgotten.
 
 use crate::options::BakeOptions;
+use crate::report::Work;
 use parbake_page::text::escape;
 use serde::Serialize;
 use serde_json::Value;
@@ -44,7 +45,7 @@ pub fn flags<T: Serialize>(options: &T, default: &T) -> String {
 }
 
 /// The table of all options, and the command that takes them.
-pub fn settings(options: &BakeOptions, command: &str) -> String {
+pub fn settings(options: &BakeOptions, work: Work) -> String {
     let (plan, default) = (options.plan(), fields(&BakeOptions::default()));
     let mut out = String::from(r#"<table class="settings"><tbody>"#);
     for (name, value) in fields(options) {
@@ -56,7 +57,7 @@ pub fn settings(options: &BakeOptions, command: &str) -> String {
             "silhouette" => Some(options.silhouette_weight().to_string()),
             "outlier" => Some(plan.schedule.outlier.to_string()),
             "more_triangles" => Some(options.more_triangles().to_string()),
-            "uv_steps" => Some(options.unfold().steps.to_string()),
+            "uv_steps" => Some(options.unfold_for(work).steps.to_string()),
             "threads" if options.threads == 0 => Some("one a core".into()),
             _ => None,
         };
@@ -80,7 +81,8 @@ pub fn settings(options: &BakeOptions, command: &str) -> String {
     }
     let _ = write!(
         out,
-        "</tbody></table><p class=\"note\">To bake like this again: <code>parbake {command}{}</code></p>",
+        "</tbody></table><p class=\"note\">To bake like this again: <code>parbake {}{}</code></p>",
+        work.command(),
         flags(options, &BakeOptions::default())
     );
     out
@@ -109,7 +111,7 @@ mod tests {
     /// Protects the promise that every option is on the page.
     #[test]
     fn no_option_is_missing() {
-        let html = settings(&BakeOptions::default(), "bake HIGH LOW");
+        let html = settings(&BakeOptions::default(), Work::Bake);
         let views = BakeOptions::default().plan().views;
         assert!(fields(&BakeOptions::default()).len() > 10);
         assert_eq!(html.matches("<tr").count(), fields(&BakeOptions::default()).len());

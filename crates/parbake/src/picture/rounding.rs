@@ -1,11 +1,14 @@
 //! Coordinates as a file holds them: in two bytes each where that halves it, else in four.
 
 use parbake_atlas::Layout;
+use parbake_atlas::predicates::orientation;
 use parbake_files::{short_uv, short_uvs_pay};
+use parbake_model::glam::DVec2;
 
 /// The layout at coordinates that a file of it holds; None where a triangle turns over by that.
 pub fn as_written(mut layout: Layout) -> Option<Layout> {
-    let is_sound = |layout: &Layout| (0..layout.triangles.len()).all(|t| layout.doubled_area(t) > 0.0);
+    let is_upright = |[a, b, c]: [DVec2; 3]| orientation(a, b, c) > 0.0;
+    let is_sound = |layout: &Layout| (0..layout.triangles.len()).all(|t| is_upright(layout.corners(t)));
     if short_uvs_pay(layout.points.len()) {
         let points = layout.points.iter().map(|p| short_uv(p.as_vec2()).as_dvec2()).collect();
         let short = Layout { points, ..layout.clone() };
@@ -21,7 +24,7 @@ pub fn as_written(mut layout: Layout) -> Option<Layout> {
 mod tests {
     use super::super::plane::Plane;
     use super::*;
-    use parbake_model::glam::{DVec2, dvec2};
+    use parbake_model::glam::dvec2;
 
     fn moved(cells: usize, by: impl Fn(usize) -> DVec2) -> Layout {
         let plane = Plane { cells };

@@ -90,17 +90,57 @@ fn shared_out(samples: &[Sample], family: &[Place]) -> (Vec<u32>, Vec<Sample>) {
         return (vec![samples.len() as u32], samples.to_vec());
     }
     let mut own = vec![Vec::new(); family.len()];
+    let cells = Cells::new(family);
     for sample in samples {
-        let inside = family.iter().map(|place| place.weights(sample)).enumerate();
+        let inside = cells.near(sample).iter().map(|&piece| (piece, family[piece as usize].weights(sample)));
         // Rounding may leave a sample that lies on an edge outside of both pieces.
         let depth = |[b, c]: [f32; 2]| b.min(c).min(1.0 - b - c);
         let deepest = inside.max_by(|(_, a), (_, b)| depth(*a).total_cmp(&depth(*b)));
         if let Some((piece, barycentric)) = deepest {
-            own[piece].push(Sample { barycentric, ..*sample });
+            own[piece as usize].push(Sample { barycentric, ..*sample });
         }
     }
     (own.iter().map(|samples| samples.len() as u32).collect(), own.concat())
 }
+
+/// The pieces of a triangle by the cells of a grid over its barycentric weights that they touch.
+struct Cells {
+    side: usize,
+    pieces: Vec<Vec<u32>>,
+}
+
+impl Cells {
+    fn new(family: &[Place]) -> Self {
+        let side = (family.len() as f64).sqrt().ceil() as usize;
+        let mut cells = Self { side, pieces: vec![Vec::new(); side * side] };
+        for (piece, place) in (0u32..).zip(family) {
+            let corners = place.corners();
+            let [low, high] =
+                [corners.iter().copied().reduce(DVec2::min), corners.iter().copied().reduce(DVec2::max)]
+                    .map(|bound| bound.unwrap_or_default());
+            // A sample on an edge finds the pieces on both sides.
+            let ([x0, y0], [x1, y1]) = (cells.cell(low - ROUNDING), cells.cell(high + ROUNDING));
+            for y in y0..=y1 {
+                (x0..=x1).for_each(|x| cells.pieces[y * side + x].push(piece));
+            }
+        }
+        cells
+    }
+
+    fn cell(&self, weights: DVec2) -> [usize; 2] {
+        (weights * self.side as f64).to_array().map(|x| (x.max(0.0) as usize).min(self.side - 1))
+    }
+
+    /// The pieces that a sample may lie on.
+    fn near(&self, sample: &Sample) -> &[u32] {
+        let [b, c] = sample.barycentric.map(f64::from);
+        let [x, y] = self.cell(dvec2(b, c));
+        &self.pieces[y * self.side + x]
+    }
+}
+
+/// What rounding may do to barycentric weights, with room to spare.
+const ROUNDING: f64 = 1e-5;
 
 /// A piece's place among the weights of its triangle's second and third point.
 struct Place {
@@ -117,6 +157,12 @@ impl Place {
         let [a, c, b] = piece.corners.map(|weights| dvec2(f64::from(weights[2]), f64::from(weights[1])));
         let edges = DMat2::from_cols(b - a, c - a);
         Self { triangle: piece.triangle as usize, first: a, inverse: edges.inverse() }
+    }
+
+    /// Its corners, in weights of the triangle's second and third point.
+    fn corners(&self) -> [DVec2; 3] {
+        let edges = self.inverse.inverse();
+        [self.first, self.first + edges.x_axis, self.first + edges.y_axis]
     }
 
     fn weights(&self, sample: &Sample) -> [f32; 2] {

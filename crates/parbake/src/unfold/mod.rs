@@ -90,6 +90,7 @@ pub struct UnfoldReport {
 }
 
 /// A low-poly with new coordinates.
+#[derive(Clone)]
 pub struct Unfolded {
     /// Its mesh alone: what its materials said of coordinates is applied.
     pub model: Model,
@@ -160,6 +161,9 @@ pub fn unfold(
     Unfolded { model, moves, pieces, report }
 }
 
+/// Texels that charts which are going to move are packed farther apart than they must be.
+const HAIR: f64 = 0.01;
+
 /// A low-poly whose coordinates are sound, or as they were where they are to be kept.
 #[derive(Clone)]
 pub struct Mended {
@@ -180,7 +184,9 @@ pub fn mend(low: &Model, options: &UnfoldOptions) -> Result<Mended, BakeError> {
     mesh.uvs = texture_coordinates(&low.mesh, &low.materials);
     mesh.tangents.clear();
     let repaired = ensure_normals(&mut mesh);
-    let pack = packing(options);
+    // Charts that are packed at just the gutter could not approach by a hair while they move.
+    let room = if options.gutter_required && options.mode == UvMode::Optimize { HAIR } else { 0.0 };
+    let pack = PackOptions { gutter_texels: options.gutter + room, ..packing(options) };
     let sound = || check(&Layout::new(&mesh), options.texture_size).is_bijective();
     let (mesh, mut mended) = match options.mode {
         UvMode::Keep => (mesh, Vec::new()),

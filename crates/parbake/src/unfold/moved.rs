@@ -57,7 +57,7 @@ pub fn moved(
     let own = source.surface.is_none();
     let refine_by = if own { RefineBy::Stiffness } else { RefineBy::Laplacian };
     let options = &UvOptions { refine_steps: asked.steps, shape_steps, refine_by, ..UvOptions::default() };
-    let judge = &Judge::new(mesh, start, problem, own);
+    let judge = &Judge::new(mesh, start, problem, own, asked.gutter_required.then_some(asked.gutter));
     let tensors = &tensors(problem, start);
     let unmoved = judge.kept.len() as f64;
     let packed = packed(problem, start, &packing(asked), tensors)
@@ -78,10 +78,10 @@ pub fn moved(
 }
 
 /// Texels along a side of the texture that layouts are judged by: halved until every other of its texels
-/// has a sample, for finer ones could show so few samples in any layout.
+/// has a sample, for finer ones could show so few samples in any layout; never fewer than four.
 fn told_apart(texture_size: usize, samples: usize) -> usize {
     let mut size = texture_size;
-    while 2 * samples < size * size && size.is_multiple_of(2) {
+    while 2 * samples < size * size && size.is_multiple_of(2) && size > 4 {
         size /= 2;
     }
     size
@@ -122,7 +122,7 @@ fn shaped<W: Watcher>(
         let own = UvOptions { flat, ..*options };
         shape(judge.problem, &mut guess, tensors, &own, |points, _| steps.step(&mut way, points));
         let left = judge.total(&guess);
-        if left < least {
+        if left < least && judge.is_sound(&guess) {
             (*layout, least, shaped) = (guess, left, way);
         }
         if steps.watcher.stopped() {

@@ -57,7 +57,7 @@ pub fn refined<W: Watcher>(
     let limits = Limits::new(judge.own);
     if judge.own && coarse.showings[0].samples.len() < SAMPLES_PER_TEXEL * coarse.texture_size.pow(2) {
         let errors = judge.relative(coarse, &layout);
-        return limits.is_sound(&errors).then_some((Moved { layout, frames, bisected: None }, errors));
+        return limits.are_kept(&errors).then_some((Moved { layout, frames, bisected: None }, errors));
     }
     // A bake's last thousandths lie in parallax and outlines, not in coordinates.
     let (tolerance, solve) =
@@ -82,16 +82,21 @@ pub fn refined<W: Watcher>(
         // By what the texture that will be solved for leaves.
         balance.update(&errors);
         let lost = limits.is_lost(&errors);
-        if limits.is_sound(&errors)
+        if limits.are_kept(&errors)
             && best.as_ref().is_none_or(|best| best.is_beaten(&errors, finer.is_some()))
+            && judge.is_sound(&layout)
         {
-            best = Some(Best { layout: layout.clone(), errors, is_finer: finer.is_some() });
+            let way = [frames.len(), fine_frames.len()];
+            best = Some(Best { layout: layout.clone(), errors, is_finer: finer.is_some(), way });
         }
         if steps.watcher.stopped() || lost {
             break;
         }
     }
-    let Best { layout, errors, is_finer } = best?;
+    let Best { layout, errors, is_finer, way } = best?;
+    // What came after the best one led nowhere.
+    frames.truncate(way[0]);
+    fine_frames.truncate(way[1]);
     let finer = finer.filter(|_| is_finer);
     if let Some(finer) = &finer {
         frames = frames.iter().map(|points| finer.points(points)).chain(fine_frames).collect();
@@ -104,6 +109,8 @@ struct Best {
     layout: Layout,
     errors: Vec<f64>,
     is_finer: bool,
+    /// Steps that led there, before triangles were halved and after.
+    way: [usize; 2],
 }
 
 impl Best {
@@ -130,7 +137,7 @@ impl Limits {
         }
     }
 
-    fn is_sound(&self, errors: &[f64]) -> bool {
+    fn are_kept(&self, errors: &[f64]) -> bool {
         errors[0] < WORTH_IT && errors[1..].iter().all(|error| *error < self.minified)
     }
 

@@ -26,8 +26,11 @@ pub struct Source<'a> {
     pub exposures: &'a [f32],
     /// How far projection looks to either side, in the common frame.
     pub reach: f32,
-    /// Whether colours are shown by sRGB's curve before they are compared.
-    pub encode: bool,
+    /// How far dark colours are brightened before they are compared, as strong light does: 0 for stored
+    /// values, 1 for what sRGB's curve makes of them.
+    pub brightened: f32,
+    /// Whether normals count: where a normal map is to be made.
+    pub normals: bool,
     /// Width of a sample of a view that sees the surface from straight above, in the common frame.
     pub pixel: f64,
 }
@@ -65,6 +68,9 @@ pub const FORESHORTENED: [Size; 4] = [
 /// How much a normal's change counts against a colour's: light from the camera turns a
 /// change of the angle into about this share of the colour, over the visible half-sphere.
 const NORMAL_WEIGHT: f32 = 0.5;
+
+/// Shade where normals do not count: a number that bytes hold, so that rounding has nothing to lose.
+const UNSHADED: f32 = 128.0 / 255.0;
 
 /// What is never seen from outside counts as if this share of its views showed it: a camera may go
 /// inside.
@@ -137,12 +143,15 @@ fn look(mesh: &Mesh, t: usize, [b, c]: [f32; 2], source: &Source, width: f32) ->
             (color, if found.dot(normal) < 0.0 { -found } else { found })
         }
     };
-    let stored = |x: f32| if source.encode { encode_srgb(x.clamp(0.0, 1.0)) } else { x.clamp(0.0, 1.0) };
-    let color = Vec3::from(color.to_array().map(stored));
-    let shade = if source.surface.is_some() {
+    let shown = |x: f32| {
+        let x = x.clamp(0.0, 1.0);
+        if source.brightened > 0.0 { x + source.brightened * (encode_srgb(x) - x) } else { x }
+    };
+    let color = Vec3::from(color.to_array().map(shown));
+    let shade = if source.normals {
         0.5 + NORMAL_WEIGHT * color.element_sum() / 3.0 * normal.dot(Vec3::ONE) / 3f32.sqrt()
     } else {
-        0.5
+        UNSHADED
     };
     Some(color.extend(shade))
 }
