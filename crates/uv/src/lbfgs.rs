@@ -7,6 +7,7 @@
 //! definite; coordinates that are not free stay zero.
 
 use glam::DVec2;
+use rayon::prelude::*;
 use std::collections::VecDeque;
 
 /// An approximation of the inverse Hessian that is symmetric and positive definite; shared by
@@ -111,6 +112,9 @@ impl Change {
     }
 }
 
+/// Points that one task looks at.
+const BAND: usize = 1 << 14;
+
 /// Sets what is not free to zero.
 pub(crate) fn mask(vector: &mut [DVec2], free: &[DVec2]) {
     for (v, f) in vector.iter_mut().zip(free) {
@@ -119,14 +123,19 @@ pub(crate) fn mask(vector: &mut [DVec2], free: &[DVec2]) {
 }
 
 fn add(to: &mut [DVec2], what: &[DVec2], scale: f64) {
-    for (a, b) in to.iter_mut().zip(what) {
-        *a += *b * scale;
-    }
+    to.par_chunks_mut(BAND).zip(what.par_chunks(BAND)).for_each(|(to, what)| {
+        to.iter_mut().zip(what).for_each(|(a, b)| *a += *b * scale);
+    });
 }
 
 /// The scalar product of two lists of vectors.
 pub(crate) fn dot(a: &[DVec2], b: &[DVec2]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
+    let band = |(a, b): (&[DVec2], &[DVec2])| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum::<f64>();
+    if a.len() <= BAND {
+        return band((a, b));
+    }
+    let bands: Vec<f64> = a.par_chunks(BAND).zip(b.par_chunks(BAND)).map(band).collect();
+    bands.iter().sum()
 }
 
 #[cfg(test)]

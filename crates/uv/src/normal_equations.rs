@@ -9,7 +9,7 @@ use crate::best_texture::Mapped;
 use crate::footprint::{Footprint, OnLevel, shares};
 use crate::normal_matrix::{NormalMatrix, Patch};
 use crate::pyramid::{gather, halve, level_count};
-use crate::signal::{Sample, Signal};
+use crate::signal::Sample;
 use glam::Vec4;
 use rayon::prelude::*;
 
@@ -38,7 +38,8 @@ impl NormalEquations {
         let mut levels: Vec<NormalMatrix> = (0..used)
             .map(|level| NormalMatrix::sum(size >> level, runs.iter().map(|patches| &patches[level])))
             .collect();
-        let weight: f64 = mapped.showings.iter().map(Signal::weight).sum();
+        // The weights of a sample's texels sum to 1, so that all couplings sum to what samples weigh.
+        let weight: f64 = levels.iter().map(NormalMatrix::total).sum();
         let mean = weight as f32 / (size * size) as f32;
         levels[0].add_smoothness((smoothness * mean).max(1e-20));
         let mut rights: Vec<Vec<Vec4>> = levels.iter_mut().map(|m| std::mem::take(&mut m.right)).collect();

@@ -129,6 +129,12 @@ impl NormalMatrix {
         Self { size, rows, right }
     }
 
+    /// The sum of all its entries.
+    pub fn total(&self) -> f64 {
+        let row = |r: &Row| r.centre + 2.0 * (r.east + r.south_west + r.south + r.south_east);
+        self.rows.iter().map(|r| f64::from(row(r))).sum()
+    }
+
     /// Adds `weight · Σ |Tᵢ − Tⱼ|²` over neighbours in rows and columns.
     pub fn add_smoothness(&mut self, weight: f32) {
         let size = self.size;

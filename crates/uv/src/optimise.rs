@@ -140,7 +140,7 @@ impl Balance {
         // A picture that fits perfectly leaves nothing to gain; 8 bits leave more than this.
         let least: f64 = 1e-7;
         let baseline: Vec<f64> =
-            left.iter().zip(problem.showings).map(|(r, s)| r.error.max(least * s.weight())).collect();
+            left.iter().zip(problem.showings).map(|(r, s)| r.max(least * s.weight())).collect();
         let mut weights = vec![FIRST_WEIGHT; baseline.len()];
         weights[0] = 1.0;
         (Self { baseline, weights }, texture)
@@ -298,7 +298,7 @@ pub fn refine(
     let mapped = Mapped { points, ..mapped };
     let mut unused = vec![DVec2::ZERO; points.len()];
     let left = residual(&mapped, &texture, &mut unused);
-    let relative = left.iter().zip(&balance.weights).map(|(r, weight)| r.error / weight).collect();
+    let relative = left.iter().zip(&balance.weights).map(|(r, weight)| r / weight).collect();
     Refined { texture, relative, descent }
 }
 

@@ -14,51 +14,48 @@ use crate::signal::Sample;
 use glam::{DVec2, Vec2, Vec4};
 use rayon::prelude::*;
 
-/// A residual, by triangle.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Residual {
-    /// Sum over all samples.
-    pub error: f64,
-    /// The F triangles' shares of it.
-    pub by_triangle: Vec<f64>,
-}
-
 /// The residual of each showing, and the derivative of their sum, which is added to
 /// `gradient`.
-pub fn residual(mapped: &Mapped, texture: &Texture, gradient: &mut [DVec2]) -> Vec<Residual> {
+pub fn residual(mapped: &Mapped, texture: &Texture, gradient: &mut [DVec2]) -> Vec<f64> {
     let pyramid = levels(&texture.texels, texture.size, level_count(texture.size));
-    let showings = mapped.showings.len();
-    // For each run the triangles' derivatives, and their errors, showing by showing.
-    let parts: Vec<(Vec<[DVec2; 3]>, Vec<f64>)> = (0..mapped.runs.count())
+    // For each run the derivatives for its points, and the errors of each showing.
+    let parts: Vec<(Vec<DVec2>, Vec<f64>)> = (0..mapped.runs.count())
         .into_par_iter()
         .map(|run| {
-            let mut errors = Vec::new();
-            let slopes = mapped.runs.triangles(run).map(|t| {
-                errors.resize(errors.len() + showings, 0.0);
-                let last = errors.len() - showings;
-                triangle(mapped, &pyramid, texture.size, t, &mut errors[last..])
-            });
-            (slopes.collect::<Vec<_>>(), errors)
+            let own = mapped.runs.own_points(run);
+            let mut slopes = vec![DVec2::ZERO; own.points.len()];
+            let mut errors = vec![0.0; mapped.showings.len()];
+            for (t, corners) in mapped.runs.triangles(run).zip(&own.corners) {
+                let found = triangle(mapped, &pyramid, texture.size, t, &mut errors);
+                for (corner, slope) in corners.iter().zip(found) {
+                    slopes[*corner as usize] += slope;
+                }
+            }
+            (slopes, errors)
         })
         .collect();
-    let empty = Residual { error: 0.0, by_triangle: vec![0.0; mapped.triangles.len()] };
-    let mut residuals = vec![empty; showings];
+    let mut residuals = vec![0.0; mapped.showings.len()];
     for (run, (slopes, errors)) in parts.iter().enumerate() {
-        for ((t, slopes), errors) in mapped.runs.triangles(run).zip(slopes).zip(errors.chunks_exact(showings))
-        {
-            for (residual, error) in residuals.iter_mut().zip(errors) {
-                residual.error += error;
-                residual.by_triangle[t] = *error;
-            }
-            for (corner, slope) in mapped.triangles[t].into_iter().zip(slopes) {
-                gradient[corner as usize] += *slope;
-            }
+        residuals.iter_mut().zip(errors).for_each(|(sum, error)| *sum += error);
+        for (point, slope) in mapped.runs.own_points(run).points.iter().zip(slopes) {
+            gradient[*point as usize] += *slope;
         }
     }
     residuals
 }
 
-/// Writes one triangle's share of each showing's error; gives its derivatives for the three corners.
+/// The residual of all showings by triangle (F).
+pub fn residual_by_triangle(mapped: &Mapped, texture: &Texture) -> Vec<f64> {
+    let pyramid = levels(&texture.texels, texture.size, level_count(texture.size));
+    let of = |t: usize| {
+        let mut errors = vec![0.0; mapped.showings.len()];
+        triangle(mapped, &pyramid, texture.size, t, &mut errors);
+        errors.iter().sum()
+    };
+    (0..mapped.triangles.len()).into_par_iter().map(of).collect()
+}
+
+/// Adds one triangle's share to each showing's error; gives its derivatives for the three corners.
 fn triangle(mapped: &Mapped, pyramid: &[Vec<Vec4>], size: usize, t: usize, errors: &mut [f64]) -> [DVec2; 3] {
     let footprint = Footprint::new(mapped.points, mapped.triangles[t]);
     let (mut whole, mut second, mut third) = (DVec2::ZERO, DVec2::ZERO, DVec2::ZERO);

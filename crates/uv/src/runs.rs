@@ -6,6 +6,7 @@
 
 use crate::signal::Signal;
 use glam::DVec2;
+use rayon::prelude::*;
 
 /// Runs of triangles of about the same number of samples.
 #[derive(Clone, Debug, Default)]
@@ -14,6 +15,28 @@ pub struct Runs {
     pub order: Vec<u32>,
     /// Where each run begins in `order`, and the end.
     pub first: Vec<usize>,
+    /// Each run's points.
+    own: Vec<OwnPoints>,
+}
+
+/// The points of a run's triangles.
+#[derive(Clone, Debug, Default)]
+pub struct OwnPoints {
+    /// Each once, ascending.
+    pub points: Vec<u32>,
+    /// For each triangle the places of its corners in `points`.
+    pub corners: Vec<[u32; 3]>,
+}
+
+impl OwnPoints {
+    fn new(triangles: impl Iterator<Item = [u32; 3]> + Clone) -> Self {
+        let mut points: Vec<u32> = triangles.clone().flatten().collect();
+        points.sort_unstable();
+        points.dedup();
+        let place = |i: u32| points.partition_point(|own| *own < i) as u32;
+        let corners = triangles.map(|corners| corners.map(place)).collect();
+        Self { points, corners }
+    }
 }
 
 /// Runs a texture is cut into: enough for many cores, few enough that their rectangles
@@ -28,18 +51,22 @@ impl Runs {
     /// Sorts triangles along a Morton curve through their centres, unless their own order is as good.
     pub fn new(points: &[DVec2], triangles: &[[u32; 3]], signal: &Signal) -> Self {
         let mut keyed: Vec<(u32, u32)> = triangles
-            .iter()
+            .par_iter()
             .enumerate()
             .map(|(t, corners)| {
                 let centre = corners.iter().map(|&i| points[i as usize]).sum::<DVec2>() / 3.0;
                 (morton(centre), t as u32)
             })
             .collect();
-        keyed.sort_unstable();
+        keyed.par_sort_unstable();
         let along_curve = Self::cut(keyed.into_iter().map(|(_, t)| t).collect(), signal);
         let own = Self::cut((0..triangles.len() as u32).collect(), signal);
         let rectangles = |runs: &Self| runs.rectangles(points, triangles);
-        if rectangles(&own) <= OWN_ORDER * rectangles(&along_curve) { own } else { along_curve }
+        let mut runs =
+            if rectangles(&own) <= OWN_ORDER * rectangles(&along_curve) { own } else { along_curve };
+        let own = |run: usize| OwnPoints::new(runs.order_of(run).iter().map(|&t| triangles[t as usize]));
+        runs.own = (0..runs.count()).into_par_iter().map(own).collect();
+        runs
     }
 
     /// Cuts this order into runs of about as many samples.
@@ -56,7 +83,7 @@ impl Runs {
         if first.last() != Some(&order.len()) {
             first.push(order.len());
         }
-        Self { order, first }
+        Self { order, first, own: Vec::new() }
     }
 
     /// Area of all runs' rectangles together.
@@ -77,7 +104,16 @@ impl Runs {
 
     /// The triangles of a run.
     pub fn triangles(&self, run: usize) -> impl Iterator<Item = usize> + '_ {
-        self.order[self.first[run]..self.first[run + 1]].iter().map(|&t| t as usize)
+        self.order_of(run).iter().map(|&t| t as usize)
+    }
+
+    /// The points of a run's triangles.
+    pub fn own_points(&self, run: usize) -> &OwnPoints {
+        &self.own[run]
+    }
+
+    fn order_of(&self, run: usize) -> &[u32] {
+        &self.order[self.first[run]..self.first[run + 1]]
     }
 }
 

@@ -70,7 +70,7 @@ impl Objective for VariableProjection<'_> {
         let solve = Solve { least_gain: SETTLED * known, ..self.solve };
         let texture = best_texture(&mapped, self.texture.clone(), &solve);
         let left = residual(&mapped, &texture, gradient);
-        let error = left.iter().map(|r| r.error).sum::<f64>();
+        let error = left.iter().sum::<f64>();
         for g in gradient.iter_mut() {
             *g *= self.scale;
         }

@@ -66,7 +66,7 @@ fn compare(points: &[DVec2], gradient: &[DVec2], tolerance: f64, mut value: impl
 
 fn sum(mapped: &Mapped, texture: &Texture) -> f64 {
     let mut unused = vec![DVec2::ZERO; mapped.points.len()];
-    residual(mapped, texture, &mut unused).iter().map(|r| r.error).sum()
+    residual(mapped, texture, &mut unused).iter().sum()
 }
 
 /// Protects the explicit derivative for a given texture, by place and by mip level.

@@ -135,7 +135,7 @@ fn texture_gradient_is_the_derivative_of_the_error() {
     let mut gradient = vec![Vec4::ONE; 64];
     TextureLoss::new(&mapped, 8, mean_over).gradient(&texture.texels, &mut gradient);
     let error =
-        |t: &Texture| residual(&mapped, t, &mut vec![DVec2::ZERO; mapped.points.len()])[0].error / mean_over;
+        |t: &Texture| residual(&mapped, t, &mut vec![DVec2::ZERO; mapped.points.len()])[0] / mean_over;
     for (texel, gradient) in gradient.iter().enumerate() {
         for (channel, got) in gradient.truncate().to_array().into_iter().map(f64::from).enumerate() {
             let h = 1.0 / 64.0;

@@ -45,8 +45,8 @@ pub struct ImageOptions {
     pub no_content_aware: bool,
 
     /// Steps that texture coordinates take at most on each of the grids, coarse to fine, or with
-    /// --method paper on the one it has, 0 to 10000 [default: 80, 40 from 256 texels on, whose
-    /// steps take longer, with --method paper 800]
+    /// --method paper on the one it has, 0 to 10000 [default: 80, 60 from 128 texels on, 40
+    /// from 256 on, whose steps take longer, with --method paper 800]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
     pub steps: Option<usize>,
 
@@ -87,8 +87,11 @@ impl ImageOptions {
     /// Steps as asked, or those of the method.
     pub fn settled_steps(&self) -> usize {
         self.steps.unwrap_or(match self.method {
-            Method::Fit if self.texture_size < 256 => 80,
-            Method::Fit => 40,
+            Method::Fit => match self.texture_size {
+                0..128 => 80,
+                128..256 => 60,
+                _ => 40,
+            },
             Method::Paper => PaperOptions::default().rounds,
         })
     }

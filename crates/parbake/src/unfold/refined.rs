@@ -19,7 +19,7 @@ use parbake_atlas::Layout;
 use parbake_model::glam::{DVec2, Vec2};
 use parbake_uv::best_texture::{Solve, Texture};
 use parbake_uv::optimise::{Balance, Problem, UvOptions, refine};
-use parbake_uv::residual::residual;
+use parbake_uv::residual::residual_by_triangle;
 
 /// Turns; in between showings are weighted anew.
 const TURNS: usize = 3;
@@ -149,6 +149,5 @@ impl Limits {
 /// What a texture leaves on each triangle at full size.
 fn by_triangle(problem: &Problem, layout: &Layout, texture: &Texture) -> Vec<f64> {
     let showings = &problem.showings[..1];
-    let mut unused = vec![DVec2::ZERO; layout.points.len()];
-    residual(&mapped(layout, showings, &runs(layout, showings)), texture, &mut unused).remove(0).by_triangle
+    residual_by_triangle(&mapped(layout, showings, &runs(layout, showings)), texture)
 }

@@ -15,7 +15,7 @@ use crate::best_texture::{Mapped, Texture};
 use crate::contact::Contact;
 use crate::descent::Objective;
 use crate::distortion::Distortion;
-use crate::residual::{Residual, residual};
+use crate::residual::{residual, residual_by_triangle};
 use crate::signal::Signal;
 use glam::{DMat2, DVec2};
 use std::borrow::Cow;
@@ -70,12 +70,11 @@ impl<'a> Problem<'a> {
     /// L_diff; overwrites `errors` with eₜ of all triangles.
     pub fn errors(&self, points: &[DVec2], texture: &Texture, errors: &mut [f64]) -> f64 {
         let mapped = Mapped { points, ..self.mapped };
-        let left = residual(&mapped, texture, &mut vec![DVec2::ZERO; points.len()]);
-        let parts = left.iter().flat_map(|r| &r.by_triangle);
-        for ((error, part), mean_over) in errors.iter_mut().zip(parts).zip(&self.triangle_mean_over) {
+        let left = residual_by_triangle(&mapped, texture);
+        for ((error, part), mean_over) in errors.iter_mut().zip(&left).zip(&self.triangle_mean_over) {
             *error = part / mean_over;
         }
-        sum(&left) / self.mean_over
+        left.iter().sum::<f64>() / self.mean_over
     }
 
     /// L_diff and L_I∘UV after so many iterations; overwrites `errors` with eₜ of all triangles.
@@ -139,7 +138,7 @@ impl Objective for StepEnergy<'_> {
         if let Some((texture, signal, weight)) = &self.image {
             let showings = std::slice::from_ref(signal.as_ref());
             let mapped = Mapped { points, showings, ..problem.mapped };
-            energy += weight * sum(&residual(&mapped, texture, gradient));
+            energy += weight * residual(&mapped, texture, gradient).iter().sum::<f64>();
             gradient.iter_mut().for_each(|g| *g *= *weight);
         }
         if let Some((contact, weight)) = problem.contact {
@@ -151,8 +150,4 @@ impl Objective for StepEnergy<'_> {
         }
         energy + self.distortion.add(points, problem.mapped.triangles, 1.0, gradient)
     }
-}
-
-fn sum(residuals: &[Residual]) -> f64 {
-    residuals.iter().map(|r| r.error).sum()
 }
