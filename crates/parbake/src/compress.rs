@@ -77,7 +77,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         reach: 0.0,
         brightened: 0.0,
         normals: false,
-        pixel: Source::SAMPLE,
+        pixel: sample_width(&surface, options.texture_size),
     };
     let own = OwnSurface { model, mesh: &surface, frame: &frame, stored, options };
     clock.lap(Stage::Prepare);
@@ -116,6 +116,14 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         report,
         uv_moves: written.low.moves,
     })
+}
+
+/// Width of a sample in the common frame: that of views, or of a texel where those are finer, for who
+/// keeps so many will come nearer.
+fn sample_width(surface: &Mesh, texture_size: usize) -> f64 {
+    let area: f64 =
+        (0..surface.triangles.len()).map(|t| 0.5 * f64::from(surface.area_normal(t).length())).sum();
+    Source::SAMPLE.min(area.sqrt() / texture_size as f64)
 }
 
 /// Delivered coordinates as a texture that does not repeat can be read with them: charts in other tiles

@@ -102,7 +102,8 @@ pub struct Unfolded {
     pub report: UnfoldReport,
 }
 
-/// Samples for each texel of a texture that is solved for on the surface.
+/// Samples for each texel of a texture that is solved for on the surface, of up to 512²; larger ones have
+/// to do with as few as one.
 const SAMPLES_PER_TEXEL: usize = 8;
 /// Share of a rough texture's error that a step of the solver must take off to be followed by another: a
 /// hundred steps more would gain 0.01 dB.

@@ -38,8 +38,8 @@ pub struct Source<'a> {
 impl Source<'_> {
     /// Width of a pixel of views that a low-poly is fitted to: it fills some 700 of them.
     pub const PIXEL: f64 = 2.8 / 1024.0;
-    /// Width of a sample of views that a model's own texture is made for: a model that fills 512²
-    /// pixels of four samples each, where it is nearest.
+    /// Width of a sample of views that a model's own texture is made for, if its texels are not finer: a
+    /// model that fills 512² pixels of four samples each, where it is nearest.
     pub const SAMPLE: f64 = 0.0021;
 }
 
