@@ -342,6 +342,15 @@ mod tests {
         assert!((180..=196).contains(&red), "{red}");
     }
 
+    /// Protects close-ups of large textures: samples are no wider than texels, nor than views see.
+    #[test]
+    fn samples_are_as_fine_as_texels() {
+        let mut mesh = Mesh::default();
+        add_box(&mut mesh, 0.5, 0.1);
+        assert_eq!(sample_width(&mesh, 512), Source::SAMPLE);
+        assert!((sample_width(&mesh, 4096) - 6f64.sqrt() / 4096.0).abs() < 1e-9);
+    }
+
     /// Protects soundness: boxes that share their texels have more of them each, and are given their
     /// own all the same.
     #[test]

@@ -86,6 +86,12 @@ pub struct OnLevel {
 }
 
 impl OnLevel {
+    /// A triangle of half a box, whose bounds are those of all that lies in it.
+    pub fn of_box(low: DVec2, high: DVec2, size: usize) -> Self {
+        let edges = DMat2::from_diagonal(high - low);
+        Footprint { origin: low, edges }.on(size)
+    }
+
     /// Where a sample falls.
     #[inline]
     pub fn place(&self, sample: &Sample) -> Place {

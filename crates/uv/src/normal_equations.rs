@@ -9,8 +9,7 @@ use crate::best_texture::Mapped;
 use crate::footprint::{Footprint, OnLevel, shares};
 use crate::normal_matrix::{NormalMatrix, Patch};
 use crate::pyramid::{gather, halve, level_count};
-use crate::signal::Sample;
-use glam::Vec4;
+use glam::{DVec2, Vec4};
 use rayon::prelude::*;
 
 /// The normal equations: one matrix a level, the first with the smoothness.
@@ -100,49 +99,29 @@ pub(crate) struct Room {
 
 /// What a run of triangles adds to the matrices of the `count` levels.
 fn patches(mapped: &Mapped, run: usize, size: usize, count: usize) -> Vec<Patch> {
-    let mut parts: Vec<Vec<Part>> = vec![Vec::new(); count];
+    let corners = mapped.runs.own_points(run).points.iter().map(|&i| mapped.points[i as usize]);
+    let [low, high] = corners.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[l, h], p| [l.min(p), h.max(p)]);
+    let mut patches = vec![Patch::default(); count];
     for t in mapped.runs.triangles(run) {
         let footprint = Footprint::new(mapped.points, mapped.triangles[t]);
         for signal in mapped.showings {
             let samples = signal.of(t);
-            if !samples.is_empty() {
-                let shown = footprint.level(signal.pixels.of(t), size, count);
-                for (level, share) in shares(&shown) {
-                    parts[level].push(Part { place: footprint.on(size >> level), samples, share });
+            if samples.is_empty() {
+                continue;
+            }
+            let shown = footprint.level(signal.pixels.of(t), size, count);
+            for (level, share) in shares(&shown) {
+                let (place, patch) = (footprint.on(size >> level), &mut patches[level]);
+                if patch.is_empty() {
+                    let [from, to] = OnLevel::of_box(low, high, size >> level).bounds();
+                    *patch = Patch::new(from, to);
+                }
+                for sample in samples {
+                    let (texel, fractions, _) = place.place(sample);
+                    patch.add_sample(texel, fractions, sample.weight * share, sample.target);
                 }
             }
         }
     }
-    parts.into_iter().enumerate().map(|(level, parts)| patch(&parts, size >> level)).collect()
-}
-
-/// A triangle's samples on one level, of whose error this share counts.
-#[derive(Clone, Copy)]
-struct Part<'a> {
-    place: OnLevel,
-    samples: &'a [Sample],
-    share: f32,
-}
-
-/// What these parts add to the matrix of a level of `size`² texels.
-fn patch(parts: &[Part], size: usize) -> Patch {
-    if parts.is_empty() {
-        return Patch::default();
-    }
-    let (mut low, mut high) = ([size; 2], [0; 2]);
-    for part in parts {
-        let [from, to] = part.place.bounds();
-        for k in 0..2 {
-            low[k] = low[k].min(from[k]);
-            high[k] = high[k].max(to[k]);
-        }
-    }
-    let mut patch = Patch::new(low, high);
-    for part in parts {
-        for sample in part.samples {
-            let (texel, fractions, _) = part.place.place(sample);
-            patch.add_sample(texel, fractions, sample.weight * part.share, sample.target);
-        }
-    }
-    patch
+    patches
 }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum PictureUv {
-    /// They stay: an ordinary, smaller texture on two triangles.
+    /// They stay: an ordinary, smaller texture, on two triangles unless a grid was asked for.
     Keep,
     /// They move to where they show most.
     #[default]

@@ -9,7 +9,7 @@
 //! Contract: whatever comes out of any mode but `keep` is bijective, with the
 //! gutter asked for between charts. Coordinates that the default method moved are only taken
 //! if they show the surface better than the ones they began with; those of the paper's method
-//! are taken as they come, for what it does is what one wants to see.
+//! are the best of its rounds at two sizes, the start included.
 
 mod finer;
 mod judge;

@@ -155,3 +155,59 @@ fn look(mesh: &Mesh, t: usize, [b, c]: [f32; 2], source: &Source, width: f32) ->
     };
     Some(color.extend(shade))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::Convention;
+    use crate::pair::{common_frame, scene};
+    use parbake_atlas::Layout;
+    use parbake_model::glam::vec2;
+    use parbake_model::{Image, Material, Model, TextureSlot};
+
+    /// Protects what a normal map shows: a bump in it counts as a change of shade where normals count, and
+    /// on plain colour nothing does where they do not.
+    #[test]
+    fn normals_count_where_a_map_is_to_be_made() {
+        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+        let mesh = Mesh {
+            positions: corners.iter().map(|&(x, y)| Vec3::new(x, -y, 0.0)).collect(),
+            uvs: corners.iter().map(|&(x, y)| vec2(x, y)).collect(),
+            triangles: vec![[0, 2, 1], [0, 3, 2]],
+            triangle_materials: vec![0; 2],
+            ..Mesh::default()
+        };
+        let tilted = |i: usize| if i % 64 < 32 { [128, 128, 255, 255] } else { [218, 128, 218, 255] };
+        let pixels = (0..64 * 64).map(tilted).collect();
+        let map = TextureSlot { image: 0, ..TextureSlot::default() };
+        let model = Model {
+            mesh,
+            materials: vec![Material { normal_texture: Some(map), ..Material::default() }],
+            images: vec![Image { name: "normals".into(), width: 64, height: 64, pixels }],
+            ..Model::default()
+        };
+        let frame = common_frame(&model).expect("it has an extent");
+        let scene = scene(&model, &frame, Convention::Paper.interpretation());
+        let shades = |normals: bool| -> Vec<f32> {
+            let (brightened, pixel) = (0.0, 0.02);
+            let source = Source {
+                scene: &scene,
+                surface: None,
+                exposures: &[],
+                reach: 0.0,
+                brightened,
+                normals,
+                pixel,
+            };
+            let rest = Layout::new(scene.mesh()).rest;
+            let signal = showings(scene.mesh(), &rest, &source, &FULL_AND_HALF, 10_000).remove(0);
+            signal.samples.iter().map(|sample| sample.target.w).collect()
+        };
+        let spread = |shades: &[f32]| {
+            let (low, high) = shades.iter().fold((1.0f32, 0.0f32), |(l, h), s| (l.min(*s), h.max(*s)));
+            high - low
+        };
+        assert!(spread(&shades(true)) > 0.05);
+        assert!(shades(false).iter().all(|shade| *shade == UNSHADED));
+    }
+}
