@@ -61,7 +61,7 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> Result<(Mesh, Vec<String>
         return Ok((mesh.clone(), Vec::new()));
     }
     if delivered.orientations.outside.count > 0
-        && let Some(uvs) = in_one_tile(mesh)
+        && let Some(uvs) = in_one_tile(mesh, 0.0)
     {
         let home = Mesh { uvs, tangents: Vec::new(), ..mesh.clone() };
         if is_good(&check(&Layout::new(&home), size), &options.pack) {
@@ -100,7 +100,7 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> Result<(Mesh, Vec<String>
         }
         (false, true) => format!(
             "Charts lay closer to each other than {} texels; all were packed again at their relative sizes.",
-            (10.0 * options.pack.gutter_texels).round() / 10.0
+            options.pack.gutter_texels
         ),
         _ => "All charts were packed again at their relative sizes.".into(),
     });
@@ -109,8 +109,7 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> Result<(Mesh, Vec<String>
 
 /// Whether there is nothing to do.
 fn is_good(check: &UvCheck, pack: &PackOptions) -> bool {
-    // Half a thousandth of a texel is what rounding takes.
-    check.is_bijective() && check.gutter.as_ref().is_none_or(|g| g.texels > pack.gutter_texels - 5e-4)
+    check.is_bijective() && check.gutter.as_ref().is_none_or(|g| g.texels >= pack.gutter_texels)
 }
 
 fn corners_of(surface: &Surface) -> Corners {

@@ -8,9 +8,10 @@ use glam::DVec2;
 use parbake_model::Mesh;
 use parbake_model::glam::Vec2;
 
-/// Texture coordinates whose charts were moved by whole tiles into [0, 1]²; None where one reaches
-/// across a tile's border, and where there are none or some that are not finite.
-pub fn in_one_tile(mesh: &Mesh) -> Option<Vec<Vec2>> {
+/// Texture coordinates whose charts were moved by whole tiles into [0, 1]², give or take `slack`. None
+/// where a chart reaches across a tile's border by more than that, where a vertex belongs to charts of
+/// different tiles, and where there are no coordinates or some that are not finite.
+pub fn in_one_tile(mesh: &Mesh, slack: f64) -> Option<Vec<Vec2>> {
     if mesh.uvs.is_empty() || !mesh.uvs.iter().all(|uv| uv.is_finite()) {
         return None;
     }
@@ -23,21 +24,22 @@ pub fn in_one_tile(mesh: &Mesh) -> Option<Vec<Vec2>> {
             (*low, *high) = (low.min(p), high.max(p));
         }
     }
-    let tiles: Vec<DVec2> = boxes
-        .iter()
-        .map(|[low, high]| {
-            let tile = low.floor();
-            ((*high - tile).max_element() <= 1.0).then_some(tile)
-        })
-        .collect::<Option<_>>()?;
-    let mut uvs = mesh.uvs.clone();
+    let tile = |[low, high]: &[DVec2; 2]| {
+        let tile = (*low + slack).floor();
+        ((*high - tile).max_element() <= 1.0 + slack).then_some(tile)
+    };
+    let tiles: Vec<DVec2> = boxes.iter().map(tile).collect::<Option<_>>()?;
+    let mut own: Vec<Option<DVec2>> = vec![None; mesh.uvs.len()];
     for (t, chart) in layout.charts.iter().enumerate() {
+        let tile = tiles[*chart as usize];
         for vertex in mesh.triangles[t] {
-            let home = mesh.uvs[vertex as usize].as_dvec2() - tiles[*chart as usize];
-            uvs[vertex as usize] = home.as_vec2();
+            if *own[vertex as usize].get_or_insert(tile) != tile {
+                return None;
+            }
         }
     }
-    Some(uvs)
+    let home = |(uv, tile): (&Vec2, &Option<DVec2>)| (uv.as_dvec2() - tile.unwrap_or_default()).as_vec2();
+    Some(mesh.uvs.iter().zip(&own).map(home).collect())
 }
 
 #[cfg(test)]
@@ -63,11 +65,19 @@ mod tests {
         let mut mesh = Mesh::default();
         add(&mut mesh, vec2(0.1, 0.0), vec2(0.4, 1.0));
         add(&mut mesh, vec2(-1.0, 3.25), vec2(0.0, 3.5));
-        let uvs = in_one_tile(&mesh).expect("no chart crosses a border");
+        let uvs = in_one_tile(&mesh, 0.0).expect("no chart crosses a border");
         assert_eq!(uvs[..4], mesh.uvs[..4]);
         assert_eq!(uvs[4..], [vec2(0.0, 0.25), vec2(1.0, 0.25), vec2(1.0, 0.5), vec2(0.0, 0.5)]);
+        // Two charts that share a vertex on the border of their tiles stay together or not at all.
+        let mut touching = mesh.clone();
+        add(&mut touching, vec2(0.0, 0.0), vec2(1.0, 1.0));
+        add(&mut touching, vec2(1.0, 1.0), vec2(2.0, 2.0));
+        touching.positions[12] = touching.positions[10];
+        touching.triangles.iter_mut().flatten().filter(|v| **v == 12).for_each(|v| *v = 10);
+        assert_eq!(in_one_tile(&touching, 0.0), None);
         add(&mut mesh, vec2(0.9, 0.1), vec2(1.1, 0.2));
-        assert_eq!(in_one_tile(&mesh), None);
-        assert_eq!(in_one_tile(&Mesh::default()), None);
+        assert!(in_one_tile(&mesh, 0.11).is_some());
+        assert_eq!(in_one_tile(&mesh, 0.0), None);
+        assert_eq!(in_one_tile(&Mesh::default(), 0.0), None);
     }
 }

@@ -28,7 +28,7 @@ use crate::unfold::{
 };
 use parbake_atlas::in_one_tile;
 use parbake_mesh::{HighSurface, exposures};
-use parbake_model::glam::Vec2;
+use parbake_model::glam::DVec2;
 use parbake_model::{Image, Material, Mesh, Model, Placement, TextureSlot, Wrap};
 use parbake_render::scene::Scene;
 use std::time::Instant;
@@ -56,9 +56,9 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     if options.uv == UvMode::Keep && delivered.mesh.uvs.is_empty() {
         return Err(BakeError::NoTextureCoordinates { model: model.name.clone() });
     }
-    let delivered = in_the_square(delivered, options.texture_size);
-    let repeats = options.uv == UvMode::Keep && delivered.is_none();
-    if repeats || model.materials.iter().any(|m| m.normal_texture.is_some()) {
+    let slack = 0.5 / options.texture_size as f64;
+    let keeps_tiles = options.uv == UvMode::Keep && !is_in_the_square(&delivered.mesh, slack);
+    if keeps_tiles || model.materials.iter().any(|m| m.normal_texture.is_some()) {
         return bake_pair(model, model, true, options, watcher);
     }
     let begin = Instant::now();
@@ -82,7 +82,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     let own = OwnSurface { model, mesh: &surface, frame: &frame, stored, options };
     clock.lap(Stage::Prepare);
 
-    let delivered = match delivered {
+    let delivered = match in_the_square(delivered, slack) {
         Some(delivered) => Some(own.textured(own.unmoved(delivered, &as_it_is, watcher))?),
         None => None,
     };
@@ -94,16 +94,19 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     let moved = unfold(mended, &frame, &shown, &asked, watcher);
     clock.lap(Stage::Unfold);
     let begun = match &delivered {
-        Some(same) if same.low.model.mesh.uvs == unmoved.model.mesh.uvs => same.clone(),
+        Some(same) if same.low.model.mesh.uvs == unmoved.model.mesh.uvs => {
+            Solved { low: unmoved, solved: same.solved.clone() }
+        }
         _ => own.textured(unmoved)?,
     };
-    let written = if moved.moves.is_some() {
+    let mut written = begun.clone();
+    if moved.moves.is_some() {
+        let moved = own.textured(moved)?;
         // The judges of its moves had fewer samples.
-        Some(own.textured(moved)?).filter(|moved| !moved.is_worse(&begun))
-    } else {
-        None
-    };
-    let written = written.unwrap_or_else(|| begun.clone());
+        if !moved.is_worse(&begun) {
+            written = moved;
+        }
+    }
     clock.lap(Stage::Solve);
 
     let (kind, baseline) = delivered.as_ref().map_or(("mended", &begun), |solved| ("delivered", solved));
@@ -119,20 +122,24 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
 }
 
 /// Width of a sample in the common frame: that of views, or of a texel where those are finer, for who
-/// keeps so many will come nearer.
+/// keeps so many will come nearer. Texels of more than 2048² have no sample each.
 fn sample_width(surface: &Mesh, texture_size: usize) -> f64 {
     let area: f64 =
         (0..surface.triangles.len()).map(|t| 0.5 * f64::from(surface.area_normal(t).length())).sum();
-    Source::SAMPLE.min(area.sqrt() / texture_size as f64)
+    Source::SAMPLE.min(area.sqrt() / texture_size.min(2048) as f64)
+}
+
+/// Whether all coordinates lie in the square, give or take `slack`.
+fn is_in_the_square(mesh: &Mesh, slack: f64) -> bool {
+    let is_inside = |uv: DVec2| uv.min_element() >= -slack && uv.max_element() <= 1.0 + slack;
+    !mesh.uvs.is_empty() && mesh.uvs.iter().all(|uv| is_inside(uv.as_dvec2()))
 }
 
 /// Delivered coordinates as a texture that does not repeat can be read with them: charts in other tiles
-/// are brought home. None where one reaches across a tile's border by more than half a texel.
-fn in_the_square(mut delivered: Mended, texture_size: usize) -> Option<Mended> {
-    let slack = 0.5 / texture_size as f32;
-    let is_inside = |uv: &Vec2| uv.min_element() >= -slack && uv.max_element() <= 1.0 + slack;
-    if delivered.mesh.uvs.is_empty() || !delivered.mesh.uvs.iter().all(is_inside) {
-        delivered.mesh.uvs = in_one_tile(&delivered.mesh)?;
+/// are brought home. None where one reaches across a tile's border by more than `slack`.
+fn in_the_square(mut delivered: Mended, slack: f64) -> Option<Mended> {
+    if !is_in_the_square(&delivered.mesh, slack) {
+        delivered.mesh.uvs = in_one_tile(&delivered.mesh, slack)?;
     }
     Some(delivered)
 }
@@ -313,6 +320,21 @@ mod tests {
         assert!(away.report.warnings.iter().any(|w| w.contains("other tiles")));
     }
 
+    /// Protects coordinates that are to be kept: where their texture repeats, what is written repeats too.
+    #[test]
+    fn kept_tiles_show_what_they_showed() {
+        let mut mesh = Mesh::default();
+        add_box(&mut mesh, 1.0, 0.1);
+        mesh.uvs[..4].iter_mut().for_each(|uv| *uv += vec2(2.0, -1.0));
+        let uvs = mesh.uvs.clone();
+        let preset = crate::options::Preset::Fast;
+        let options = BakeOptions { texture_size: 64, uv: UvMode::Keep, preset, ..BakeOptions::default() };
+        let baked = compress(&noisy(mesh), &options, &()).expect("a box can be compressed");
+        assert_eq!(baked.model.mesh.uvs, uvs);
+        let slot = baked.model.materials[0].base_color_texture.expect("it has a texture");
+        assert_eq!(slot.wrap, [Wrap::Repeat; 2]);
+    }
+
     /// Protects models that have colours and no coordinates yet: they are unwrapped, and what lies between
     /// two vertices is the light halfway, not the stored value halfway.
     #[test]
@@ -348,7 +370,8 @@ mod tests {
         let mut mesh = Mesh::default();
         add_box(&mut mesh, 0.5, 0.1);
         assert_eq!(sample_width(&mesh, 512), Source::SAMPLE);
-        assert!((sample_width(&mesh, 4096) - 6f64.sqrt() / 4096.0).abs() < 1e-9);
+        assert!((sample_width(&mesh, 2048) - 6f64.sqrt() / 2048.0).abs() < 1e-9);
+        assert_eq!(sample_width(&mesh, 4096), sample_width(&mesh, 2048));
     }
 
     /// Protects soundness: boxes that share their texels have more of them each, and are given their

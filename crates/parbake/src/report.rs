@@ -113,9 +113,10 @@ pub struct BakeReport {
 impl BakeReport {
     /// What the textures are that the result is compared with.
     pub(crate) fn start(&self) -> &'static str {
-        match self.views {
+        match (self.views, self.losses.first().map(|loss| loss.moved.as_str())) {
             // Nothing was projected where nothing was looked at.
-            0 => "the best texture of this size for the coordinates as they were",
+            (0, Some("mended")) => "the best texture of this size for coordinates that were only mended",
+            (0, _) => "the best texture of this size for the coordinates as they were",
             _ => "what an ordinary baker delivers",
         }
     }

@@ -110,24 +110,6 @@ fn bow_ties_move() {
     assert!(contact.is_feasible(&moved(&layout, &direction, 1.0)));
 }
 
-/// Protects the gutter: charts that are packed at just the gutter are held there, and do not count as
-/// nearer than it.
-#[test]
-fn charts_at_just_the_gutter_keep_it() {
-    let layout = triangles(&[
-        [dvec2(0.25, 0.2), dvec2(0.5, 0.2), dvec2(0.25, 0.75)],
-        [dvec2(0.25, 0.1), dvec2(0.375, 0.0625), dvec2(0.5, 0.1)],
-    ]);
-    let contact = Contact::new(&layout, &ten_texels());
-    assert!(contact.constraints().fixed() > 0);
-    let mut direction: Vec<DVec2> = [0.0, 0.0, 0.0, 0.1, 0.1, 0.1].map(|y| dvec2(0.0, y)).into();
-    for (way, mask) in direction.iter_mut().zip(&contact.constraints().masks) {
-        *way *= *mask;
-    }
-    let points = moved(&layout, &direction, contact.max_step(&layout.points, &direction, 1.0));
-    assert!(points[3].y <= 0.1 && points[5].y <= 0.1, "{points:?}");
-}
-
 /// Protects against what is not a number: no step, no energy to trust, not feasible.
 #[test]
 fn broken_numbers_stop() {

@@ -37,8 +37,7 @@ impl<'a> Judge<'a> {
     /// The proof that a layout may be written: one to one, with the gutter that was asked for.
     pub fn is_sound(&self, layout: &Layout) -> bool {
         let found = check(layout, self.problem.contact.texture_size as usize);
-        // Half a thousandth of a texel is what rounding takes.
-        let is_wide = |least: f64| found.gutter.as_ref().is_none_or(|own| own.texels > least - 5e-4);
+        let is_wide = |least: f64| found.gutter.as_ref().is_none_or(|own| own.texels >= least);
         found.is_bijective() && self.gutter.is_none_or(is_wide)
     }
 

@@ -102,8 +102,8 @@ pub struct Unfolded {
     pub report: UnfoldReport,
 }
 
-/// Samples for each texel of a texture that is solved for on the surface, of up to 512²; larger ones have
-/// to do with as few as one.
+/// Samples for each texel of a texture that is solved for on the surface, of up to 512²; 2048² have to do
+/// with one.
 const SAMPLES_PER_TEXEL: usize = 8;
 /// Share of a rough texture's error that a step of the solver must take off to be followed by another: a
 /// hundred steps more would gain 0.01 dB.
@@ -162,9 +162,6 @@ pub fn unfold(
     Unfolded { model, moves, pieces, report }
 }
 
-/// Texels that charts which are going to move are packed farther apart than they must be.
-const HAIR: f64 = 0.01;
-
 /// A low-poly whose coordinates are sound, or as they were where they are to be kept.
 #[derive(Clone)]
 pub struct Mended {
@@ -185,9 +182,7 @@ pub fn mend(low: &Model, options: &UnfoldOptions) -> Result<Mended, BakeError> {
     mesh.uvs = texture_coordinates(&low.mesh, &low.materials);
     mesh.tangents.clear();
     let repaired = ensure_normals(&mut mesh);
-    // Charts that are packed at just the gutter could not approach by a hair while they move.
-    let room = if options.gutter_required && options.mode == UvMode::Optimize { HAIR } else { 0.0 };
-    let pack = PackOptions { gutter_texels: options.gutter + room, ..packing(options) };
+    let pack = packing(options);
     let sound = || check(&Layout::new(&mesh), options.texture_size).is_bijective();
     let (mesh, mut mended) = match options.mode {
         UvMode::Keep => (mesh, Vec::new()),

@@ -81,7 +81,7 @@ pub fn moved(
 /// has a sample, for finer ones could show so few samples in any layout; never fewer than four.
 fn told_apart(texture_size: usize, samples: usize) -> usize {
     let mut size = texture_size;
-    while 2 * samples < size * size && size.is_multiple_of(2) && size > 4 {
+    while 2 * samples < size * size && size.is_multiple_of(2) && size >= 8 {
         size /= 2;
     }
     size

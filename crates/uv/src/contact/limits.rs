@@ -2,7 +2,7 @@
 //!
 //! A pair that starts well apart has the limits of its kind. One that starts nearer
 //! than these allow has its own, so that every start is feasible, and one that touches
-//! at the start, or is apart by just the minimum, has none: its points are held in place instead.
+//! at the start has none: its points are held in place instead.
 
 use super::boundary::Boundary;
 use super::grid::{Bounds, Grid};
@@ -35,13 +35,12 @@ pub(super) struct Limits {
 
 impl Limits {
     /// For two charts, or a chart and the border, that keep `minimum` where the start
-    /// does; `None` where they touch, and where rounding is all that there is between them and it.
+    /// does; `None` where they touch.
     pub fn apart(self, start: f64) -> Option<Self> {
-        let on_the_limit = start >= self.minimum && start <= self.minimum + ROUNDING;
-        if start < TOUCHING || on_the_limit {
+        if start < TOUCHING {
             return None;
         }
-        if start > self.minimum {
+        if start > self.minimum + ROUNDING {
             return Some(self);
         }
         let minimum = KEPT_OF_START * start;
