@@ -8,9 +8,10 @@ use glam::DVec2;
 use parbake_model::Mesh;
 use parbake_model::glam::Vec2;
 
-/// Texture coordinates whose charts were moved by whole tiles into [0, 1]², give or take `slack`. None
-/// where a chart reaches across a tile's border by more than that, where a vertex belongs to charts of
-/// different tiles, and where there are no coordinates or some that are not finite.
+/// The V texture coordinates of a mesh whose charts are moved by whole tiles into [0, 1]², give or take
+/// `slack` (in tiles). None where a chart reaches across a tile's border by more than that, where a
+/// vertex belongs to charts of different tiles, and where there are no coordinates or some that are not
+/// finite.
 pub fn in_one_tile(mesh: &Mesh, slack: f64) -> Option<Vec<Vec2>> {
     if mesh.uvs.is_empty() || !mesh.uvs.iter().all(|uv| uv.is_finite()) {
         return None;

@@ -6,9 +6,9 @@
 //! counts for as much as is seen of it.
 //!
 //! ```text
-//! delivered coordinates ─────────────────────────────────────┐
-//! mended, where they are not sound ─┬────────────────────────┼─ textures ─ the best one ─ Model
-//!                                   └─ more triangles, moved ┘
+//! delivered coordinates ────────────────────────── texture, to compare with
+//! mended, where they are not sound ─┬───────────── texture ─┬ the better one ─ Model
+//!            more triangles, moved ─┴───────────── texture ─┘
 //! ```
 //!
 //! Contract: what is written is sound, unless coordinates are to be kept, and shows the surface no worse
@@ -23,9 +23,7 @@ use crate::message::{Message, Stage, Watcher};
 use crate::options::{BakeOptions, Convention, Parallax, UvMode};
 use crate::pair::{common_frame, placed};
 use crate::report::{BakeReport, LossStep, Work};
-use crate::unfold::{
-    Mended, Source, SurfaceTexture, UnfoldOptions, Unfolded, mend, solve_on_surface, unfold,
-};
+use crate::unfold::{Mended, Source, SurfaceSignal, SurfaceTexture, UnfoldOptions, Unfolded, mend, unfold};
 use parbake_atlas::in_one_tile;
 use parbake_mesh::{HighSurface, exposures};
 use parbake_model::glam::DVec2;
@@ -79,13 +77,13 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         normals: false,
         pixel: sample_width(&surface, options.texture_size),
     };
-    let own = OwnSurface { model, mesh: &surface, frame: &frame, stored, options };
+    let signal = SurfaceSignal::new(&surface, &stored, options.texture_size)
+        .ok_or_else(|| BakeError::FlatTextureCoordinates { model: model.name.clone() })?;
+    let own = OwnSurface { model, frame: &frame, stored, signal, options };
     clock.lap(Stage::Prepare);
 
-    let delivered = match in_the_square(delivered, slack) {
-        Some(delivered) => Some(own.textured(own.unmoved(delivered, &as_it_is, watcher))?),
-        None => None,
-    };
+    let delivered = in_the_square(delivered, slack)
+        .map(|delivered| own.textured(own.unmoved(delivered, &as_it_is, watcher)));
     clock.lap(Stage::Solve);
     let asked = options.unfold_for(Work::Compress);
     let mended = mend(model, &asked)?;
@@ -97,11 +95,11 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         Some(same) if same.low.model.mesh.uvs == unmoved.model.mesh.uvs => {
             Solved { low: unmoved, solved: same.solved.clone() }
         }
-        _ => own.textured(unmoved)?,
+        _ => own.textured(unmoved),
     };
     let mut written = begun.clone();
     if moved.moves.is_some() {
-        let moved = own.textured(moved)?;
+        let moved = own.textured(moved);
         // The judges of its moves had fewer samples.
         if !moved.is_worse(&begun) {
             written = moved;
@@ -147,11 +145,11 @@ fn in_the_square(mut delivered: Mended, slack: f64) -> Option<Mended> {
 /// The surface that a model is compressed for: its own.
 struct OwnSurface<'a> {
     model: &'a Model,
-    /// Its mesh in the common frame.
-    mesh: &'a Mesh,
     frame: &'a Placement,
     /// Its colours as they are stored.
     stored: Source<'a>,
+    /// What its texture is solved for.
+    signal: SurfaceSignal,
     options: &'a BakeOptions,
 }
 
@@ -175,10 +173,9 @@ impl OwnSurface<'_> {
         unfold(mended, self.frame, &self.stored, &UnfoldOptions { steps: 0, ..*options }, watcher)
     }
 
-    fn textured(&self, low: Unfolded) -> Result<Solved, BakeError> {
-        let solved = solve_on_surface(self.mesh, &low, &self.stored, self.options.texture_size)
-            .ok_or_else(|| BakeError::FlatTextureCoordinates { model: self.model.name.clone() })?;
-        Ok(Solved { low, solved })
+    fn textured(&self, low: Unfolded) -> Solved {
+        let solved = self.signal.best_texture(&low);
+        Solved { low, solved }
     }
 
     /// What was done, and said to the user where he should know; losses and stages are left to be told.

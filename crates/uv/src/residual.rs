@@ -47,12 +47,13 @@ pub fn residual(mapped: &Mapped, texture: &Texture, gradient: &mut [DVec2]) -> V
 /// The residual of all showings by triangle (F).
 pub fn residual_by_triangle(mapped: &Mapped, texture: &Texture) -> Vec<f64> {
     let pyramid = levels(&texture.texels, texture.size, level_count(texture.size));
-    let of = |t: usize| {
-        let mut errors = vec![0.0; mapped.showings.len()];
-        triangle(mapped, &pyramid, texture.size, t, &mut errors);
+    let of = |errors: &mut Vec<f64>, t: usize| {
+        errors.fill(0.0);
+        triangle(mapped, &pyramid, texture.size, t, errors);
         errors.iter().sum()
     };
-    (0..mapped.triangles.len()).into_par_iter().map(of).collect()
+    let room = || vec![0.0; mapped.showings.len()];
+    (0..mapped.triangles.len()).into_par_iter().map_init(room, of).collect()
 }
 
 /// Adds one triangle's share to each showing's error; gives its derivatives for the three corners.

@@ -17,8 +17,10 @@ mod moved;
 mod paper;
 mod refined;
 mod surface_signal;
+mod surface_texture;
 
 pub use surface_signal::Source;
+pub use surface_texture::{SurfaceSignal, SurfaceTexture};
 
 use crate::convergence::Convergence;
 use crate::error::BakeError;
@@ -26,16 +28,13 @@ use crate::low::texture_coordinates;
 use crate::message::Watcher;
 use crate::options::{BakeOptions, Method, UvMode};
 use crate::uv_animation::UvMoves;
-use finer::divided;
 use parbake_atlas::{
     Layout, PackOptions, RepairOptions, TutteOptions, UnwrapOptions, check, repair, tutte, unwrap,
 };
 use parbake_mesh::{Bisected, Piece, ensure_normals};
 use parbake_model::glam::{DVec2, Vec2, Vec4};
 use parbake_model::{Material, Mesh, Model, Placement};
-use parbake_uv::best_texture::{
-    Mapped, Solve, Texture, best_texture_in_box, best_texture_in_bytes, rough_texture,
-};
+use parbake_uv::best_texture::{Mapped, Solve, Texture, best_texture_in_box};
 use parbake_uv::contact::{Border, ContactOptions};
 use parbake_uv::optimise::Problem;
 use parbake_uv::paper::Guide;
@@ -44,7 +43,7 @@ use parbake_uv::shown::shown_errors;
 use parbake_uv::signal::Signal;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use surface_signal::{FORESHORTENED, FULL_AND_HALF, Size, showings};
+use surface_signal::{FULL_AND_HALF, showings};
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -102,12 +101,6 @@ pub struct Unfolded {
     pub report: UnfoldReport,
 }
 
-/// Samples for each texel of a texture that is solved for on the surface, of up to 512²; 2048² have to do
-/// with one.
-const SAMPLES_PER_TEXEL: usize = 8;
-/// Share of a rough texture's error that a step of the solver must take off to be followed by another: a
-/// hundred steps more would gain 0.01 dB.
-const LEAST_GAIN: f64 = 2e-5;
 /// Samples of a low-poly's surface at most while coordinates move…
 const MOST_SAMPLES: usize = 400_000;
 /// …and of a model's own: with fewer, small textures of plainly coloured parts follow the samples (mask,
@@ -292,49 +285,6 @@ fn runs(layout: &Layout, showings: &[Signal]) -> Runs {
 
 fn mapped<'a>(layout: &'a Layout, showings: &'a [Signal], runs: &'a Runs) -> Mapped<'a> {
     Mapped { points: &layout.points, triangles: &layout.triangles, showings, runs }
-}
-
-/// A texture solved for on the surface alone.
-#[derive(Clone)]
-pub struct SurfaceTexture {
-    /// Its stored values, 255ths.
-    pub texture: Texture,
-    /// Mean squared errors of the three colour channels at full size and half.
-    pub errors: [f64; 2],
-    /// Samples it was solved for.
-    pub samples: usize,
-}
-
-/// Solves for a model's texture without any view: for the surface as it is seen from all around, mip
-/// levels included. `surface` is the source's own in the common frame, `low` what became of its
-/// coordinates. None where it has no area.
-pub fn solve_on_surface(
-    surface: &Mesh,
-    low: &Unfolded,
-    source: &Source,
-    size: usize,
-) -> Option<SurfaceTexture> {
-    let most = (SAMPLES_PER_TEXEL * size * size).clamp(1 << 21, 1 << 22);
-    let mut showings = showings(surface, &Layout::new(surface).rest, source, &FORESHORTENED, most);
-    if showings[0].samples.is_empty() {
-        return None;
-    }
-    if !low.pieces.is_empty() {
-        showings.iter_mut().for_each(|signal| *signal = divided(signal, &low.pieces));
-    }
-    let layout = Layout::new(&low.model.mesh);
-    let runs = runs(&layout, &showings);
-    let mapped = mapped(&layout, &showings, &runs);
-    let start = rough_texture(&mapped, size);
-    let least_gain = LEAST_GAIN * shown_errors(&mapped, &start).iter().sum::<f64>();
-    let texture = best_texture_in_bytes(&mapped, start, &Solve { least_gain, ..Solve::FINAL });
-    let left = shown_errors(&mapped, &texture);
-    let errors = FULL_AND_HALF.map(|at| {
-        let own = |(size, _): &(&Size, &f64)| size.width == at.width;
-        let found = FORESHORTENED.iter().zip(&left).find(own);
-        found.map_or(0.0, |(size, left)| left / (3.0 * size.share))
-    });
-    Some(SurfaceTexture { texture, errors, samples: showings.iter().map(|s| s.samples.len()).sum() })
 }
 
 fn as_f32(points: &[DVec2]) -> Vec<Vec2> {

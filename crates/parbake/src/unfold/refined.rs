@@ -57,7 +57,8 @@ pub fn refined<W: Watcher>(
     let limits = Limits::new(judge.own);
     if judge.own && coarse.showings[0].samples.len() < SAMPLES_PER_TEXEL * coarse.texture_size.pow(2) {
         let errors = judge.relative(coarse, &layout);
-        return limits.are_kept(&errors).then_some((Moved { layout, frames, bisected: None }, errors));
+        let is_better = limits.are_kept(&errors) && judge.is_sound(&layout);
+        return is_better.then_some((Moved { layout, frames, bisected: None }, errors));
     }
     // A bake's last thousandths lie in parallax and outlines, not in coordinates.
     let (tolerance, solve) =
