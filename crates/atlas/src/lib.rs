@@ -4,6 +4,7 @@
 //! layout      triangles as they lie in the texture
 //! predicates  orientation and overlap, exactly
 //! check       the proof that a layout is sound, and how good it is
+//! model_check the same for all textures of a model
 //! pack        charts into the square
 //! unwrap      a new layout for any mesh
 //! repair      a sound layout from a delivered one
@@ -14,6 +15,7 @@
 pub mod check;
 pub mod error;
 pub mod layout;
+pub mod model_check;
 pub mod pack;
 pub mod predicates;
 pub mod repair;
@@ -24,6 +26,7 @@ pub mod unwrap;
 pub use check::{UvCheck, check};
 pub use error::AtlasError;
 pub use layout::{BoundaryEdge, Layout};
+pub use model_check::{LayoutCheck, ModelCheck, check_mesh, check_model};
 pub use pack::{ChartScale, PackOptions, pack};
 pub use repair::{RepairOptions, repair};
 pub use tiles::in_one_tile;

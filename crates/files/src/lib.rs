@@ -22,7 +22,7 @@ mod words;
 
 pub use atomic::{write_atomically, write_streamed};
 pub use error::{FileError, Place};
-pub use gltf::{glb_bytes, read_gltf_bytes, short_uv, short_uvs_pay, write_glb};
+pub use gltf::{glb_bytes, read_gltf_bytes, write_glb};
 pub use image_in::{decode_image, read_image};
 pub use image_out::encode_png;
 pub use limits::Limits;

@@ -4,7 +4,7 @@
 //! Where `$PARBAKE_GLB_OUT` names a folder, the GLB files stay there, for the
 //! Khronos validator to look at (`tools/validate_gltf`).
 
-use parbake_files::{Limits, read_model, short_uv, write_glb, write_obj};
+use parbake_files::{Limits, read_model, write_glb, write_obj};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{
     AlphaMode, CutoutMap, DepthMap, Image, Material, Mesh, Model, ShParallaxMap, TextureSlot, UvTransform,
@@ -124,7 +124,7 @@ fn glb_comes_back_whole() {
 #[test]
 fn grids_take_few_bytes_and_come_back_whole() {
     let Model { mut mesh, .. } = grid(121);
-    mesh.uvs = mesh.uvs1.iter().map(|&uv| short_uv(uv)).collect();
+    mesh.uvs = mesh.uvs1.iter().map(|&uv| parbake_model::short_uv(uv)).collect();
     (mesh.normals, mesh.tangents, mesh.uvs1, mesh.colors) = Default::default();
     mesh.triangle_materials.fill(0);
     let model = Model { mesh, materials: vec![Material::default()], ..Model::default() };

@@ -7,16 +7,17 @@ mod scene;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use parbake_fit::canvas::Canvas;
 use parbake_fit::cutout::{CutoutOptions, examples, fit_cutout};
 use parbake_fit::parallax::{ParallaxOptions, State, fit_parallax};
-use parbake_fit::reference::Reference;
-use parbake_fit::sighted::sighted_views;
-use parbake_fit::view_walk::{Beyond, Walker};
+use parbake_image::display_table::DisplayTable;
+use parbake_image::{FloatImage, MapSet};
 use parbake_model::Mesh;
 use parbake_model::glam::Vec4;
-use parbake_render::display_table::DisplayTable;
 use parbake_render::parallax::ShParallax;
+use parbake_render::shade::Lambert;
+use parbake_views::reference::Reference;
+use parbake_views::sighted::sighted_views;
+use parbake_views::view_walk::{Beyond, Walker};
 use scene::{DISPLAY, VIEW_SIZE};
 use std::sync::LazyLock;
 
@@ -44,14 +45,16 @@ fn parallax(bencher: Bencher, order: usize, size: usize) {
     let options = ParallaxOptions { order, steps: STEPS, ..ParallaxOptions::default() };
     let state = || State {
         map: ShParallax::zeros(order, options.size),
-        color: Canvas::solid(size, Vec4::new(0.5, 0.5, 0.5, 0.0)),
-        normal: Canvas::solid(size, Vec4::Z),
+        maps: MapSet::of(
+            FloatImage::solid(size, Vec4::new(0.5, 0.5, 0.5, 0.0)),
+            FloatImage::solid(size, Vec4::Z),
+        ),
     };
     let display = DisplayTable::new(&DISPLAY);
     bencher
         .counter(looked_at(&views, options.views_per_step))
         .with_inputs(state)
-        .bench_local_values(|mut state| fit_parallax(&views, &mut state, &display, &options, &()));
+        .bench_local_values(|mut state| fit_parallax(&views, &mut state, &Lambert, &display, &options, &()));
 }
 
 /// By the texture's size; items are pixels.

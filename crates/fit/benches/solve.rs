@@ -9,21 +9,23 @@ mod scene;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use parbake_fit::atlas::Atlas;
-use parbake_fit::canvas::{Canvas, block};
-use parbake_fit::color::{Problem, color_step, footprint, loss};
-use parbake_fit::conjugate_gradient::{Effort, solve};
 use parbake_fit::membrane::Membrane;
-use parbake_fit::normal::normal_step;
 use parbake_fit::outliers::Cauchy;
-use parbake_fit::reference::Reference;
-use parbake_fit::samples::{SampleSet, collect_samples};
-use parbake_fit::stencil::{Block, Diagonal, Row, Stencil, Symmetric, add_diagonal, add_symmetric};
-use parbake_fit::view_walk::{Beyond, Walker};
+use parbake_fit::problem::{Problem, footprint};
+use parbake_fit::step::{StepOptions, Workspace, fit_step};
+use parbake_image::display_table::DisplayTable;
+use parbake_image::{FloatImage, MapKind, MapSet};
 use parbake_mesh::{charts, texel_map};
 use parbake_model::Mesh;
 use parbake_model::glam::{Vec3, Vec4};
-use parbake_render::display_table::DisplayTable;
+use parbake_render::shade::Lambert;
+use parbake_solve::conjugate_gradient::{Effort, solve};
+use parbake_solve::grid::block;
+use parbake_solve::stencil::{Block, Diagonal, Row, Stencil, Symmetric, add_diagonal, add_symmetric};
+use parbake_views::chart_labels::Atlas;
+use parbake_views::reference::Reference;
+use parbake_views::samples::{SampleSet, collect_samples};
+use parbake_views::view_walk::{Beyond, Walker};
 use scene::{DISPLAY, VIEW_SIZE};
 use std::sync::LazyLock;
 
@@ -42,8 +44,7 @@ struct Bench {
     atlas: Atlas,
     samples: SampleSet,
     display: DisplayTable,
-    color: Canvas,
-    normal: Canvas,
+    maps: MapSet,
 }
 
 /// Rendering the references takes longer than all benches.
@@ -53,8 +54,10 @@ static BENCH: LazyLock<Bench> = LazyLock::new(|| {
     Bench {
         samples: collect(&low, &references),
         display: DisplayTable::new(&DISPLAY),
-        color: Canvas::solid(TEXTURE_SIZE, Vec4::new(0.5, 0.5, 0.5, 0.0)),
-        normal: Canvas::solid(TEXTURE_SIZE, Vec4::new(0.0, 0.0, 1.0, 0.0)),
+        maps: MapSet::of(
+            FloatImage::solid(TEXTURE_SIZE, Vec4::new(0.5, 0.5, 0.5, 0.0)),
+            FloatImage::solid(TEXTURE_SIZE, Vec4::Z),
+        ),
         low,
         references,
         atlas,
@@ -67,9 +70,9 @@ fn collect(low: &Mesh, references: &[Reference]) -> SampleSet {
 }
 
 impl Bench {
-    fn problem(&self, membrane: Membrane) -> Problem<'_> {
+    fn problem(&self) -> Problem<'_, Lambert> {
         let Self { samples, atlas, display, .. } = self;
-        Problem { samples, atlas, display, membrane, effort: EFFORT, outliers: Cauchy::new(1.0) }
+        Problem { samples, atlas, display, brdf: &Lambert, outliers: Cauchy::new(1.0) }
     }
 
     fn count(&self) -> ItemsCount {
@@ -114,52 +117,44 @@ fn sampling(bencher: Bencher) {
 #[divan::bench(sample_size = 1, sample_count = 15)]
 fn loss_forward(bencher: Bencher) {
     let b = &*BENCH;
-    let problem = b.problem(COLOR_MEMBRANE);
-    bencher.counter(b.count()).bench_local(|| loss(&problem, &b.color, &b.normal));
+    let problem = b.problem();
+    bencher.counter(b.count()).bench_local(|| problem.loss(&b.maps));
+}
+
+/// A step of one map with so many steps of the solver.
+fn step(bencher: Bencher, kind: MapKind, membrane: Membrane, effort: Effort) {
+    let b = &*BENCH;
+    let (problem, mut workspace) = (b.problem(), Workspace::default());
+    let options = StepOptions { membrane, effort, damping: 6.0 };
+    let start = b.maps.get(kind).cloned().unwrap_or_default();
+    bencher
+        .counter(b.count())
+        .with_inputs(|| b.maps.clone())
+        .bench_local_values(|mut maps| fit_step(kind, &problem, &options, &mut maps, &start, &mut workspace));
 }
 
 /// A whole step of the colours, solver included.
 #[divan::bench(sample_size = 1, sample_count = 15)]
 fn step_of_colors(bencher: Bencher) {
-    let b = &*BENCH;
-    let (problem, mut rows) = (b.problem(COLOR_MEMBRANE), Vec::new());
-    bencher
-        .counter(b.count())
-        .with_inputs(|| b.color.clone())
-        .bench_local_values(|mut color| color_step(&problem, &mut color, &b.normal, &b.color, &mut rows));
+    step(bencher, MapKind::BaseColor, COLOR_MEMBRANE, EFFORT);
 }
 
 /// The same without solver steps: what is left is accumulation.
 #[divan::bench(sample_size = 1, sample_count = 15)]
 fn step_of_colors_unsolved(bencher: Bencher) {
-    let b = &*BENCH;
-    let problem = Problem { effort: Effort { steps: 0, ..EFFORT }, ..b.problem(COLOR_MEMBRANE) };
-    let mut rows = Vec::new();
-    bencher
-        .counter(b.count())
-        .with_inputs(|| b.color.clone())
-        .bench_local_values(|mut color| color_step(&problem, &mut color, &b.normal, &b.color, &mut rows));
+    step(bencher, MapKind::BaseColor, COLOR_MEMBRANE, Effort { steps: 0, ..EFFORT });
 }
 
 /// A whole step of the normals, solver included.
 #[divan::bench(sample_size = 1, sample_count = 15)]
 fn step_of_normals(bencher: Bencher) {
-    let b = &*BENCH;
-    let (problem, mut rows) = (b.problem(NORMAL_MEMBRANE), Vec::new());
-    bencher.counter(b.count()).with_inputs(|| b.normal.clone()).bench_local_values(|mut normal| {
-        normal_step(&problem, &b.color, &mut normal, &b.normal, 6.0, &mut rows)
-    });
+    step(bencher, MapKind::Normal, NORMAL_MEMBRANE, EFFORT);
 }
 
 /// The same without solver steps.
 #[divan::bench(sample_size = 1, sample_count = 15)]
 fn step_of_normals_unsolved(bencher: Bencher) {
-    let b = &*BENCH;
-    let problem = Problem { effort: Effort { steps: 0, ..EFFORT }, ..b.problem(NORMAL_MEMBRANE) };
-    let mut rows = Vec::new();
-    bencher.counter(b.count()).with_inputs(|| b.normal.clone()).bench_local_values(|mut normal| {
-        normal_step(&problem, &b.color, &mut normal, &b.normal, 6.0, &mut rows)
-    });
+    step(bencher, MapKind::Normal, NORMAL_MEMBRANE, Effort { steps: 0, ..EFFORT });
 }
 
 fn product<B: Block>(bencher: Bencher, matrix: &Stencil<B>) {

@@ -11,15 +11,15 @@
 //! Contract: examples are summed in their order, so the result does not depend on the number
 //! of threads.
 
-use crate::reference::Reference;
-use crate::thin_plate::ThinPlate;
-use crate::view_walk::Walker;
-use crate::watch::{Stage, Watch};
-use parbake_adam::{Adam, AdamOptions};
+use parbake_image::pyramid::taps;
 use parbake_model::Wrap;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
+use parbake_progress::{Stage, Watcher};
 use parbake_render::cutout::ShCutout;
-use parbake_render::texture::taps;
+use parbake_solve::adam::{Adam, AdamOptions};
+use parbake_solve::thin_plate::ThinPlate;
+use parbake_views::reference::Reference;
+use parbake_views::view_walk::Walker;
 use rayon::prelude::*;
 
 /// How a cutout is fitted.
@@ -148,7 +148,7 @@ const BAND: usize = 4096;
 pub fn fit_cutout(
     views: &[Vec<Example>],
     options: &CutoutOptions,
-    watch: &impl Watch,
+    watch: &impl Watcher,
 ) -> (ShCutout, [f64; 2]) {
     let mut map = ShCutout::opaque(options.order, options.size);
     let before = wrong(views, &map);
@@ -166,7 +166,7 @@ pub fn fit_cutout(
     let mut parts = vec![gradient.clone(); options.views_per_step.div_ceil(together)];
     for step in 0..options.steps {
         watch.progress(Stage::Cutout, step, options.steps);
-        if views.iter().all(Vec::is_empty) || watch.should_stop() {
+        if views.iter().all(Vec::is_empty) || watch.stopped() {
             break;
         }
         let chosen: Vec<&[Example]> = (0..options.views_per_step)

@@ -17,25 +17,12 @@
 //!
 //! `schedule` walks that way; `watch` is how it reports and is stopped.
 
-pub mod atlas;
-pub mod canvas;
-pub mod color;
-pub mod conjugate_gradient;
 pub mod cutout;
-pub mod gutter;
 pub mod membrane;
-pub mod normal;
 pub mod outliers;
 pub mod parallax;
-pub mod quantise;
-pub mod reference;
-pub mod samples;
+pub mod parallax_maps;
+pub mod problem;
 pub mod schedule;
-pub mod sighted;
-pub mod start;
-pub mod stencil;
+pub mod step;
 pub mod territory;
-pub mod thin_plate;
-pub mod view_walk;
-pub mod views;
-pub mod watch;

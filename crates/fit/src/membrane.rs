@@ -6,10 +6,10 @@
 //! between side neighbours of the same chart. Quadratic, so its Hessian and its
 //! gradient at x are exact: both are added to the solver's rows.
 
-use crate::atlas::{Atlas, NO_CHART, neighbours};
-use crate::canvas::Canvas;
-use crate::stencil::{Block, Row};
+use parbake_image::FloatImage;
 use parbake_model::glam::Vec4;
+use parbake_solve::stencil::{Block, Row};
+use parbake_views::chart_labels::{Atlas, NO_CHART, neighbours};
 use rayon::prelude::*;
 
 /// Strengths, as shares of the samples' mean pull on a texel.
@@ -35,8 +35,8 @@ pub fn mean_pull<B: Block>(rows: &[Row<B>]) -> f32 {
 pub fn add_membrane<B: Block>(
     rows: &mut [Row<B>],
     atlas: &Atlas,
-    x: &Canvas,
-    start: &Canvas,
+    x: &FloatImage<Vec4>,
+    start: &FloatImage<Vec4>,
     membrane: &Membrane,
 ) {
     let scale = mean_pull(rows);
@@ -73,8 +73,8 @@ pub fn add_membrane<B: Block>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::conjugate_gradient::{Effort, solve};
-    use crate::stencil::{Diagonal, Stencil};
+    use parbake_solve::conjugate_gradient::{Effort, solve};
+    use parbake_solve::stencil::{Diagonal, Stencil};
 
     /// Protects the seamless fill: an unseen stretch between two fixed ends keeps
     /// the start's detail and blends the ends' levels.
@@ -83,7 +83,7 @@ mod tests {
         let size = 8;
         let label = (0..64).map(|i| if i / 8 == 2 && i % 8 < 7 { 0 } else { NO_CHART }).collect();
         let atlas = Atlas { size, label, covered: vec![true; 64] };
-        let mut start = Canvas::solid(size, Vec4::ZERO);
+        let mut start = FloatImage::solid(size, Vec4::ZERO);
         start.texels[16 + 3] = Vec4::splat(0.5);
         let x = start.clone();
         let mut rows = vec![Row::<Diagonal>::default(); 64];

@@ -16,17 +16,18 @@ mod plate;
 mod texels;
 mod view_gradient;
 
-use crate::canvas::Canvas;
-use crate::sighted::Sighted;
-use crate::watch::{Stage, Watch};
-use parbake_adam::{Adam, AdamOptions, rate_at};
+use parbake_image::MapSet;
+use parbake_image::display_table::DisplayTable;
 use parbake_model::glam::Vec4;
-use parbake_render::display_table::DisplayTable;
+use parbake_progress::{Stage, Watcher};
 use parbake_render::parallax::ShParallax;
 use parbake_render::parallax_variants::shift_map::ShiftMap;
+use parbake_render::shade::Brdf;
+use parbake_solve::adam::{Adam, AdamOptions, rate_at};
+use parbake_views::sighted::Sighted;
 use plate::MapPlate;
 use rayon::prelude::*;
-use texels::{BAND, Texel, Texels, gather};
+use texels::{BAND, Texels, gather};
 use view_gradient::{Sums, add_view};
 
 /// How the map is fitted.
@@ -72,12 +73,10 @@ impl Default for ParallaxOptions {
 /// What moves together.
 #[derive(Clone, Debug)]
 pub struct State<M = ShParallax> {
-    /// The map.
+    /// The parallax map.
     pub map: M,
-    /// Albedo, 0 … 1.
-    pub color: Canvas,
-    /// Unit tangent-space normals.
-    pub normal: Canvas,
+    /// The material's maps, at least one.
+    pub maps: MapSet,
 }
 
 /// Bytes of gradients beyond which views share buffers: more do not stay in a cache, and then
@@ -87,18 +86,45 @@ const BUFFERS: usize = 16 << 20;
 const LEAST_BUFFERS: usize = 4;
 
 /// How many of a step's views share a buffer. It depends on sizes alone, and so does the order of sums.
-fn views_together(texels: usize, views: usize) -> usize {
-    let parts = (BUFFERS / (texels * size_of::<Texel>()).max(1)).max(LEAST_BUFFERS);
+fn views_together(texels: usize, maps: usize, views: usize) -> usize {
+    let parts = (BUFFERS / (texels * maps * size_of::<Vec4>()).max(1)).max(LEAST_BUFFERS);
     views.div_ceil(parts).max(1)
 }
 
+/// Calls a function with the number of maps as a constant, for which its loops are unrolled.
+macro_rules! for_each_count {
+    ($maps:expr, $function:ident($($argument:expr),*)) => {
+        match $maps.kinds().count() {
+            0 | 1 => $function::<_, _, _, 1>($($argument),*),
+            2 => $function::<_, _, _, 2>($($argument),*),
+            3 => $function::<_, _, _, 3>($($argument),*),
+            4 => $function::<_, _, _, 4>($($argument),*),
+            _ => $function::<_, _, _, 5>($($argument),*),
+        }
+    };
+}
+
 /// The mean squared difference of these views as they are.
-pub fn mean_square<M: ShiftMap>(views: &[Vec<Sighted>], state: &State<M>, display: &DisplayTable) -> f64 {
-    let State { map, color, normal } = state;
-    let texels = Texels::new(color, normal);
+pub fn mean_square<B: Brdf, M: ShiftMap>(
+    views: &[Vec<Sighted>],
+    state: &State<M>,
+    brdf: &B,
+    display: &DisplayTable,
+) -> f64 {
+    for_each_count!(state.maps, mean_square_of(views, state, brdf, display, &()))
+}
+
+fn mean_square_of<B: Brdf, M: ShiftMap, W: Watcher, const N: usize>(
+    views: &[Vec<Sighted>],
+    state: &State<M>,
+    brdf: &B,
+    display: &DisplayTable,
+    _: &W,
+) -> f64 {
+    let texels = Texels::<N>::new(&state.maps);
     let loss_of = |pixels: &Vec<Sighted>| {
-        let mut sums = Sums::zeros(map, &texels);
-        add_view(pixels, map, &texels, display, &mut sums);
+        let mut sums = Sums::zeros(&state.map, &texels);
+        add_view(pixels, &state.map, &texels, brdf, display, &mut sums);
         sums.loss
     };
     let losses: Vec<f64> = views.par_iter().map(loss_of).collect();
@@ -106,16 +132,28 @@ pub fn mean_square<M: ShiftMap>(views: &[Vec<Sighted>], state: &State<M>, displa
     losses.iter().sum::<f64>() / (3 * count.max(1)) as f64
 }
 
-/// Moves all three; returns the mean squared difference of each step's views.
-pub fn fit_parallax<M: ShiftMap>(
+/// Moves parallax map and maps; returns the mean squared difference of each step's views.
+pub fn fit_parallax<B: Brdf, M: ShiftMap>(
     views: &[Vec<Sighted>],
     state: &mut State<M>,
+    brdf: &B,
     display: &DisplayTable,
     options: &ParallaxOptions,
-    watch: &impl Watch,
+    watcher: &impl Watcher,
 ) -> Vec<f64> {
-    let State { map, color, normal } = state;
-    let mut texels = Texels::new(color, normal);
+    for_each_count!(state.maps, descend(views, state, brdf, display, options, watcher))
+}
+
+fn descend<B: Brdf, M: ShiftMap, W: Watcher, const N: usize>(
+    views: &[Vec<Sighted>],
+    state: &mut State<M>,
+    brdf: &B,
+    display: &DisplayTable,
+    options: &ParallaxOptions,
+    watcher: &W,
+) -> Vec<f64> {
+    let State { map, maps } = state;
+    let mut texels = Texels::<N>::new(maps);
     let at_rate = |rate| AdamOptions { rate, ..AdamOptions::default() };
     // Adam sees parameters in units of their strides, and moves all of those alike.
     let strides = map.strides();
@@ -130,15 +168,15 @@ pub fn fit_parallax<M: ShiftMap>(
         ..at_rate(options.rate * map.pace())
     };
     let mut adam_map = Adam::new(moving.len(), map_options);
-    let mut adam_texels = Adam::new(2 * texels.texels.len(), at_rate(options.texture_rate));
+    let mut adam_texels = Adam::new(N * texels.texels.len(), at_rate(options.texture_rate));
     let plate = MapPlate::new(views, map);
     let mut losses = Vec::with_capacity(options.steps);
-    let together = views_together(texels.texels.len(), options.views_per_step);
-    let mut sums: Vec<Sums<M>> = Vec::new();
+    let together = views_together(texels.texels.len(), N, options.views_per_step);
+    let mut sums: Vec<Sums<M, N>> = Vec::new();
     sums.resize_with(options.views_per_step.div_ceil(together), || Sums::zeros(map, &texels));
     for step in 0..options.steps {
-        watch.progress(Stage::Parallax, step, options.steps);
-        if mean_size == 0.0 || watch.should_stop() {
+        watcher.progress(Stage::Parallax, step, options.steps);
+        if mean_size == 0.0 || watcher.stopped() {
             break;
         }
         // The pool's every prefix is well spread, and so is every run of it.
@@ -147,7 +185,7 @@ pub fn fit_parallax<M: ShiftMap>(
             .collect();
         sums.par_iter_mut().zip(chosen.par_chunks(together)).for_each(|(sums, views)| {
             (sums.loss, sums.map) = (0.0, map.zeros_like());
-            views.iter().for_each(|pixels| add_view(pixels, map, &texels, display, sums));
+            views.iter().for_each(|pixels| add_view(pixels, map, &texels, brdf, display, sums));
         });
         let count: usize = chosen.iter().map(|pixels| pixels.len()).sum();
         losses.push(sums.iter().map(|s| s.loss).sum::<f64>() / (3 * count.max(1)) as f64);
@@ -156,7 +194,7 @@ pub fn fit_parallax<M: ShiftMap>(
         if let [first, others @ ..] = sums.as_mut_slice() {
             gather(&mut first.texels, others.iter_mut().map(|s| s.texels.as_mut_slice()));
             adam_texels.step(texels.texels.as_flattened_mut(), first.texels.as_flattened(), share);
-            first.texels.par_chunks_mut(BAND).for_each(|band| band.fill([Vec4::ZERO; 2]));
+            first.texels.par_chunks_mut(BAND).for_each(|band| band.fill([Vec4::ZERO; N]));
         }
         texels.bring_back();
         let bending = options.bending * losses.first().copied().unwrap_or(0.0) as f32;
@@ -173,8 +211,8 @@ pub fn fit_parallax<M: ShiftMap>(
         // Those that were held in their range must not wander on beyond it.
         moving = in_strides(map.parameters());
     }
-    texels.write(color, normal);
-    watch.progress(Stage::Parallax, options.steps, options.steps);
+    texels.write(maps);
+    watcher.progress(Stage::Parallax, options.steps, options.steps);
     losses
 }
 
@@ -186,7 +224,7 @@ mod tests {
     #[test]
     fn buffers_hold_all_views() {
         for (size, together) in [(16, 1), (128, 1), (512, 3), (4096, 3)] {
-            assert_eq!(views_together(size * size, 12), together, "{size}²");
+            assert_eq!(views_together(size * size, 2, 12), together, "{size}²");
         }
     }
 }

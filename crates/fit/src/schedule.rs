@@ -1,46 +1,47 @@
-//! The order of the fit: colours and normals in turn, each with the other held, then
-//! the normals rounded to what a file holds and the colours solved once more against
-//! those, so that rounding costs as little as it can.
+//! The order of the texture solve: maps take turns, each with the others held; then the normals are
+//! rounded to what a file holds and the others solved once more against those, so that rounding costs
+//! as little as it can.
 //!
 //! Every step first measures the loss of the state that it found; the best state is
 //! kept, so a run that is stopped, or a step that goes wrong, never ends worse. Best is by
 //! the loss that is minimised (`outliers.rs`); plain squares are what is reported.
 
-use crate::atlas::{Atlas, NO_CHART};
-use crate::canvas::{Canvas, block};
-use crate::color::{Problem, color_step, loss};
-use crate::conjugate_gradient::Effort;
-use crate::gutter;
 use crate::membrane::Membrane;
-use crate::normal::normal_step;
 use crate::outliers::{Cauchy, Loss};
-use crate::quantise::{color_canvas, color_image, normal_canvas, normal_image};
-use crate::samples::SampleSet;
-use crate::start::Start;
-use crate::stencil::{Diagonal, Row, Symmetric};
-use crate::watch::{Stage, Watch};
+use crate::problem::Problem;
+use crate::step::{StepOptions, Workspace, fit_step};
+use parbake_image::display::Display;
+use parbake_image::display_table::DisplayTable;
+use parbake_image::quantise::{from_image, to_image};
+use parbake_image::{Domain, FloatImage, MapKind, MapSet};
 use parbake_model::Image;
-use parbake_render::display::Display;
-use parbake_render::display_table::DisplayTable;
+use parbake_model::glam::Vec4;
+use parbake_progress::{Stage, Watcher};
+use parbake_render::shade::Brdf;
+use parbake_solve::conjugate_gradient::Effort;
+use parbake_solve::grid::block;
+use parbake_views::chart_labels::{Atlas, NO_CHART};
+use parbake_views::gutter;
+use parbake_views::samples::SampleSet;
 use std::time::Instant;
 
 /// How much work the fit does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schedule {
-    /// Times that colours and normals take turns.
+    /// Alternations between the solves of the maps.
     pub rounds: usize,
-    /// Gauss–Newton steps of the colours in each round.
+    /// Gauss–Newton steps of each map in a box (colours, emission, …) in each round.
     pub color_steps: usize,
-    /// Levenberg–Marquardt steps of the normals in each round; 0 keeps the start's.
+    /// Levenberg–Marquardt steps of the normals in each round; 0 keeps the projected ones.
     pub normal_steps: usize,
-    /// Steps of the colours after the normals were rounded.
+    /// Steps of the maps in a box after the normals were rounded.
     pub final_steps: usize,
     /// Limits of the linear solver: few steps, since the next linearisation asks
     /// for something else anyway, and stopping early regularises.
     pub effort: Effort,
     /// Its limits in the final steps.
     pub final_effort: Effort,
-    /// What holds colours that few views see.
+    /// What holds texels in a box that few views see.
     pub color_membrane: Membrane,
     /// What holds normals that few views see.
     pub normal_membrane: Membrane,
@@ -68,16 +69,31 @@ impl Default for Schedule {
     }
 }
 
+impl Schedule {
+    fn steps(&self, kind: MapKind) -> usize {
+        match kind.spec().domain {
+            Domain::Box => self.color_steps,
+            Domain::Hemisphere => self.normal_steps,
+        }
+    }
+
+    fn options(&self, kind: MapKind, effort: Effort, damping: f32) -> StepOptions {
+        let membrane = match kind.spec().domain {
+            Domain::Box => self.color_membrane,
+            Domain::Hemisphere => self.normal_membrane,
+        };
+        StepOptions { membrane, effort, damping }
+    }
+}
+
 /// What moved in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Move {
     /// Nothing: the projected start.
     Start,
-    /// Colours.
-    Color,
-    /// Normals.
-    Normal,
-    /// Both textures, to eight bits.
+    /// One map.
+    Map(MapKind),
+    /// All maps, to eight bits.
     Rounding,
 }
 
@@ -92,13 +108,11 @@ pub struct LossPoint {
     pub mean_square: f64,
 }
 
-/// Fitted textures, and how they came about.
+/// Fitted maps, and how they came about.
 #[derive(Clone, Debug)]
 pub struct Fitted {
-    /// Base colour.
-    pub color: Image,
-    /// Tangent-space normals.
-    pub normal: Image,
+    /// Each map as a file holds it, in the order of [`MapKind::ALL`].
+    pub images: Vec<(MapKind, Image)>,
     /// Loss of the start and after each step.
     pub losses: Vec<LossPoint>,
     /// Texels on the surface.
@@ -113,7 +127,7 @@ struct Log {
     begin: Instant,
     terms: f64,
     losses: Vec<LossPoint>,
-    best: Option<(f64, Canvas, Canvas)>,
+    best: Option<(f64, MapSet)>,
 }
 
 impl Log {
@@ -123,150 +137,171 @@ impl Log {
     }
 
     /// Notes the loss of this state, and the state itself if it is the best so far.
-    fn note(&mut self, moved: Move, loss: Loss, color: &Canvas, normal: &Canvas) {
+    fn note(&mut self, moved: Move, loss: Loss, maps: &MapSet) {
         let seconds = self.begin.elapsed().as_secs_f64();
         self.losses.push(LossPoint { moved, seconds, mean_square: loss.square / self.terms });
         if self.best.as_ref().is_none_or(|b| loss.minimised < b.0) {
-            self.best = Some((loss.minimised, color.clone(), normal.clone()));
+            self.best = Some((loss.minimised, maps.clone()));
         }
     }
 }
 
-/// Both textures on their way.
+/// The maps during the solve.
 struct Descent<'a, W> {
-    color: Canvas,
-    normal: Canvas,
-    /// What the projection showed: texels that nothing says more of stay there.
-    start: &'a Start,
-    color_rows: Vec<Row<Diagonal>>,
-    normal_rows: Vec<Row<Symmetric>>,
+    maps: MapSet,
+    /// The projected maps: texels that nothing says more of stay there.
+    start: &'a MapSet,
+    workspace: Workspace,
+    /// Of the normals; adapted from step to step.
     damping: f32,
     /// What moved last; its loss is known at the next step.
     last: Move,
     log: Log,
-    watch: &'a W,
+    watcher: &'a W,
     /// Steps that were taken, and all there are.
     steps: [usize; 2],
     stopped: bool,
 }
 
-impl<W: Watch> Descent<'_, W> {
+impl<W: Watcher> Descent<'_, W> {
     /// Counts a step; false where it shall not be taken.
     fn advance(&mut self) -> bool {
         if !self.stopped {
-            self.watch.progress(Stage::Solve, self.steps[0], self.steps[1]);
+            self.watcher.progress(Stage::Solve, self.steps[0], self.steps[1]);
             self.steps[0] += 1;
-            self.stopped = self.watch.should_stop();
+            self.stopped = self.watcher.stopped();
         }
         !self.stopped
     }
 
-    fn color_steps(&mut self, problem: &Problem, count: usize) {
+    /// Takes this many steps of one map.
+    fn take<B: Brdf>(
+        &mut self,
+        kind: MapKind,
+        problem: &Problem<B>,
+        schedule: &Schedule,
+        effort: Effort,
+        count: usize,
+    ) {
+        let Some(start) = self.start.get(kind) else { return };
+        let is_damped = kind.spec().domain == Domain::Hemisphere;
+        let mut previous: Option<(f64, FloatImage<Vec4>)> = None;
         for _ in 0..count {
             if !self.advance() {
                 return;
             }
-            let (before, start) = (self.color.clone(), &self.start.color);
-            let (loss, _) = color_step(problem, &mut self.color, &self.normal, start, &mut self.color_rows);
-            self.log.note(self.last, loss, &before, &self.normal);
-            self.last = Move::Color;
-        }
-    }
-
-    fn normal_steps(&mut self, problem: &Problem, count: usize) {
-        let mut previous: Option<(f64, Canvas)> = None;
-        for _ in 0..count {
-            if !self.advance() {
-                return;
+            let before = self.maps.clone();
+            let options = schedule.options(kind, effort, self.damping);
+            let (loss, _) = fit_step(kind, problem, &options, &mut self.maps, start, &mut self.workspace);
+            self.log.note(self.last, loss, &before);
+            self.last = Move::Map(kind);
+            if !is_damped {
+                continue;
             }
-            let (before, start) = (self.normal.clone(), &self.start.normal);
-            let rows = &mut self.normal_rows;
-            let (loss, _) = normal_step(problem, &self.color, &mut self.normal, start, self.damping, rows);
-            self.log.note(self.last, loss, &self.color, &before);
-            self.last = Move::Normal;
             match &previous {
                 // The step before made it worse: take it back and tread more carefully.
                 Some((was, kept)) if loss.minimised > *was => {
-                    self.normal.clone_from(kept);
+                    self.maps.insert(kind, kept.clone());
                     self.damping *= 8.0;
                 }
                 _ => {
                     self.damping *= 0.5;
-                    previous = Some((loss.minimised, before));
+                    previous = before.get(kind).map(|map| (loss.minimised, map.clone()));
                 }
             }
         }
     }
 
     /// Measures where the last step led, also when there is no time left, and goes back to the best.
-    fn settle(&mut self, problem: &Problem, nothing_moved: Move) {
+    fn settle<B: Brdf>(&mut self, problem: &Problem<B>, nothing_moved: Move) {
         if !problem.samples.is_empty() && self.last != nothing_moved {
-            self.log.note(self.last, loss(problem, &self.color, &self.normal), &self.color, &self.normal);
+            self.log.note(self.last, problem.loss(&self.maps), &self.maps);
         }
-        if let Some((_, color, normal)) = self.log.best.take() {
-            (self.color, self.normal) = (color, normal);
+        if let Some((_, maps)) = self.log.best.take() {
+            self.maps = maps;
         }
     }
 }
 
-/// Fits both textures. `srgb` tells whether the colour file holds sRGB of the albedo.
-pub fn fit_textures(
+/// What is fitted, and how it is compared.
+#[derive(Clone, Copy)]
+pub struct Comparison<'a, B> {
+    /// How maps become light.
+    pub brdf: &'a B,
+    /// How light is shown.
+    pub display: Display,
+    /// Whether files hold sRGB of colours.
+    pub srgb: bool,
+}
+
+/// Fits all maps that the start has, beginning there.
+pub fn fit_textures<B: Brdf>(
     samples: &SampleSet,
     atlas: &Atlas,
-    start: &Start,
-    display: Display,
-    srgb: bool,
+    start: &MapSet,
+    comparison: &Comparison<B>,
     schedule: &Schedule,
-    watch: &impl Watch,
+    watcher: &impl Watcher,
 ) -> Fitted {
+    let Comparison { brdf, display, srgb } = *comparison;
     let display = &DisplayTable::new(&display);
-    let outliers = Cauchy::new(schedule.outlier);
-    let problem = |membrane, effort| Problem { samples, atlas, display, membrane, effort, outliers };
-    let color_problem = problem(schedule.color_membrane, schedule.effort);
-    let normal_problem = problem(schedule.normal_membrane, schedule.effort);
-    let total = schedule.rounds * (schedule.color_steps + schedule.normal_steps) + schedule.final_steps;
+    let problem = &Problem { samples, atlas, display, brdf, outliers: Cauchy::new(schedule.outlier) };
+    let kinds: Vec<MapKind> = start.kinds().filter(|kind| brdf.reads(*kind)).collect();
+    let (normals, boxed): (Vec<MapKind>, Vec<MapKind>) =
+        kinds.iter().partition(|kind| kind.spec().domain == Domain::Hemisphere);
+    let total = schedule.rounds * kinds.iter().map(|kind| schedule.steps(*kind)).sum::<usize>()
+        + schedule.final_steps * boxed.len();
     let mut descent = Descent {
-        color: start.color.clone(),
-        normal: start.normal.clone(),
+        maps: start.clone(),
         start,
-        color_rows: Vec::new(),
-        normal_rows: Vec::new(),
+        workspace: Workspace::default(),
         damping: schedule.damping,
         last: Move::Start,
         log: Log::new(samples),
-        watch,
+        watcher,
         steps: [0, total],
         stopped: false,
     };
     for _ in 0..schedule.rounds {
-        descent.color_steps(&color_problem, schedule.color_steps);
-        descent.normal_steps(&normal_problem, schedule.normal_steps);
+        for &kind in &kinds {
+            descent.take(kind, problem, schedule, schedule.effort, schedule.steps(kind));
+        }
     }
-    descent.settle(&color_problem, Move::Start);
+    descent.settle(problem, Move::Start);
 
     let seen = seen(samples);
     let known: Vec<bool> =
         atlas.label.iter().zip(&seen).map(|(&label, &seen)| label != NO_CHART || seen).collect();
-    gutter::fill(&mut descent.normal, &known);
-    let normal_picture = normal_image("normal", &descent.normal);
-    descent.normal = normal_canvas(&normal_picture);
+    let mut images = Vec::with_capacity(kinds.len());
+    let mut round = |kind: MapKind, maps: &mut MapSet| {
+        if let Some(map) = maps.get_mut(kind) {
+            gutter::fill(map, &known);
+            let image = to_image(kind, map, srgb);
+            *map = from_image(kind, &image, srgb);
+            images.push((kind, image));
+        }
+    };
+    for &kind in &normals {
+        round(kind, &mut descent.maps);
+    }
     descent.last = Move::Rounding;
     if !samples.is_empty() {
-        let final_problem = problem(schedule.color_membrane, schedule.final_effort);
-        descent.color_steps(&final_problem, schedule.final_steps);
+        for &kind in &boxed {
+            descent.take(kind, problem, schedule, schedule.final_effort, schedule.final_steps);
+        }
     }
-    descent.settle(&color_problem, Move::Rounding);
-    let Descent { mut color, normal, mut log, stopped, .. } = descent;
-    gutter::fill(&mut color, &known);
-    let color_picture = color_image("base color", &color, srgb);
+    descent.settle(problem, Move::Rounding);
+    let Descent { mut maps, mut log, stopped, .. } = descent;
+    for &kind in &boxed {
+        round(kind, &mut maps);
+    }
     if !samples.is_empty() {
-        let written = color_canvas(&color_picture, srgb);
-        log.note(Move::Rounding, loss(&color_problem, &written, &normal), &written, &normal);
+        log.note(Move::Rounding, problem.loss(&maps), &maps);
     }
-    watch.progress(Stage::Solve, total, total);
+    watcher.progress(Stage::Solve, total, total);
+    images.sort_by_key(|(kind, _)| *kind);
     Fitted {
-        color: color_picture,
-        normal: normal_picture,
+        images,
         losses: log.losses,
         covered: atlas.covered.iter().filter(|&&c| c).count(),
         unseen: atlas.covered.iter().zip(&seen).filter(|(c, s)| **c && !**s).count(),

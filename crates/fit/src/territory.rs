@@ -8,11 +8,11 @@
 //! Contract: coefficients only shrink; a map without strays stays to the bit. The result does
 //! not depend on the number of threads.
 
-use crate::atlas::{Atlas, NO_CHART};
-use crate::sighted::Sighted;
 use parbake_model::glam::Vec2;
 use parbake_render::parallax::{ShParallax, Sight};
 use parbake_render::spherical_harmonics::functions;
+use parbake_views::chart_labels::{Atlas, NO_CHART};
+use parbake_views::sighted::Sighted;
 use rayon::prelude::*;
 
 /// The owners of a texture's texels.

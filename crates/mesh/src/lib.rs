@@ -7,6 +7,7 @@
 //! simplify, subdivide, bisect   coarser and finer copies of a mesh
 //! deviation                     how far two surfaces are apart
 //! exposure                      how much of a surface is seen from outside
+//! material_uvs                  texture coordinates as materials read them
 //! weld, vertices, union_find    what these share
 //! demo                          the built-in pairs of models
 //! ```
@@ -22,6 +23,7 @@ pub mod demo;
 pub mod deviation;
 pub mod exposure;
 pub mod facing;
+pub mod material_uvs;
 pub mod normals;
 pub mod projection;
 pub mod simplify;
@@ -37,6 +39,7 @@ pub use charts::{charts, texel_charts};
 pub use demo::{demo_low, demo_model, wall_low, wall_model};
 pub use exposure::exposures;
 pub use facing::face_outwards;
+pub use material_uvs::material_uvs;
 pub use normals::{ensure_normals, smooth_normals};
 pub use projection::{HighSurface, SurfacePoint};
 pub use simplify::{SimplifyOptions, simplify};

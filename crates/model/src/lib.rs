@@ -15,6 +15,7 @@ mod mesh;
 mod parallax;
 mod parallax_fault;
 mod placement;
+mod short_uv;
 
 pub use cutout::CutoutMap;
 pub use glam;
@@ -24,6 +25,7 @@ pub use mesh::Mesh;
 pub use parallax::{DepthMap, ShParallaxMap};
 pub use parallax_fault::ParallaxFault;
 pub use placement::{Bounds, Placement};
+pub use short_uv::{is_short, nearest_short, short_uv, short_uvs_pay};
 
 /// A textured model: one mesh, and what its triangles' materials name.
 ///

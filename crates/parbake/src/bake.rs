@@ -7,32 +7,29 @@
 //!   (normals)    (vertices) (coordinates) (texel map, charts)  (cutout, parallax)
 //! ```
 
-use crate::bridge::{Bridge, Clock, shares};
-use crate::check::{check_mesh, warning};
-use crate::depth::{Depth, DepthMaps, fit_depth};
+use crate::budget::shares;
 use crate::error::BakeError;
 use crate::geometry::{Geometry, move_geometry};
-use crate::low::{LowPoly, lit};
-use crate::message::{Message, Stage, Watcher};
 use crate::options::{BakeOptions, UvMode};
-use crate::pair::{common_frame, placed};
-use crate::report::{BakeReport, Work};
-use crate::shape::Target;
-use crate::uv_animation::UvMoves;
-use parbake_fit::quantise::{color_image, normal_image};
-use parbake_fit::reference::render_references;
-use parbake_fit::samples::{collect_samples, shifted_samples};
-use parbake_fit::schedule::fit_textures;
-use parbake_fit::sighted::sighted_views;
-use parbake_fit::start::project;
-use parbake_fit::view_walk::Walker;
-use parbake_fit::views::{Rig, view_pool};
-use parbake_mesh::HighSurface;
-use parbake_model::{Image, Material, Mesh, Model, Placement, TextureSlot, Wrap};
+use crate::report::{BakeReport, Work, layout_warning};
+use parbake_atlas::check_mesh;
+use parbake_fit::parallax_maps::{FittedMaps, ParallaxMaps, fit_parallax_maps};
+use parbake_fit::schedule::{Comparison, fit_textures};
+use parbake_image::MapKind;
+use parbake_image::material_maps::set_texture;
+use parbake_image::quantise::to_image;
+use parbake_model::{Image, Material, Mesh, Model, TextureSlot, Wrap};
+use parbake_progress::{Clock, Message, ProgressScope, Stage, Watcher};
 use parbake_render::camera::Projection;
-use parbake_render::interpretation::Interpretation;
-use parbake_render::scene::Scene;
 use parbake_render::shade::Lambert;
+use parbake_uv::moves::UvMoves;
+use parbake_views::high_poly::{Conventions, HighPoly, ViewSet};
+use parbake_views::low_poly::{LowPoly, lit};
+use parbake_views::pool::Rig;
+use parbake_views::projection::project;
+use parbake_views::samples::{collect_samples, shifted_samples};
+use parbake_views::sighted::sighted_views;
+use parbake_views::view_walk::Walker;
 use std::time::Instant;
 
 /// The training cameras: the paper's distance, and the field of view at which a
@@ -56,83 +53,133 @@ pub struct Baked {
 ///
 /// Runs on rayon's current thread pool. When the watcher asks to stop, the best
 /// state so far is returned; it is never worse than the projection.
+///
+/// # Errors
+/// An option out of range; a model without extent; texture coordinates that are missing, have no area,
+/// or charts that do not fit into the texture; models that lie apart.
 pub fn bake(
     high: &Model,
     low: &Model,
     options: &BakeOptions,
     watcher: &impl Watcher,
 ) -> Result<Baked, BakeError> {
-    bake_pair(high, low, false, options, watcher)
+    options.check()?;
+    let begin = Instant::now();
+    run(&prepare(high, options)?, low, Work::Bake, options, watcher, begin)
 }
 
-/// `same` says that both are one model, triangle by triangle.
-pub(crate) fn bake_pair(
-    high: &Model,
+/// Prepares a high-poly for any number of bakes with [`bake_prepared`]: its frame, its scene, its
+/// surface, and the views that bakes render of it, which are kept (some 300 MB with the default options).
+///
+/// # Errors
+/// An option out of range; a model without extent.
+pub fn prepare_high_poly(high: &Model, options: &BakeOptions) -> Result<HighPoly, BakeError> {
+    options.check()?;
+    Ok(prepare(high, options)?.keeping_views())
+}
+
+/// Bakes a prepared high-poly's look onto a low-poly; the result is that of [`bake`].
+///
+/// # Errors
+/// As of [`bake`]; options whose `convention` or `reach` are not those that the high-poly was prepared with.
+pub fn bake_prepared(
+    high: &HighPoly,
     low: &Model,
-    same: bool,
     options: &BakeOptions,
     watcher: &impl Watcher,
 ) -> Result<Baked, BakeError> {
     options.check()?;
+    if high.conventions != conventions(options) {
+        return Err(BakeError::OtherConventions { model: high.name.clone() });
+    }
+    run(high, low, Work::Bake, options, watcher, Instant::now())
+}
+
+/// Bakes a model onto itself, triangle by triangle.
+pub(crate) fn bake_onto_itself(
+    model: &Model,
+    options: &BakeOptions,
+    watcher: &impl Watcher,
+) -> Result<Baked, BakeError> {
+    options.check()?;
+    let begin = Instant::now();
+    run(&prepare(model, options)?, model, Work::Compress, options, watcher, begin)
+}
+
+fn conventions(options: &BakeOptions) -> Conventions {
+    Conventions {
+        interpretation: options.convention.interpretation(),
+        display: options.convention.display(),
+        rig: RIG,
+        max_distance: 2.0 * options.reach,
+    }
+}
+
+fn prepare(high: &Model, options: &BakeOptions) -> Result<HighPoly, BakeError> {
+    Ok(HighPoly::new(high, conventions(options))?)
+}
+
+fn run(
+    high: &HighPoly,
+    low: &Model,
+    work: Work,
+    options: &BakeOptions,
+    watcher: &impl Watcher,
+    begin: Instant,
+) -> Result<Baked, BakeError> {
     let mut plan = options.plan();
+    let same = work == Work::Compress;
     if same {
         // Nothing is moved by parallax, so sharper samples only bring out more.
         plan.reference.filter = (0.5 * plan.reference.filter).max(1.0 / 16.0);
     }
-    let (convention, size) = (options.convention, options.texture_size);
-    let (display, srgb) = (convention.display(), convention.decodes_srgb());
-    let begin = Instant::now();
-    let bridge = Bridge::new(watcher, begin, options.time_budget);
+    let size = options.texture_size;
+    let Conventions { display, .. } = high.conventions;
+    let scope = ProgressScope::new(watcher, begin, options.time_budget);
     let mut clock = Clock::new(begin);
     let mut warnings = Warnings { watcher, told: Vec::new() };
-    let frame = common_frame(high)?;
     // One model twice keeps its vertices, whatever their normals are like.
     let turned = (!same).then(|| lit(low));
     let low = turned.as_ref().map_or(low, |(model, _)| model);
     warnings.tell(turned.iter().flat_map(|(_, of_normals)| of_normals.clone()));
-    let (scene, surface) = seen_and_touched(high, &frame, convention.interpretation());
-    let target =
-        Target { scene: &scene, surface: &surface, reach: 2.0 * options.reach, display, srgb, rig: RIG };
-    let Geometry { unfolded, shape, map } =
-        move_geometry(low, same, &frame, &target, options, &bridge, &mut clock)?;
+    let Geometry { unfolded, shape, map } = move_geometry(low, work, high, options, &scope, &mut clock)?;
     let low = unfolded.as_ref().map_or(low, |u| &u.model);
-    let LowPoly { written, placed, map: texels, atlas, warnings: of_low } = LowPoly::new(low, &frame, size)?;
-    warnings.tell(of_low);
-    let mended = unfolded.iter().flat_map(|u| &u.report.mended);
-    warnings.tell(mended.map(|done| format!("{}: {done}", low.name)));
+    let prepared = LowPoly::new(low, &high.frame, size)?;
+    warnings.tell(prepared.warnings.iter().cloned());
+    let repaired = unfolded.iter().flat_map(|u| &u.report.mended);
+    warnings.tell(repaired.map(|done| format!("{}: {done}", low.name)));
     clock.lap(Stage::Prepare);
 
-    let start = project(&placed, &texels, &atlas, &scene, &surface, target.reach);
+    let projected = project(&prepared, high);
     clock.lap(Stage::Start);
 
-    let pool = view_pool(plan.views, &RIG, options.seed);
-    let share = bridge.share(shares::REFERENCE);
-    let references = render_references(&scene, &Lambert, &pool, &plan.reference, 1, &share);
+    let set = ViewSet { count: plan.views, seed: options.seed, jitter: true, sampling: plan.reference };
+    let references = high.references(&set, &scope.share(shares::REFERENCE));
     let views = references.len();
     clock.lap(Stage::Reference);
 
-    let walker = Walker::new(&placed, plan.reference.size, &display, options.beyond());
-    let depth = match options.depth_plan().filter(|_| !same) {
+    let walker = Walker::new(&prepared.placed, plan.reference.size, &display, options.beyond());
+    let parallax = match options.parallax_plan().filter(|_| !same) {
         Some(plan) => {
-            let share = bridge.share(shares::DEPTH);
-            let depth = fit_depth(low, &frame, &target, &references, &walker, &plan, &share)?;
+            let share = scope.share(shares::PARALLAX);
+            let own = (&prepared, &projected);
+            let fitted = fit_parallax_maps(low, own, high, &references, &walker, &plan, &share)?;
             clock.lap(Stage::Parallax);
-            Some(depth)
+            Some(fitted)
         }
-        None => map.map(Depth::given),
+        None => map.map(FittedMaps::given),
     };
-    drop(surface);
-    let (samples, maps, depth_report) = match depth {
+    let (samples, maps, parallax_report) = match parallax {
         None => {
-            let samples = collect_samples(&walker, &references, size, &bridge);
+            let samples = collect_samples(&walker, &references, size, &scope);
             drop(references);
             (samples, None, None)
         }
-        Some(Depth { maps, views: mut sighted, report }) => {
+        Some(FittedMaps { maps, views: mut sighted, report }) => {
             let walker = walker.with_cutout(maps.cutout.as_ref());
             sighted.extend(sighted_views(&walker, &references[sighted.len()..]));
             drop(references);
-            (shifted_samples(sighted, size, &maps.parallax, &bridge), Some(maps), report)
+            (shifted_samples(sighted, size, &maps.parallax, &scope), Some(maps), report)
         }
     };
     if samples.is_empty() {
@@ -140,49 +187,42 @@ pub(crate) fn bake_pair(
     }
     clock.lap(Stage::Sampling);
 
-    let fitted = fit_textures(&samples, &atlas, &start, display, srgb, &plan.schedule, &bridge);
+    let comparison = Comparison { brdf: &Lambert, display, srgb: high.conventions.srgb() };
+    let LowPoly { written, map: texels, atlas, .. } = &prepared;
+    let fitted = fit_textures(&samples, atlas, &projected.maps, &comparison, &plan.schedule, &scope);
     clock.lap(Stage::Solve);
 
-    let uv = check_mesh(&written, size);
-    warnings.tell(warning(&low.name, &uv));
+    let uv = check_mesh(written, size);
+    warnings.tell(layout_warning(&low.name, &uv));
     let report = BakeReport {
-        work: if same { Work::Compress } else { Work::Bake },
+        work,
         shape,
-        depth: depth_report,
+        depth: parallax_report,
         unfold: unfolded.as_ref().filter(|_| options.uv != UvMode::Keep).map(|u| u.report.clone()),
         options: options.clone(),
-        high_triangles: high.mesh.triangles.len(),
+        high_triangles: high.triangles,
         low_triangles: low.mesh.triangles.len(),
         views,
         samples: samples.len(),
         covered_texels: fitted.covered,
         unseen_texels: fitted.unseen,
         overlapping_texels: texels.overlaps,
-        missed_texels: start.missed,
+        missed_texels: projected.missed,
         uv,
         losses: fitted.losses.iter().map(Into::into).collect(),
         stages: clock.stages,
-        stopped_early: fitted.stopped || views < plan.views || bridge.stopped_a_stage(),
+        stopped_early: fitted.stopped || views < plan.views || scope.stopped_a_stage(),
         warnings: warnings.told,
         peak_memory: crate::memory::peak_memory(),
     };
-    let (color, normal) =
-        (color_image("base color", &start.color, srgb), normal_image("normal", &start.normal));
+    let start =
+        projected.maps.iter().map(|(kind, map)| (kind, to_image(kind, map, comparison.srgb))).collect();
     Ok(Baked {
-        projected: textured(low, &written, color, normal, None),
-        model: textured(low, &written, fitted.color, fitted.normal, maps.as_ref()),
+        projected: textured(low, written, start, None),
+        model: textured(low, written, fitted.images, maps.as_ref()),
         report,
         uv_moves: unfolded.and_then(|u| u.moves),
     })
-}
-
-/// The high-poly in the common frame, as cameras see it and as rays touch it.
-fn seen_and_touched(high: &Model, frame: &Placement, interpretation: Interpretation) -> (Scene, HighSurface) {
-    let mesh = placed(high, frame);
-    rayon::join(
-        || Scene::new(mesh.clone(), &high.materials, &high.images, interpretation),
-        || HighSurface::new(&mesh),
-    )
 }
 
 /// What the user is told of as it is found, and reads again in the report.
@@ -200,21 +240,19 @@ impl<W: Watcher> Warnings<'_, W> {
     }
 }
 
-/// The low-poly with one material of these two textures and these maps.
-fn textured(low: &Model, mesh: &Mesh, color: Image, normal: Image, maps: Option<&DepthMaps>) -> Model {
+/// The low-poly with one material of these images and these parallax maps.
+fn textured(low: &Model, mesh: &Mesh, maps: Vec<(MapKind, Image)>, parallax: Option<&ParallaxMaps>) -> Model {
     let mut mesh = mesh.clone();
     mesh.colors.clear();
     mesh.uvs1.clear();
     mesh.triangle_materials.fill(0);
-    let slot = |image| TextureSlot { image, wrap: [Wrap::Repeat; 2], ..TextureSlot::default() };
-    let mut images = vec![color, normal];
-    let parallax = maps.map(|maps| maps.pack(&mut images));
-    let material = Material {
-        parallax,
-        name: low.name.clone(),
-        base_color_texture: Some(slot(0)),
-        normal_texture: Some(slot(1)),
-        ..Material::default()
-    };
+    let mut material = Material { name: low.name.clone(), ..Material::default() };
+    let mut images = Vec::new();
+    for (kind, image) in maps {
+        let slot = TextureSlot { image: images.len(), wrap: [Wrap::Repeat; 2], ..TextureSlot::default() };
+        set_texture(&mut material, kind, slot);
+        images.push(image);
+    }
+    material.parallax = parallax.map(|maps| maps.pack(&mut images));
     Model { name: low.name.clone(), mesh, materials: vec![material], images }
 }

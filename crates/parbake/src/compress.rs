@@ -15,20 +15,22 @@
 //! than coordinates that were only mended. Texels are compared as they are stored, as when a picture is
 //! scaled.
 
-use crate::bake::{Baked, bake_pair};
-use crate::bridge::{Bridge, Clock};
-use crate::check::{check_mesh, warning};
+use crate::bake::{Baked, bake_onto_itself};
 use crate::error::BakeError;
-use crate::message::{Message, Stage, Watcher};
+
 use crate::options::{BakeOptions, Convention, Parallax, UvMode};
-use crate::pair::{common_frame, placed};
-use crate::report::{BakeReport, LossStep, Work};
-use crate::unfold::{Mended, Source, SurfaceSignal, SurfaceTexture, UnfoldOptions, Unfolded, mend, unfold};
-use parbake_atlas::in_one_tile;
+use crate::report::{BakeReport, LossStep, Work, layout_warning};
+use parbake_atlas::{check_mesh, in_one_tile};
 use parbake_mesh::{HighSurface, exposures};
 use parbake_model::glam::DVec2;
 use parbake_model::{Image, Material, Mesh, Model, Placement, TextureSlot, Wrap};
+use parbake_progress::{Clock, Message, ProgressScope, Stage, Watcher};
 use parbake_render::scene::Scene;
+use parbake_uv::surface::{
+    Mended, Source, SurfaceSignal, SurfaceTexture, UnfoldOptions, Unfolded, mend, unfold,
+};
+use parbake_views::PrepareError;
+use parbake_views::frame::{common_frame, placed};
 use std::time::Instant;
 
 /// How far dark colours are brightened before coordinates move for them. Viewers of glTF show stored
@@ -52,15 +54,15 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     let as_it_is = options.unfold_as(UvMode::Keep);
     let delivered = mend(model, &as_it_is)?;
     if options.uv == UvMode::Keep && delivered.mesh.uvs.is_empty() {
-        return Err(BakeError::NoTextureCoordinates { model: model.name.clone() });
+        return Err(PrepareError::NoTextureCoordinates { model: model.name.clone() }.into());
     }
     let slack = 0.5 / options.texture_size as f64;
     let keeps_tiles = options.uv == UvMode::Keep && !is_in_the_square(&delivered.mesh, slack);
     if keeps_tiles || model.materials.iter().any(|m| m.normal_texture.is_some()) {
-        return bake_pair(model, model, true, options, watcher);
+        return bake_onto_itself(model, options, watcher);
     }
     let begin = Instant::now();
-    let watcher = &Bridge::new(watcher, begin, options.time_budget);
+    let watcher = &ProgressScope::new(watcher, begin, options.time_budget);
     let mut clock = Clock::new(begin);
     let frame = common_frame(model)?;
     let surface = placed(model, &frame);
@@ -78,7 +80,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         pixel: sample_width(&surface, options.texture_size),
     };
     let signal = SurfaceSignal::new(&surface, &stored, options.texture_size)
-        .ok_or_else(|| BakeError::FlatTextureCoordinates { model: model.name.clone() })?;
+        .ok_or_else(|| PrepareError::FlatTextureCoordinates { model: model.name.clone() })?;
     let own = OwnSurface { model, frame: &frame, stored, signal, options };
     clock.lap(Stage::Prepare);
 
@@ -179,11 +181,16 @@ impl OwnSurface<'_> {
     }
 
     /// What was done, and said to the user where he should know; losses and stages are left to be told.
-    fn report<W: Watcher>(&self, baseline: &Solved, written: &Solved, watcher: &Bridge<W>) -> BakeReport {
+    fn report<W: Watcher>(
+        &self,
+        baseline: &Solved,
+        written: &Solved,
+        watcher: &ProgressScope<W>,
+    ) -> BakeReport {
         let name = &self.model.name;
         let uv = check_mesh(&written.low.model.mesh, self.options.texture_size);
         let mended = written.low.report.mended.iter().map(|done| format!("{name}: {done}"));
-        let warnings: Vec<String> = mended.chain(warning(name, &uv)).collect();
+        let warnings: Vec<String> = mended.chain(layout_warning(name, &uv)).collect();
         warnings.iter().for_each(|warning| watcher.message(Message::Warning(warning.clone())));
         let mut unfold = written.low.report.clone();
         let errors = written.solved.errors.iter().zip(&baseline.solved.errors);
@@ -218,7 +225,7 @@ fn loss(moved: &str, solved: &SurfaceTexture) -> LossStep {
 
 /// The model with its one texture.
 fn textured(mut model: Model, solved: &SurfaceTexture) -> Model {
-    let size = solved.texture.size;
+    let size = solved.texture.width;
     let texel = |t: &parbake_model::glam::Vec4| {
         let [r, g, b, _] = t.to_array().map(|x| (x * 255.0).round() as u8);
         [r, g, b, 255]
@@ -342,7 +349,10 @@ mod tests {
         mesh.colors = mesh.positions.iter().map(|p| Vec4::splat(if p.x > 0.0 { 1.0 } else { 0.0 })).collect();
         let model = Model { materials: vec![Material::default()], mesh, ..Model::default() };
         let keep = BakeOptions { texture_size: 64, uv: UvMode::Keep, ..BakeOptions::default() };
-        assert!(matches!(compress(&model, &keep, &()), Err(BakeError::NoTextureCoordinates { .. })));
+        assert!(matches!(
+            compress(&model, &keep, &()),
+            Err(BakeError::Prepare(PrepareError::NoTextureCoordinates { .. }))
+        ));
         let options = BakeOptions { uv: UvMode::Unwrap, ..keep };
         let Baked { model, report, .. } = compress(&model, &options, &()).expect("a box can be unwrapped");
         assert_eq!(report.losses[0].moved, "mended");

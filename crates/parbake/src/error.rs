@@ -28,24 +28,13 @@ pub enum BakeError {
         /// Its name.
         image: String,
     },
-    /// A texture cannot be baked without texture coordinates.
-    #[error(
-        "{model}: the low-poly has no texture coordinates, so there is no place for a texture; let --uv unwrap make some"
-    )]
-    NoTextureCoordinates {
-        /// The low-poly's name.
-        model: String,
-    },
-    /// All texture coordinates fall together.
-    #[error("{model}: the low-poly's texture coordinates cover no area; let --uv unwrap make new ones")]
-    FlatTextureCoordinates {
-        /// The low-poly's name.
-        model: String,
-    },
-    /// Nothing to look at.
-    #[error("{model}: its vertices lie in one point or beyond all measure, so there is nothing to render")]
-    NoExtent {
-        /// The model's name.
+    /// A model could not be made ready.
+    #[error(transparent)]
+    Prepare(#[from] parbake_views::PrepareError),
+    /// A high-poly was prepared for bakes of another kind.
+    #[error("{model} was prepared with another convention or reach; prepare it with the options of the bake")]
+    OtherConventions {
+        /// The high-poly's name.
         model: String,
     },
     /// No training view shows any of the low-poly.

@@ -16,60 +16,46 @@
 //! # }
 //! ```
 
-mod algorithm_one;
 mod bake;
-mod bridge;
-mod check;
+mod budget;
 mod compress;
-mod convergence;
-mod depth;
 mod error;
-mod evaluate;
+pub mod evaluate;
 mod geometry;
-mod html;
-mod low;
+mod image;
+mod image_options;
 mod memory;
-mod message;
 mod models;
 mod options;
-mod pair;
-mod picture;
 mod plan;
 mod report;
-mod shape;
-mod studio;
+pub mod studio;
 mod threads;
-mod turntable;
-mod unfold;
-mod uv_animation;
-mod variants;
 
-pub use bake::{Baked, bake};
-pub use check::{LayoutCheck, ModelCheck, check_model};
+pub use bake::{Baked, bake, bake_prepared, prepare_high_poly};
 pub use compress::compress;
-pub use convergence::Convergence;
-pub use depth::DepthReport;
 pub use error::BakeError;
 pub use evaluate::options::EvaluateOptions;
 pub use evaluate::{Evaluation, ViewFigures, evaluate, evaluate_before};
-pub use html::{html_report, variants_html};
+pub use image::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
 pub use memory::peak_memory;
-pub use message::{Message, Stage, Watcher};
-pub use models::{demo_pair, simplified, subdivided, wall_pair};
+pub use models::{demo_pair, laid_out, simplified, subdivided, wall_pair};
 pub use options::{Backdrop, BakeOptions, Convention, Method, Parallax, Preset, ShapeMode, UvMode};
-pub use parbake_atlas::UvCheck;
+pub use parbake_atlas::{LayoutCheck, ModelCheck, UvCheck, check_mesh, check_model};
 pub use parbake_files::{
     FileError, Limits, Loaded, encode_png, read_image, read_model, write_atomically as write_file, write_glb,
     write_obj,
 };
+pub use parbake_fit::parallax_maps::ParallaxReport;
 pub use parbake_model::{Image as Picture, Model};
-pub use picture::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
+pub use parbake_progress::{Message, ProgressScope, Stage, StageTime, Watcher};
+pub use parbake_shape::stage::ShapeReport;
+pub use parbake_uv::convergence::Convergence;
+pub use parbake_uv::moves::UvMoves;
+pub use parbake_uv::surface::UnfoldReport;
+pub use parbake_views::PrepareError;
+pub use parbake_views::high_poly::HighPoly;
 pub use plan::Plan;
-pub use report::{BakeReport, LossStep, StageTime, Work};
-pub use shape::ShapeReport;
+pub use report::{BakeReport, LossStep, Work};
 pub use studio::{Shot, Studio, Subject};
-pub use threads::{join, with_threads};
-pub use turntable::{FilmFormat, TurntableOptions, turntable, write_turntable};
-pub use unfold::{UnfoldReport, laid_out};
-pub use uv_animation::{UvAnimationOptions, UvMoves, uv_animation};
-pub use variants::{ComparedVariants, VariantFigures, VariantsOptions, VariantsReport, compare_variants};
+pub use threads::{MOST_THREADS, join, with_threads};

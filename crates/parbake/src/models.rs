@@ -1,14 +1,29 @@
 //! Models made from models, and from nothing.
 
+use crate::error::BakeError;
+use crate::options::{BakeOptions, UvMode};
 use parbake_mesh::demo::{demo_low, demo_model, wall_low, wall_model};
 use parbake_mesh::simplify::{SimplifyOptions, simplify};
 use parbake_mesh::subdivide::subdivide;
 use parbake_model::{Material, Mesh, Model};
+use parbake_uv::surface::{Mended, mend};
 
 /// A coarser copy of about this many triangles, with the same materials.
 pub fn simplified(model: &Model, triangles: usize) -> Model {
     let options = SimplifyOptions { target_triangles: triangles, ..SimplifyOptions::default() };
     Model { mesh: simplify(&model.mesh, options), ..model.clone() }
+}
+
+/// A copy of a model whose texture coordinates are mended or made anew as the mode asks, for a
+/// texture of this size, and not moved.
+///
+/// # Errors
+/// Where charts do not fit into the texture.
+pub fn laid_out(low: &Model, mode: UvMode, texture_size: usize) -> Result<Model, BakeError> {
+    let options = BakeOptions { texture_size, ..BakeOptions::default() };
+    let Mended { name, mut mesh, .. } = mend(low, &options.unfold_as(mode))?;
+    mesh.triangle_materials.fill(0);
+    Ok(Model { name, mesh, materials: vec![Material::default()], images: Vec::new() })
 }
 
 /// A copy with four times the triangles and the same shape.

@@ -3,9 +3,9 @@
 //! quality field means "as the preset says".
 
 use crate::error::BakeError;
-use parbake_render::display::{Curve, Display};
+use parbake_image::display::{Curve, Display};
 use parbake_render::interpretation::Interpretation;
-use parbake_uv::paper::Guide;
+pub use parbake_uv::mode::{Method, UvMode};
 use serde::{Deserialize, Serialize};
 
 /// How much time a bake may take for how much quality.
@@ -52,25 +52,6 @@ impl Convention {
     }
 }
 
-/// What becomes of texture coordinates.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-#[serde(rename_all = "lowercase")]
-pub enum UvMode {
-    /// They stay as they are.
-    Keep,
-    /// What overlaps, is mirrored or lies outside is mended; sound ones stay.
-    Repair,
-    /// They are made anew.
-    Unwrap,
-    /// They are made anew as Tutte's embedding in the middle of the square, a poor start that
-    /// optimisers can be tried on.
-    Tutte,
-    /// They are mended and then moved to where they show most.
-    #[default]
-    Optimize,
-}
-
 /// What becomes of vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
@@ -99,35 +80,13 @@ pub enum Parallax {
     Sh,
 }
 
-/// How texture coordinates are moved where they are optimised.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-#[serde(rename_all = "lowercase")]
-pub enum Method {
-    /// A start specialised to the signal, then variable projection: what the best texture
-    /// leaves is reduced itself.
-    #[default]
-    Fit,
-    /// The paper's alternation: steps of Adam on the texture, one step of L-BFGS on the
-    /// coordinates.
-    Paper,
-}
-
-impl Method {
-    /// What moves coordinates in the paper's method, with and without its content-aware term
-    /// (Table 3).
-    pub(crate) fn guide(no_content_aware: bool) -> Guide {
-        if no_content_aware { Guide::ImageLoss } else { Guide::ContentAware }
+/// Checks that the paper's switch is only used with the paper's method.
+pub(crate) fn check_content_aware(method: Method, no_content_aware: bool) -> Result<(), BakeError> {
+    if no_content_aware && method != Method::Paper {
+        let range = "false, unless --method is paper".into();
+        return Err(BakeError::Option { option: "no-content-aware", value: "true".into(), range });
     }
-
-    /// Checks that the paper's switch is only used with the paper's method.
-    pub(crate) fn check(self, no_content_aware: bool) -> Result<(), BakeError> {
-        if no_content_aware && self != Method::Paper {
-            let range = "false, unless --method is paper".into();
-            return Err(BakeError::Option { option: "no-content-aware", value: "true".into(), range });
-        }
-        Ok(())
-    }
+    Ok(())
 }
 
 /// What lies behind the models while fitting: the low-poly is asked to look like this
@@ -363,13 +322,14 @@ impl BakeOptions {
             let range = "keep or normal with --method paper".into();
             return Err(BakeError::Option { option: "shape", value: "laplacian".into(), range });
         }
-        self.method.check(self.no_content_aware)
+        check_content_aware(self.method, self.no_content_aware)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use parbake_uv::paper::Guide;
 
     /// Protects files that were written before there was a choice of methods.
     #[test]

@@ -1,20 +1,20 @@
 //! What follows from a user's options: every number settled that a preset leaves open, stage
 //! by stage.
 
-use crate::algorithm_one::AlgorithmPlan;
-use crate::depth::{DepthPlan, ParallaxPass};
 use crate::options::{BakeOptions, Method, Parallax, Preset, ShapeMode, UvMode};
 use crate::report::Work;
-use crate::shape::ShapePlan;
-use crate::unfold::UnfoldOptions;
 use parbake_fit::cutout::CutoutOptions;
 use parbake_fit::parallax::ParallaxOptions;
-use parbake_fit::reference::Sampling;
+use parbake_fit::parallax_maps::{ParallaxPass, ParallaxPlan};
 use parbake_fit::schedule::Schedule;
-use parbake_fit::view_walk::Beyond;
 use parbake_shape::paper::PaperOptions as AlgorithmOptions;
+use parbake_shape::paper_stage::AlgorithmPlan;
+use parbake_shape::stage::ShapePlan;
 use parbake_shape::{Motion, ShapeOptions};
 use parbake_uv::paper::PaperOptions;
+use parbake_uv::surface::UnfoldOptions;
+use parbake_views::reference::Sampling;
+use parbake_views::view_walk::Beyond;
 
 /// Options with every number settled.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,7 +87,7 @@ impl BakeOptions {
     }
 
     /// How cutout and parallax map are fitted; none where there are none.
-    pub(crate) fn depth_plan(&self) -> Option<DepthPlan> {
+    pub(crate) fn parallax_plan(&self) -> Option<ParallaxPlan> {
         let (views, cutout_steps, steps) = match self.preset {
             Preset::Fast => (240, 120, [100, 60, 0]),
             Preset::Balanced => (960, 300, [400, 250, 400]),
@@ -99,7 +99,7 @@ impl BakeOptions {
             steps,
             rate,
         };
-        (self.parallax == Parallax::Sh && self.method == Method::Fit).then_some(DepthPlan {
+        (self.parallax == Parallax::Sh && self.method == Method::Fit).then_some(ParallaxPlan {
             // What cannot be stopped half-way costs by the view.
             views: if self.time_budget.is_some() { views.min(HURRIED_VIEWS) } else { views },
             cutout: (!self.no_cutout).then_some(CutoutOptions {
@@ -144,7 +144,7 @@ impl BakeOptions {
     }
 
     /// How much pixels count beyond the high-poly's silhouette: none where they are cut out.
-    pub(crate) fn silhouette_weight(&self) -> f32 {
+    pub fn silhouette_weight(&self) -> f32 {
         self.silhouette.unwrap_or(if self.cuts() { 0.0 } else { 0.5 })
     }
 
@@ -192,6 +192,11 @@ impl BakeOptions {
             steps: self.uv_steps.unwrap_or(steps),
             more_triangles: self.more_triangles(),
         }
+    }
+
+    /// Steps in which texture coordinates are moved: as asked, or as preset, method and command say.
+    pub fn settled_uv_steps(&self, work: Work) -> usize {
+        self.unfold_for(work).steps
     }
 
     /// What to do with texture coordinates in this work.

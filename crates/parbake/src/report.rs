@@ -1,22 +1,14 @@
 //! What a bake saw, as plain data: the JSON report, and what the HTML report shows.
 
-use crate::depth::DepthReport;
-use crate::message::Stage;
 use crate::options::BakeOptions;
-use crate::shape::ShapeReport;
-use crate::unfold::UnfoldReport;
 use parbake_atlas::UvCheck;
+use parbake_fit::parallax_maps::ParallaxReport;
 use parbake_fit::schedule::{LossPoint, Move};
+use parbake_image::MapKind;
+use parbake_progress::StageTime;
+use parbake_shape::stage::ShapeReport;
+use parbake_uv::surface::UnfoldReport;
 use serde::{Deserialize, Serialize};
-
-/// Seconds that a stage took.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StageTime {
-    /// Which stage.
-    pub stage: Stage,
-    /// Wall seconds.
-    pub seconds: f64,
-}
 
 /// The loss after a step of the fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,12 +26,22 @@ impl From<&LossPoint> for LossStep {
     fn from(p: &LossPoint) -> Self {
         let moved = match p.moved {
             Move::Start => "start",
-            Move::Color => "color",
-            Move::Normal => "normal",
+            Move::Map(MapKind::BaseColor) => "color",
+            Move::Map(MapKind::Normal) => "normal",
+            Move::Map(MapKind::MetallicRoughness) => "metallic roughness",
+            Move::Map(MapKind::Emissive) => "emissive",
+            Move::Map(MapKind::Occlusion) => "occlusion",
             Move::Rounding => "rounding",
         };
         Self { moved: moved.into(), seconds: p.seconds, mean_square: p.mean_square }
     }
+}
+
+/// A word to the user about a layout that a bake has written, if it is not sound.
+pub(crate) fn layout_warning(model: &str, uv: &UvCheck) -> Option<String> {
+    let problems = uv.problems();
+    (!problems.is_empty())
+        .then(|| format!("{model}: the baked texture coordinates are not one to one. {}", problems.join(" ")))
 }
 
 /// What a report is of.
@@ -55,7 +57,7 @@ pub enum Work {
 
 impl Work {
     /// The command, as one types it, and what it takes.
-    pub(crate) fn command(self) -> &'static str {
+    pub fn command(self) -> &'static str {
         match self {
             Self::Bake => "bake HIGH LOW",
             Self::Compress => "compress MODEL",
@@ -74,7 +76,7 @@ pub struct BakeReport {
     pub shape: Option<ShapeReport>,
     /// How cutout and parallax map were fitted; none where there are none.
     #[serde(default)]
-    pub depth: Option<DepthReport>,
+    pub depth: Option<ParallaxReport>,
     /// What was done with texture coordinates; none where they were kept.
     pub unfold: Option<UnfoldReport>,
     /// What was asked.
@@ -112,12 +114,41 @@ pub struct BakeReport {
 
 impl BakeReport {
     /// What the textures are that the result is compared with.
-    pub(crate) fn start(&self) -> &'static str {
+    pub fn start(&self) -> &'static str {
         match (self.views, self.losses.first().map(|loss| loss.moved.as_str())) {
             // Nothing was projected where nothing was looked at.
             (0, Some("mended")) => "the best texture of this size for coordinates that were only mended",
             (0, _) => "the best texture of this size for the coordinates as they were",
             _ => "what an ordinary baker delivers",
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parbake_atlas::check_mesh;
+    use parbake_model::Mesh;
+    use parbake_model::glam::{Vec3, vec2};
+
+    /// Protects the word to the user: two triangles on the same texels are worth one, one alone is not.
+    #[test]
+    fn a_sound_layout_needs_no_warning() {
+        let mut mesh = Mesh {
+            positions: [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (3.0, 0.0), (4.0, 0.0), (3.0, 1.0)]
+                .map(|(x, y)| Vec3::new(x, y, 0.0))
+                .to_vec(),
+            uvs: [(0.1, 0.9), (0.9, 0.9), (0.1, 0.1)]
+                .repeat(2)
+                .into_iter()
+                .map(|(u, v)| vec2(u, v))
+                .collect(),
+            triangles: vec![[0, 1, 2], [3, 4, 5]],
+            triangle_materials: vec![0; 2],
+            ..Mesh::default()
+        };
+        assert!(layout_warning("low", &check_mesh(&mesh, 64)).is_some_and(|text| text.starts_with("low: ")));
+        mesh.triangles.truncate(1);
+        assert_eq!(layout_warning("low", &check_mesh(&mesh, 64)), None);
     }
 }

@@ -11,14 +11,14 @@
 
 use crate::error::BakeError;
 use crate::evaluate::options::EvaluateOptions;
-use crate::pair::{common_frame, scene};
+use parbake_image::display::{Curve, Display};
 use parbake_metric::Rgb;
 use parbake_model::glam::Vec3;
 use parbake_model::{Model, Placement};
 use parbake_render::camera::Camera;
-use parbake_render::display::{Curve, Display};
 use parbake_render::scene::{Picture, Scene};
 use parbake_render::shade::Lambert;
+use parbake_views::frame::{common_frame, scene};
 
 /// Where models are photographed.
 #[derive(Clone, Debug)]
@@ -63,7 +63,7 @@ impl Studio {
 }
 
 /// A picture as a screen shows it; light strengthens the model and not what is behind it.
-pub(crate) fn shown(picture: &Picture, display: &Display, background: [f32; 3]) -> Rgb {
+pub fn shown(picture: &Picture, display: &Display, background: [f32; 3]) -> Rgb {
     let after = Display { gain: 1.0, ..*display };
     let pixels = picture
         .rgba

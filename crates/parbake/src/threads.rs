@@ -3,7 +3,7 @@
 use crate::error::BakeError;
 
 /// More threads than any machine has cores would only take memory.
-pub(crate) const MOST_THREADS: usize = 256;
+pub const MOST_THREADS: usize = 256;
 
 /// Runs `work` on a pool of this many threads, at most 256; 0 for one a core.
 pub fn with_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> Result<R, BakeError> {

@@ -12,12 +12,14 @@
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use glam::{Vec2, Vec3, Vec4};
+use parbake_image::FloatImage;
+use parbake_image::display::{Curve, Display};
+use parbake_image::display_table::DisplayTable;
+use parbake_image::pyramid::Pyramid;
 use parbake_render::antialias::{Blends, find_blends};
 use parbake_render::background::{Background, Composer};
 use parbake_render::camera::{Camera, Projection};
 use parbake_render::cutout::ShCutout;
-use parbake_render::display::{Curve, Display};
-use parbake_render::display_table::DisplayTable;
 use parbake_render::edges::EdgeAdjacency;
 use parbake_render::frame::{TangentLight, tangent_light, tangent_light_adjoint};
 use parbake_render::interpolate::{
@@ -30,7 +32,6 @@ use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 use parbake_render::scatter::{Fetch, Scatter};
 use parbake_render::shade::{Lambert, Shading};
 use parbake_render::surface::{Surface, Textures};
-use parbake_render::texture::{Level, Pyramid};
 use std::hint::black_box;
 
 const SIZE: usize = 512;
@@ -61,7 +62,7 @@ struct Bench {
 
 fn texture(texel: impl Fn(f32, f32) -> [f32; 3]) -> Pyramid<3> {
     let at = |i: usize| texel((i % 512) as f32 / 512.0, (i / 512) as f32 / 512.0);
-    Pyramid::from_base(Level { width: 512, height: 512, texels: (0..512 * 512).map(at).collect() })
+    Pyramid::from_base(FloatImage { width: 512, height: 512, texels: (0..512 * 512).map(at).collect() })
 }
 
 impl Bench {

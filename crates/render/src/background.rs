@@ -12,8 +12,8 @@
 //! are no help against grey models, so [`Background::Random`] draws black, white and
 //! saturated colours.
 
-use crate::display::{Curve, Display};
-use crate::display_table::DisplayTable;
+use parbake_image::display::{Curve, Display};
+use parbake_image::display_table::DisplayTable;
 
 /// What is asked for behind the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -15,7 +15,7 @@
 
 use crate::raster::{NOTHING, ScreenTriangles, Visibility, rasterise, rasterise_behind};
 use crate::spherical_harmonics::{MOST_FUNCTIONS, as_constant, evaluate, functions};
-use crate::texture::{Taps, taps};
+use parbake_image::pyramid::{Taps, taps};
 use parbake_model::Wrap;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;

@@ -2,7 +2,7 @@
 //!
 //! Per value, with x the view and y the reference, both clipped above at 1 as a
 //! screen does: L1 `|x − y|`, L2 `(x − y)²`, log-L1 `|ln(x + ε) − ln(y + ε)|`. The last
-//! is meant for linear light ([`Curve::Linear`](crate::display::Curve)), where it weighs
+//! is meant for linear light ([`Curve::Linear`](parbake_image::display::Curve)), where it weighs
 //! shadows and lights alike; below 0 its logarithm goes on as a straight line.
 //! Coverage has its own loss, `(a − b)²`, which no background can hide.
 //! Adjoint: the derivative by x. Where x is clipped and the reference is not, the

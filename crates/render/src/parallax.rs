@@ -14,7 +14,8 @@
 //! Contract: n·d is in [−1, 1]; where it is below the limit it has no gradient.
 
 use crate::spherical_harmonics::{MOST_FUNCTIONS, adjoint as sh_adjoint, as_constant, evaluate, functions};
-use crate::texture::{Level, Taps, taps};
+use parbake_image::FloatImage;
+use parbake_image::pyramid::{Taps, taps};
 use parbake_model::Wrap;
 use parbake_model::glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
@@ -30,7 +31,7 @@ pub struct ShParallax {
     /// width × height texels, row 0 on top, each of (order + 1)² pairs.
     pub coefficients: Vec<Vec2>,
     /// Multiplies the shift; 1 everywhere where there is none.
-    pub depth: Option<Level<1>>,
+    pub depth: Option<FloatImage<[f32; 1]>>,
     /// The least |n·d| that the shift is divided by, > 0.
     pub limit: f32,
     /// Wrap modes of all maps along u and v.
@@ -88,7 +89,7 @@ impl ShParallax {
     /// Zeros in this map's shape, depth included.
     pub fn zeros_like(&self) -> Self {
         let coefficients = vec![Vec2::ZERO; self.coefficients.len()];
-        let depth = self.depth.as_ref().map(|d| Level::zeros(d.width, d.height));
+        let depth = self.depth.as_ref().map(|d| FloatImage::zeros(d.width, d.height));
         Self { coefficients, depth, ..*self }
     }
 
@@ -236,7 +237,7 @@ mod tests {
     fn map(with_depth: bool) -> ShParallax {
         let mut map = ShParallax { width: 5, height: 4, ..ShParallax::zeros(3, 0) };
         map.coefficients = (0..5 * 4 * 16).map(|i| Vec2::new(noise(i), noise(3 * i + 1))).collect();
-        map.depth = with_depth.then(|| Level {
+        map.depth = with_depth.then(|| FloatImage {
             width: 3,
             height: 6,
             texels: (0..18).map(|i| [noise(5 * i + 2)]).collect(),

@@ -9,7 +9,7 @@
 use crate::channels::{Span, listed, pack, spans, unpack};
 use crate::parallax::ShParallax;
 use crate::spherical_harmonics::{HIGHEST_ORDER, functions};
-use crate::texture::Level;
+use parbake_image::FloatImage;
 use parbake_model::glam::Vec2;
 use parbake_model::{DepthMap, Image, ShParallaxMap};
 
@@ -56,7 +56,7 @@ impl ShParallax {
         let depth = map.depth.map(|DepthMap { image, scale, offset }| {
             let (image, values) = (&images[image], Span { offset, scale }.values());
             let texels = image.pixels.iter().map(|p| [values[p[0] as usize]]).collect();
-            Level { width: image.width, height: image.height, texels }
+            FloatImage { width: image.width, height: image.height, texels }
         });
         let (width, height) = (first.width, first.height);
         let (order, limit, wrap) = (map.order, map.limit, map.wrap);
@@ -82,7 +82,7 @@ mod tests {
         map.coefficients =
             (0..15 * functions(order)).map(|i| Vec2::new(0.02 * noise(i), 3.0 * noise(3 * i + 1))).collect();
         let texels = (0..8).map(|i| [1.0 + 0.5 * noise(5 * i)]).collect();
-        map.depth = Some(Level { width: 2, height: 4, texels });
+        map.depth = Some(FloatImage { width: 2, height: 4, texels });
         map.limit = 0.1;
         map.wrap = [Wrap::Repeat, Wrap::Clamp];
         map

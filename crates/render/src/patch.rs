@@ -15,10 +15,11 @@ use crate::interpolate::{Barycentrics, barycentrics, footprint_adjoint, interpol
 use crate::parallax::{ShParallax, Sight};
 use crate::raster::ScreenTriangle;
 use crate::scatter::Fetch;
-use crate::shade::{ShadeGradient, Shading};
-use crate::slopes::Reach;
+use crate::shade::{Brdf, BrdfGradient};
 use crate::surface::{Surface, Textures};
 use glam::DVec3;
+use parbake_image::slopes::Reach;
+use parbake_image::{MapKind, MapValues};
 use parbake_model::glam::{Vec2, Vec3};
 
 /// What all samples on one triangle share.
@@ -94,6 +95,14 @@ pub struct SampleTexels {
     pub gradients: [[f32; 3]; 2],
     /// Of the shift, where there is a parallax map.
     pub shift: Option<ShiftUse>,
+}
+
+fn color_of(gradient: &BrdfGradient) -> Vec3 {
+    gradient.maps[MapKind::BaseColor].truncate()
+}
+
+fn normal_of(gradient: &BrdfGradient) -> Vec3 {
+    gradient.maps[MapKind::Normal].truncate()
 }
 
 impl<'a> Patch<'a> {
@@ -174,17 +183,16 @@ impl<'a> Patch<'a> {
 
     /// Forward: the light that leaves the triangle where it is seen at (x, y).
     #[inline]
-    pub fn forward(&self, shading: &impl Shading, x: f64, y: f64) -> Vec3 {
+    pub fn forward(&self, brdf: &impl Brdf, x: f64, y: f64) -> Vec3 {
         let s = self.sample(x, y);
-        let (color, map_normal) = self.fetch(&s);
-        shading.forward(&s.light, color, map_normal)
+        brdf.light(&s.light, &self.fetch(&s))
     }
 
     #[inline]
-    fn fetch(&self, s: &Sample) -> (Vec3, Vec3) {
+    fn fetch(&self, s: &Sample) -> MapValues {
         let color = self.textures.color.fetch_at(&s.reaches[0]);
         let normal = self.textures.normal.map(|map| map.fetch_at(&s.reaches[1]));
-        (Vec3::from(color), normal.map_or(Vec3::Z, Vec3::from))
+        MapValues::of(Vec3::from(color), normal.map_or(Vec3::Z, Vec3::from))
     }
 
     /// Adjoint of [`Patch::forward`]: adds to the corners' gradients, and returns the
@@ -192,7 +200,7 @@ impl<'a> Patch<'a> {
     #[inline]
     pub fn adjoint(
         &self,
-        shading: &impl Shading,
+        brdf: &impl Brdf,
         (x, y): (f64, f64),
         gradient: Vec3,
         corners: Option<&mut CornerGradients>,
@@ -205,20 +213,20 @@ impl<'a> Patch<'a> {
         };
         let used = |to_shift| ShiftUse { uv: s.uv, sight: s.sight, to_shift };
         let Some(corners) = corners else {
-            let (color, map_normal) = self.fetch(&s);
-            let shade = shading.adjoint(&s.light, color, map_normal, gradient);
+            let shade = brdf.adjoint(&s.light, &self.fetch(&s), gradient);
             let to_shift = self.textures.parallax.map(|_| used(self.to_coordinate(&s, &shade)));
-            return texels(shade.color, shade.map_normal, to_shift);
+            return texels(color_of(&shade), normal_of(&shade), to_shift);
         };
         let color = self.textures.color.slopes_at(&s.reaches[0]);
         let mapped = self.textures.normal.map(|map| (map, map.slopes_at(&s.reaches[1])));
         let map_normal = mapped.as_ref().map_or(Vec3::Z, |(_, slopes)| Vec3::from(slopes.value));
-        let shade = shading.adjoint(&s.light, Vec3::from(color.value), map_normal, gradient);
+        let values = MapValues::of(Vec3::from(color.value), map_normal);
+        let shade = brdf.adjoint(&s.light, &values, gradient);
 
-        let (mut to_uv, to_lod) = color.adjoint(&shade.color.to_array());
+        let (mut to_uv, to_lod) = color.adjoint(&color_of(&shade).to_array());
         let (mut to_x, mut to_y) = self.textures.color.lod_adjoint(s.per_x, s.per_y, to_lod);
         if let Some((map, slopes)) = &mapped {
-            let (uv, to_lod) = slopes.adjoint(&shade.map_normal.to_array());
+            let (uv, to_lod) = slopes.adjoint(&normal_of(&shade).to_array());
             let (x, y) = map.lod_adjoint(s.per_x, s.per_y, to_lod);
             (to_uv, to_x, to_y) = (to_uv + uv, to_x + x, to_y + y);
         }
@@ -265,16 +273,16 @@ impl<'a> Patch<'a> {
         for (sum, plane) in corners.planes.iter_mut().zip(planes) {
             *sum += plane;
         }
-        texels(shade.color, shade.map_normal, to_shift)
+        texels(color_of(&shade), normal_of(&shade), to_shift)
     }
 
     /// The gradient of the coordinate that is fetched at, levels of detail held.
-    fn to_coordinate(&self, s: &Sample, shade: &ShadeGradient) -> Vec2 {
-        let of_color = self.textures.color.slopes_at(&s.reaches[0]).adjoint(&shade.color.to_array()).0;
+    fn to_coordinate(&self, s: &Sample, shade: &BrdfGradient) -> Vec2 {
+        let of_color = self.textures.color.slopes_at(&s.reaches[0]).adjoint(&color_of(shade).to_array()).0;
         let of_normal = self
             .textures
             .normal
-            .map_or(Vec2::ZERO, |map| map.slopes_at(&s.reaches[1]).adjoint(&shade.map_normal.to_array()).0);
+            .map_or(Vec2::ZERO, |map| map.slopes_at(&s.reaches[1]).adjoint(&normal_of(shade).to_array()).0);
         of_color + of_normal
     }
 

@@ -17,9 +17,9 @@ use crate::parallax::ShParallax;
 use crate::patch::{CornerGradients, Patch, ShiftUse};
 use crate::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 use crate::scatter::{Fetch, Scatter};
-use crate::shade::Shading;
+use crate::shade::Brdf;
 use crate::surface::{Surface, Textures};
-use crate::texture::Pyramid;
+use parbake_image::pyramid::Pyramid;
 use parbake_model::glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -139,7 +139,7 @@ fn runs(row: &[u32]) -> impl Iterator<Item = (usize, std::ops::Range<usize>)> + 
 }
 
 /// Renders and compares.
-pub fn forward(surface: &Surface, textures: &Textures, shading: &impl Shading, view: &View) -> Tape {
+pub fn forward(surface: &Surface, textures: &Textures, brdf: &impl Brdf, view: &View) -> Tape {
     let size = view.reference.size;
     let screen = ScreenTriangles::new(surface.positions, surface.triangles, view.camera, size);
     let mut seen = Visibility::default();
@@ -151,7 +151,7 @@ pub fn forward(surface: &Surface, textures: &Textures, shading: &impl Shading, v
             let patch = Patch::new(surface, t, &screen.triangles[t], view.camera, textures);
             for column in columns {
                 let at = (column as f64 + 0.5, row as f64 + 0.5);
-                pixels[column] = patch.forward(shading, at.0, at.1).extend(1.0).to_array();
+                pixels[column] = patch.forward(brdf, at.0, at.1).extend(1.0).to_array();
             }
         }
     });
@@ -183,7 +183,7 @@ struct Band {
 pub fn adjoint(
     surface: &Surface,
     textures: &Textures,
-    shading: &impl Shading,
+    brdf: &impl Brdf,
     view: &View,
     tape: &Tape,
     into: &mut Gradients,
@@ -208,7 +208,7 @@ pub fn adjoint(
                         let [r, g, b, _] = gradient[column];
                         let (at, to_light) = ((column as f64 + 0.5, y), Vec3::new(r, g, b));
                         let sink = vertices.then_some(&mut corners);
-                        let texels = patch.adjoint(shading, at, to_light, sink);
+                        let texels = patch.adjoint(brdf, at, to_light, sink);
                         band.shifts.extend(texels.shift);
                         for k in 0..count {
                             band.texels[k].push(texels.gradients[k]);

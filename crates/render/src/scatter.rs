@@ -11,7 +11,7 @@
 //! Contract: adds to what is there; the result does not depend on the number of
 //! threads, only on the samples' order and their division into bands.
 
-use crate::texture::{Pyramid, taps};
+use parbake_image::pyramid::{Pyramid, taps};
 use parbake_model::Wrap;
 use parbake_model::glam::Vec2;
 use rayon::prelude::*;
@@ -169,7 +169,7 @@ impl<'a> Scatter<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::texture::Level;
+    use parbake_image::FloatImage;
 
     fn number(i: usize) -> f32 {
         ((i * 7919 + 13) % 1009) as f32 / 1009.0
@@ -202,7 +202,7 @@ mod tests {
     /// Protects every texel's gradient, on many levels and on one.
     #[test]
     fn agrees_with_the_adjoint_of_each_fetch() {
-        agrees(Pyramid::from_base(Level::zeros(40, 70)));
-        agrees(Pyramid::single(Level::zeros(40, 70)));
+        agrees(Pyramid::from_base(FloatImage::zeros(40, 70)));
+        agrees(Pyramid::single(FloatImage::zeros(40, 70)));
     }
 }

@@ -11,16 +11,17 @@
 
 use crate::camera::Camera;
 use crate::cutout::rasterise_cut;
-use crate::display::encode_srgb;
 use crate::frame::tangent_light;
 use crate::interpolate::{barycentrics, interpolate};
 use crate::interpretation::Interpretation;
 use crate::parallax::Sight;
 use crate::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
+pub use crate::scene_textures::unpack;
 use crate::scene_textures::{Builder, Map, Surface, Textures};
-pub use crate::scene_textures::{unpack_color, unpack_normal};
-use crate::shade::Shading;
-use crate::texture::Pyramid;
+use crate::shade::Brdf;
+use parbake_image::display::encode_srgb;
+use parbake_image::pyramid::Pyramid;
+use parbake_image::{MapKind, MapValues};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{Image, Material, Mesh};
 use rayon::prelude::*;
@@ -62,16 +63,23 @@ impl Scene {
         &self.mesh
     }
 
+    /// Whether a material has more of this map than its neutral value.
+    pub fn has(&self, kind: MapKind) -> bool {
+        let neutral = kind.spec().neutral;
+        self.surfaces.iter().any(|s| s.plain[kind as usize].is_some() || s.factors[kind] != neutral)
+    }
+
     /// Sets up all triangles for one camera.
     pub fn on_screen(&self, camera: &Camera, size: usize) -> ScreenTriangles {
         ScreenTriangles::new(&self.mesh.positions, &self.mesh.triangles, camera, size)
     }
 
-    /// Albedo and unit normal of a point on the surface, textures included.
+    /// The maps' values at a point of the surface, textures included; the normal is a unit vector of
+    /// the common frame.
     ///
     /// `width` is how wide an area to average over, in the mesh's unit. No one looks from
     /// anywhere, so parallax maps and cutouts have no say.
-    pub fn look(&self, triangle: usize, weights: [f32; 3], width: f32) -> (Vec3, Vec3) {
+    pub fn look(&self, triangle: usize, weights: [f32; 3], width: f32) -> MapValues {
         let mesh = &self.mesh;
         let corners = mesh.triangles[triangle].map(|i| i as usize);
         let surface = &self.surfaces[mesh.triangle_materials[triangle] as usize];
@@ -84,38 +92,44 @@ impl Scene {
             Vec3::from(pyramid.fetch(interpolate(uvs, weights), pyramid.lod(along, along)))
         };
         let normal = interpolate(corners.map(|i| mesh.normals[i]), weights);
-        let mapped = match &surface.plain.normal {
+        let mut values = self.values(surface, &surface.plain, corners, weights, &fetch);
+        let mapped = match &surface.plain[MapKind::Normal as usize] {
             Some(map) if !mesh.tangents.is_empty() => {
                 let tangent = interpolate(corners.map(|i| mesh.tangents[i].truncate()), weights);
-                let m = fetch(map) * Vec3::new(surface.normal_scale, surface.normal_scale, 1.0);
+                let m = fetch(map) * surface.factors[MapKind::Normal].truncate();
                 let bitangent = normal.cross(tangent) * mesh.tangents[corners[0]].w;
                 tangent * m.x + bitangent * m.y + normal * m.z
             }
             _ => normal,
         };
-        (self.albedo(surface, &surface.plain, corners, weights, fetch), mapped.normalize_or(Vec3::Z))
+        values[MapKind::Normal] = mapped.normalize_or(Vec3::Z).extend(0.0);
+        values
     }
 
-    /// Factor × texture × vertex colour.
-    fn albedo(
+    /// Factor × texture of each map, and × vertex colour of the base colour; all but the normal,
+    /// which is left neutral.
+    fn values(
         &self,
         surface: &Surface,
         textures: &Textures,
         corners: [usize; 3],
         weights: [f32; 3],
-        fetch: impl Fn(&Map) -> Vec3,
-    ) -> Vec3 {
-        let mut color = surface.factor;
-        if let Some(map) = &textures.color {
-            color *= fetch(map);
+        fetch: &impl Fn(&Map) -> Vec3,
+    ) -> MapValues {
+        let mut values = MapValues::NEUTRAL;
+        for (kind, map) in MapKind::ALL.into_iter().zip(textures).filter(|(k, _)| *k != MapKind::Normal) {
+            values[kind] = surface.factors[kind];
+            if let Some(map) = map {
+                values[kind] *= fetch(map).extend(1.0);
+            }
         }
         if !self.mesh.colors.is_empty() {
             let own: Vec4 = interpolate(corners.map(|i| self.mesh.colors[i]), weights);
             // Light is what is blended between vertices, whatever is stored.
             let stored = |x: f32| if self.as_stored { encode_srgb(x) } else { x };
-            color *= Vec3::from(own.truncate().to_array().map(stored));
+            values[MapKind::BaseColor] *= Vec3::from(own.truncate().to_array().map(stored)).extend(1.0);
         }
-        color
+        values
     }
 
     /// Light that leaves the surface towards the camera at one sample. With parallax,
@@ -126,7 +140,7 @@ impl Scene {
     /// sample a pixel of this screen.
     pub fn shade(
         &self,
-        shading: &impl Shading,
+        brdf: &impl Brdf,
         camera: &Camera,
         screen: &ScreenTriangles,
         triangle: usize,
@@ -156,16 +170,14 @@ impl Scene {
             let lod = pyramid.lod(along(b.per_x) * footprint, along(b.per_y) * footprint);
             Vec3::from(pyramid.fetch(along(b.weights) + shift, lod))
         };
-        let color = self.albedo(surface, textures, corners, b.weights, fetch);
-        let (tangent, handedness, map_normal) = match &textures.normal {
-            Some(map) if !mesh.tangents.is_empty() => {
-                let t = interpolate(corners.map(|i| mesh.tangents[i].truncate()), b.weights);
-                let scale = Vec3::new(surface.normal_scale, surface.normal_scale, 1.0);
-                (t, mesh.tangents[corners[0]].w, fetch(map) * scale)
-            }
-            _ => (Vec3::ZERO, 1.0, Vec3::Z),
-        };
-        shading.forward(&tangent_light(normal, tangent, handedness, to_viewer, facing), color, map_normal)
+        let mut values = self.values(surface, textures, corners, b.weights, &fetch);
+        let (mut tangent, mut handedness) = (Vec3::ZERO, 1.0);
+        if let Some(map) = textures[MapKind::Normal as usize].as_ref().filter(|_| !mesh.tangents.is_empty()) {
+            tangent = interpolate(corners.map(|i| mesh.tangents[i].truncate()), b.weights);
+            handedness = mesh.tangents[corners[0]].w;
+            values[MapKind::Normal] = fetch(map).extend(0.0) * surface.factors[MapKind::Normal];
+        }
+        brdf.light(&tangent_light(normal, tangent, handedness, to_viewer, facing), &values)
     }
 
     /// What is seen at each sample, through all that is cut out.
@@ -189,13 +201,7 @@ impl Scene {
     }
 
     /// The whole view, each pixel the mean of `supersample`² samples.
-    pub fn render(
-        &self,
-        shading: &impl Shading,
-        camera: &Camera,
-        size: usize,
-        supersample: usize,
-    ) -> Picture {
+    pub fn render(&self, brdf: &impl Brdf, camera: &Camera, size: usize, supersample: usize) -> Picture {
         let fine = size * supersample;
         let screen = self.on_screen(camera, fine);
         let seen = self.see(camera, &screen, fine);
@@ -211,7 +217,7 @@ impl Scene {
                         continue;
                     }
                     let at = (x as f64 + 0.5, y as f64 + 0.5);
-                    let light = self.shade(shading, camera, &screen, triangle as usize, at, 1.0);
+                    let light = self.shade(brdf, camera, &screen, triangle as usize, at, 1.0);
                     for k in 0..3 {
                         pixel[k] += light[k] * share;
                     }

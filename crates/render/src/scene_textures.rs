@@ -6,11 +6,15 @@
 //! that break their contract, are not there.
 
 use crate::cutout::ShCutout;
-use crate::display::{decode_srgb, encode_srgb};
 use crate::interpolate::interpolate;
 use crate::interpretation::Interpretation;
 use crate::parallax::{ShParallax, Sight};
-use crate::texture::{Level, Pyramid};
+use parbake_image::display::encode_srgb;
+use parbake_image::maps::KINDS;
+use parbake_image::material_maps::{factors, shifted_texture_slot, texture_slot};
+use parbake_image::pyramid::Pyramid;
+use parbake_image::quantise::decoded;
+use parbake_image::{Encoding, FloatImage, MapKind, MapValues};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{Image, Material, Mesh, TextureSlot, Wrap};
 use rayon::prelude::*;
@@ -32,11 +36,8 @@ impl Map {
     }
 }
 
-/// The textures of a look.
-pub(crate) struct Textures {
-    pub color: Option<Map>,
-    pub normal: Option<Map>,
-}
+/// The textures of a look, one of each kind at most.
+pub(crate) type Textures = [Option<Map>; KINDS];
 
 /// A look whose coordinates shift, by what, and what is left out of it.
 pub(crate) struct Shifted {
@@ -49,7 +50,7 @@ impl Shifted {
     /// Where the maps are fetched at a point of a triangle: at the base colour's coordinate,
     /// or at the normal's where there is no colour.
     fn anchor(&self, mesh: &Mesh, corners: [usize; 3], weights: [f32; 3]) -> Option<Vec2> {
-        let Textures { color, normal } = &self.textures;
+        let [color, normal] = [MapKind::BaseColor, MapKind::Normal].map(|kind| &self.textures[kind as usize]);
         let map = color.as_ref().or(normal.as_ref())?;
         Some(interpolate(map.uvs(mesh, corners), weights))
     }
@@ -68,29 +69,19 @@ impl Shifted {
 
 /// One material.
 pub(crate) struct Surface {
-    pub factor: Vec3,
-    pub normal_scale: f32,
+    /// What multiplies the textures, as they are read.
+    pub factors: MapValues,
     /// As viewers see it that know no parallax.
     pub plain: Textures,
     /// As all others do.
     pub shifted: Option<Shifted>,
 }
 
-/// An image's RGB as numbers, each channel through `decode`.
-fn unpack(image: &Image, decode: impl Fn(f32) -> f32) -> Level<3> {
-    let table: Vec<f32> = (0..=255u32).map(|i| decode(i as f32 / 255.0)).collect();
+/// An image's RGB as the values of a map; `srgb` tells whether colours are decoded.
+pub fn unpack(kind: MapKind, image: &Image, srgb: bool) -> FloatImage<[f32; 3]> {
+    let table = decoded(kind, srgb);
     let texels = image.pixels.par_iter().map(|p| [0, 1, 2].map(|k| table[p[k] as usize])).collect();
-    Level { width: image.width, height: image.height, texels }
-}
-
-/// Base colour texels as shading sees them.
-pub fn unpack_color(image: &Image, decode: bool) -> Level<3> {
-    unpack(image, |x| if decode { decode_srgb(x) } else { x })
-}
-
-/// Tangent-space normals, not normalised.
-pub fn unpack_normal(image: &Image) -> Level<3> {
-    unpack(image, |x| 2.0 * x - 1.0)
+    FloatImage { width: image.width, height: image.height, texels }
 }
 
 /// Makes surfaces, and keeps the pyramids that they fetch from.
@@ -98,8 +89,8 @@ pub(crate) struct Builder<'a> {
     images: &'a [Image],
     interpretation: Interpretation,
     pub pyramids: Vec<Pyramid<3>>,
-    /// Image, whether it is a colour, and wrap modes of each pyramid.
-    built: Vec<(usize, bool, [Wrap; 2])>,
+    /// Image, encoding and wrap modes of each pyramid.
+    built: Vec<(usize, Encoding, [Wrap; 2])>,
 }
 
 impl<'a> Builder<'a> {
@@ -108,43 +99,29 @@ impl<'a> Builder<'a> {
     }
 
     pub fn surface(&mut self, material: &Material) -> Surface {
-        let linear = Vec4::from(material.base_color).truncate();
-        let plain = [material.base_color_texture, material.normal_texture];
-        Surface {
-            factor: if self.interpretation.decode_srgb {
-                linear
-            } else {
-                Vec3::from(linear.to_array().map(encode_srgb))
-            },
-            // The strength is the material's normal texture's; others have none of their own.
-            normal_scale: material.normal_texture.map_or(1.0, |_| material.normal_scale),
-            plain: self.textures(plain),
-            shifted: self.shifted(material, plain),
+        let mut factors = factors(material);
+        if !self.interpretation.decode_srgb {
+            let stored = factors[MapKind::BaseColor].to_array().map(encode_srgb);
+            factors[MapKind::BaseColor] = Vec4::from(stored);
         }
+        let plain = MapKind::ALL.map(|kind| self.map(kind, texture_slot(material, kind)));
+        Surface { factors, plain, shifted: self.shifted(material) }
     }
 
-    fn shifted(&mut self, material: &Material, plain: [Option<TextureSlot>; 2]) -> Option<Shifted> {
+    fn shifted(&mut self, material: &Material) -> Option<Shifted> {
         let map = material.parallax.as_ref().filter(|_| self.interpretation.parallax)?;
         let parallax = ShParallax::unpack(map, self.images)?;
         let cutout = map.cutout.as_ref().and_then(|c| ShCutout::unpack(c, map.wrap, self.images));
-        let own = [map.base_color_texture, map.normal_texture];
-        let textures = self.textures([own[0].or(plain[0]), own[1].or(plain[1])]);
+        let textures = MapKind::ALL.map(|kind| self.map(kind, shifted_texture_slot(material, kind)));
         Some(Shifted { textures, parallax, cutout })
     }
 
-    fn textures(&mut self, [color, normal]: [Option<TextureSlot>; 2]) -> Textures {
-        Textures { color: self.map(color, true), normal: self.map(normal, false) }
-    }
-
-    fn map(&mut self, slot: Option<TextureSlot>, is_color: bool) -> Option<Map> {
+    fn map(&mut self, kind: MapKind, slot: Option<TextureSlot>) -> Option<Map> {
         let slot = slot?;
         let image = self.images.get(slot.image)?;
-        let key = (slot.image, is_color, slot.wrap);
+        let key = (slot.image, kind.spec().encoding, slot.wrap);
         let pyramid = self.built.iter().position(|b| *b == key).unwrap_or_else(|| {
-            let base = match is_color {
-                true => unpack_color(image, self.interpretation.decode_srgb),
-                false => unpack_normal(image),
-            };
+            let base = unpack(kind, image, self.interpretation.decode_srgb);
             let mut pyramid = match self.interpretation.trilinear {
                 true => Pyramid::from_base(base),
                 false => Pyramid::single(base),

@@ -2,7 +2,7 @@
 //!
 //! The paper's eq. 2, `shade(d, C, N) = (d·N) C`, a Lambert surface under a
 //! headlight of unit strength: `k = max(0, light·m / √(mᵀ gram m))`, out = k C.
-//! [`Shading`] is the one replaceable piece: another BRDF implements it.
+//! [`Brdf`] is the one replaceable piece: glTF's metallic-roughness material will be another.
 //! Adjoint: `dL/dC = k g`; `dL/dk = C·g`, zero where the clamp holds.
 //!
 //! Contract: `map_normal` need not be of unit length. Where what it maps to is shorter than
@@ -10,33 +10,75 @@
 //! light fades to black there, and derivatives stay finite.
 
 use crate::frame::TangentLight;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
+use parbake_image::{MapKind, MapValues};
 
 /// Length of a mapped normal below which it fades: about what 16 bits leave of a frame
-/// (`parbake_fit::samples`).
+/// (`parbake_views::samples`).
 pub const SHORTEST: f32 = 1e-2;
 
-/// Gradients of a shaded sample's inputs.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ShadeGradient {
-    /// Of the colour.
-    pub color: Vec3,
-    /// Of the tangent-space normal.
-    pub map_normal: Vec3,
-    /// Of the surface's orientation.
+/// Derivative of a loss by all that shading reads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BrdfGradient {
+    /// By the value of each map.
+    pub maps: MapValues,
+    /// By the surface's orientation.
     pub surface: TangentLight,
 }
 
-/// A shading function with its adjoint.
-pub trait Shading: Sync {
-    /// Outgoing linear colour.
-    fn forward(&self, surface: &TangentLight, color: Vec3, map_normal: Vec3) -> Vec3;
-    /// Gradients of all inputs, given that of the output.
-    fn adjoint(&self, surface: &TangentLight, color: Vec3, map_normal: Vec3, gradient: Vec3)
-    -> ShadeGradient;
+impl Default for BrdfGradient {
+    fn default() -> Self {
+        Self { maps: MapValues::ZERO, surface: TangentLight::default() }
+    }
 }
 
-/// Lambert surface, light at the camera.
+/// How the light of a sample changes with the value of one map: three channels by three.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Jacobian {
+    /// Each channel of the light depends on the same channel of the map: the diagonal.
+    Diagonal(Vec4),
+    /// All channels of the light depend on the map through one number: `light · valueᵀ`.
+    RankOne {
+        /// Change of the light with that number.
+        light: Vec4,
+        /// Change of that number with the map's value.
+        value: Vec3,
+        /// Where the surface is turned away from the light, a change can only make it brighter.
+        only_brighter: bool,
+    },
+}
+
+impl Jacobian {
+    /// The gradient by the map's value, given that by the light: `Jᵀ g`.
+    #[inline(always)]
+    pub fn pull(&self, to_light: Vec4) -> Vec4 {
+        match *self {
+            Self::Diagonal(slopes) => to_light * slopes,
+            Self::RankOne { light, value, only_brighter } => {
+                let along = to_light.dot(light);
+                if only_brighter && along >= 0.0 { Vec4::ZERO } else { (value * along).extend(0.0) }
+            }
+        }
+    }
+}
+
+/// A BRDF with its light: the one replaceable piece of shading. Renderer, references, texture
+/// solves, the parallax fit and vertices know no other.
+pub trait Brdf: Sync {
+    /// Whether the light depends on this map.
+    fn reads(&self, kind: MapKind) -> bool;
+
+    /// Outgoing linear light, three channels.
+    fn light(&self, surface: &TangentLight, maps: &MapValues) -> Vec3;
+
+    /// Adjoint of [`Brdf::light`]: the gradient by all inputs, given that by the light.
+    fn adjoint(&self, surface: &TangentLight, maps: &MapValues, gradient: Vec3) -> BrdfGradient;
+
+    /// Outgoing light as of [`Brdf::light`], and its derivative by one map that the BRDF reads.
+    fn jacobian(&self, kind: MapKind, surface: &TangentLight, maps: &MapValues) -> (Vec4, Jacobian);
+}
+
+/// Lambert surface, light at the camera: `max(0, k) C`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lambert;
 
@@ -79,51 +121,76 @@ pub fn cosine_with_derivative(surface: &TangentLight, map_normal: Vec3) -> (f32,
     (k, (surface.light - gm * (k * inverse)) * inverse)
 }
 
-impl Shading for Lambert {
-    #[inline]
-    fn forward(&self, surface: &TangentLight, color: Vec3, map_normal: Vec3) -> Vec3 {
-        color * cosine(surface, map_normal).max(0.0)
+impl Brdf for Lambert {
+    #[inline(always)]
+    fn reads(&self, kind: MapKind) -> bool {
+        matches!(kind, MapKind::BaseColor | MapKind::Normal)
     }
 
     #[inline]
-    fn adjoint(
-        &self,
-        surface: &TangentLight,
-        color: Vec3,
-        map_normal: Vec3,
-        gradient: Vec3,
-    ) -> ShadeGradient {
-        let (k, dk_dm) = cosine_with_derivative(surface, map_normal);
+    fn light(&self, surface: &TangentLight, maps: &MapValues) -> Vec3 {
+        maps[MapKind::BaseColor].truncate() * cosine(surface, maps[MapKind::Normal].truncate()).max(0.0)
+    }
+
+    #[inline]
+    fn adjoint(&self, surface: &TangentLight, maps: &MapValues, gradient: Vec3) -> BrdfGradient {
+        let (color, m) = (maps[MapKind::BaseColor].truncate(), maps[MapKind::Normal].truncate());
+        let (k, dk_dm) = cosine_with_derivative(surface, m);
+        let mut out = BrdfGradient::default();
         if k <= 0.0 {
-            return ShadeGradient::default();
+            return out;
         }
         let to_k = color.dot(gradient);
-        let (square, _) = gram_product(&surface.gram, map_normal);
-        let m = map_normal;
+        let (square, _) = gram_product(&surface.gram, m);
         // k = l·m / √q: dk/dl = m / √q, dk/dq = −k / (2q), dq/dgram = m mᵀ.
         let inverse = inverse_length(square);
         let to_q = -0.5 * k * to_k * inverse * inverse;
-        ShadeGradient {
-            color: gradient * k,
-            map_normal: dk_dm * to_k,
-            surface: TangentLight {
-                light: m * (to_k * inverse),
-                gram: [m.x * m.x, m.y * m.y, m.z * m.z, 2.0 * m.x * m.y, 2.0 * m.x * m.z, 2.0 * m.y * m.z]
-                    .map(|d| d * to_q),
-            },
+        out.maps[MapKind::BaseColor] = (gradient * k).extend(0.0);
+        out.maps[MapKind::Normal] = (dk_dm * to_k).extend(0.0);
+        out.surface = TangentLight {
+            light: m * (to_k * inverse),
+            gram: [m.x * m.x, m.y * m.y, m.z * m.z, 2.0 * m.x * m.y, 2.0 * m.x * m.z, 2.0 * m.y * m.z]
+                .map(|d| d * to_q),
+        };
+        out
+    }
+
+    #[inline]
+    fn jacobian(&self, kind: MapKind, surface: &TangentLight, maps: &MapValues) -> (Vec4, Jacobian) {
+        let albedo = maps[MapKind::BaseColor];
+        let m = maps[MapKind::Normal].truncate();
+        if kind == MapKind::Normal {
+            let (k, value) = cosine_with_derivative(surface, m);
+            let slope = Jacobian::RankOne { light: albedo, value, only_brighter: k <= 0.0 };
+            return (albedo * k.max(0.0), slope);
         }
+        let k = cosine(surface, m).max(0.0);
+        (albedo * k, Jacobian::Diagonal(if kind == MapKind::BaseColor { Vec4::splat(k) } else { Vec4::ZERO }))
     }
 }
 
-impl Shading for Unlit {
-    #[inline]
-    fn forward(&self, _: &TangentLight, color: Vec3, _: Vec3) -> Vec3 {
-        color
+impl Brdf for Unlit {
+    #[inline(always)]
+    fn reads(&self, kind: MapKind) -> bool {
+        kind == MapKind::BaseColor
     }
 
     #[inline]
-    fn adjoint(&self, _: &TangentLight, _: Vec3, _: Vec3, gradient: Vec3) -> ShadeGradient {
-        ShadeGradient { color: gradient, ..Default::default() }
+    fn light(&self, _: &TangentLight, maps: &MapValues) -> Vec3 {
+        maps[MapKind::BaseColor].truncate()
+    }
+
+    #[inline]
+    fn adjoint(&self, _: &TangentLight, _: &MapValues, gradient: Vec3) -> BrdfGradient {
+        let mut out = BrdfGradient::default();
+        out.maps[MapKind::BaseColor] = gradient.extend(0.0);
+        out
+    }
+
+    #[inline]
+    fn jacobian(&self, kind: MapKind, _: &TangentLight, maps: &MapValues) -> (Vec4, Jacobian) {
+        let slope = if kind == MapKind::BaseColor { Vec4::ONE } else { Vec4::ZERO };
+        (maps[MapKind::BaseColor], Jacobian::Diagonal(slope))
     }
 }
 
@@ -131,8 +198,8 @@ impl Shading for Unlit {
 mod tests {
     use super::*;
 
-    fn weighted(shading: &dyn Shading, s: &TangentLight, c: Vec3, m: Vec3, g: Vec3) -> f32 {
-        shading.forward(s, c, m).dot(g)
+    fn weighted(brdf: &dyn Brdf, s: &TangentLight, c: Vec3, m: Vec3, g: Vec3) -> f32 {
+        brdf.light(s, &MapValues::of(c, m)).dot(g)
     }
 
     /// Protects the gradients of colour, normal map and frame through the light.
@@ -140,7 +207,7 @@ mod tests {
     fn lambert_adjoint_matches_central_differences() {
         let s = TangentLight { light: Vec3::new(0.2, -0.3, 0.8), gram: [0.9, 0.7, 0.8, 0.1, -0.2, 0.05] };
         let (c, m, g) = (Vec3::new(0.3, 0.6, 0.9), Vec3::new(0.2, 0.1, 0.9), Vec3::new(1.0, -0.4, 0.7));
-        let a = Lambert.adjoint(&s, c, m, g);
+        let a = Lambert.adjoint(&s, &MapValues::of(c, m), g);
         let h = 1e-2;
         for axis in 0..3 {
             let mut e = Vec3::ZERO;
@@ -149,8 +216,8 @@ mod tests {
             let color = d(&|e| weighted(&Lambert, &s, c + e, m, g));
             let normal = d(&|e| weighted(&Lambert, &s, c, m + e, g));
             let light = d(&|e| weighted(&Lambert, &TangentLight { light: s.light + e, ..s }, c, m, g));
-            assert!((color - a.color[axis]).abs() < 1e-3);
-            assert!((normal - a.map_normal[axis]).abs() < 1e-3, "{normal} {}", a.map_normal);
+            assert!((color - a.maps[MapKind::BaseColor][axis]).abs() < 1e-3);
+            assert!((normal - a.maps[MapKind::Normal][axis]).abs() < 1e-3, "{normal} {a:?}");
             assert!((light - a.surface.light[axis]).abs() < 1e-3);
         }
         for k in 0..6 {
@@ -180,7 +247,10 @@ mod tests {
     #[test]
     fn a_surface_turned_away_is_black() {
         let s = TangentLight { light: Vec3::new(0.0, 0.0, -1.0), gram: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0] };
-        assert_eq!(Lambert.forward(&s, Vec3::ONE, Vec3::Z), Vec3::ZERO);
-        assert_eq!(Lambert.adjoint(&s, Vec3::ONE, Vec3::Z, Vec3::ONE), ShadeGradient::default());
+        assert_eq!(Lambert.light(&s, &MapValues::of(Vec3::ONE, Vec3::Z)), Vec3::ZERO);
+        assert_eq!(
+            Lambert.adjoint(&s, &MapValues::of(Vec3::ONE, Vec3::Z), Vec3::ONE),
+            BrdfGradient::default()
+        );
     }
 }

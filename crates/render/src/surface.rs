@@ -5,7 +5,7 @@
 
 use crate::edges::EdgeAdjacency;
 use crate::parallax::ShParallax;
-use crate::texture::Pyramid;
+use parbake_image::pyramid::Pyramid;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 
 /// The mesh to be rendered.

@@ -6,18 +6,19 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use parbake_image::FloatImage;
+use parbake_image::display::{Curve, Display};
+use parbake_image::pyramid::Pyramid;
 use parbake_model::Wrap;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_render::background::{Background, Composer};
 use parbake_render::camera::{Camera, Projection};
-use parbake_render::display::{Curve, Display};
 use parbake_render::edges::EdgeAdjacency;
 use parbake_render::loss::{Comparison, ImageLoss, Reference};
 use parbake_render::parallax::ShParallax;
 use parbake_render::pipeline::{Gradients, Tape, View, adjoint, forward};
 use parbake_render::shade::{Lambert, Unlit};
 use parbake_render::surface::{Surface, Textures};
-use parbake_render::texture::{Level, Pyramid};
 
 /// Uniform numbers (PCG's multiplier, top bits only).
 struct Random(u64);
@@ -45,8 +46,8 @@ struct Scene {
     uvs: Vec<Vec2>,
     triangles: Vec<[u32; 3]>,
     edges: EdgeAdjacency,
-    color: Level<3>,
-    normal: Level<3>,
+    color: FloatImage<[f32; 3]>,
+    normal: FloatImage<[f32; 3]>,
     reference: Vec<[f32; 4]>,
     camera: Camera,
     size: usize,
@@ -140,14 +141,14 @@ fn noise_texture(
     random: &mut Random,
     width: usize,
     mut texel: impl FnMut(&mut Random) -> [f32; 3],
-) -> Level<3> {
+) -> FloatImage<[f32; 3]> {
     let texels = (0..width * 16).map(|_| texel(random)).collect();
-    Level { width, height: 16, texels }
+    FloatImage { width, height: 16, texels }
 }
 
 impl Scene {
     fn run(&self, gradients: bool) -> (Tape, Option<Gradients>) {
-        let pyramid = |level: &Level<3>| {
+        let pyramid = |level: &FloatImage<[f32; 3]>| {
             let mut p = if self.trilinear {
                 Pyramid::from_base(level.clone())
             } else {
@@ -269,7 +270,7 @@ fn check_positions(name: &str, scene: &Scene, gradients: &[Vec3]) {
 fn check_all(scene: &Scene, name: &str) {
     let (_, gradients) = scene.run(true);
     let g = gradients.unwrap();
-    let flat = |level: Level<3>| level.texels.into_iter().flatten().collect::<Vec<f32>>();
+    let flat = |level: FloatImage<[f32; 3]>| level.texels.into_iter().flatten().collect::<Vec<f32>>();
     let flat3 = |v: &[Vec3]| v.iter().flat_map(|v| v.to_array()).collect::<Vec<f32>>();
     check(&format!("{name} colour"), scene, &flat(g.color.base_adjoint()), 4e-3, |s, i, h| {
         nudge_by(&mut s.color.texels[i / 3][i % 3], h)
@@ -308,7 +309,7 @@ fn whole_view_with_parallax() {
         let mut shift = || Vec2::new(random.signed(), random.signed()) * 0.02;
         map.coefficients.iter_mut().for_each(|c| *c = shift());
         let texels = (0..25).map(|i| [0.5 + (i % 7) as f32 * 0.2]).collect();
-        map.depth = (seed % 2 == 0).then_some(Level { width: 5, height: 5, texels });
+        map.depth = (seed % 2 == 0).then_some(FloatImage { width: 5, height: 5, texels });
         let s = Scene { parallax: Some(map), ..scene(seed, 48) };
         check_all(&s, &format!("seed {seed}"));
         let maps = s.run(true).1.unwrap().parallax.unwrap();

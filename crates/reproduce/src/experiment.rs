@@ -1,7 +1,8 @@
 //! One run of the product: on what, and with which recipe.
 
 use crate::catalogue::{Level, ModelFolder, file_name};
-use parbake::{BakeOptions, ImageOptions, UvMode, VariantsOptions};
+use crate::variants::VariantsOptions;
+use parbake::{BakeOptions, ImageOptions, UvMode};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 

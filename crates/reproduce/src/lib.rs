@@ -34,6 +34,7 @@ mod reproduce;
 mod results;
 mod scope;
 mod table;
+pub mod variants;
 
 pub use error::ReproduceError;
 pub use exhibit::Exhibit;

@@ -1,6 +1,6 @@
 //! What came of an experiment, as plain data.
 
-use parbake::VariantFigures;
+use crate::variants::VariantFigures;
 use serde::{Deserialize, Serialize};
 
 /// Backgrounds that models are judged before: the paper's, then "any".

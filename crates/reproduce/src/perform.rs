@@ -9,11 +9,12 @@ use crate::experiment::{Experiment, Recipe, Subject};
 use crate::observer::Observer;
 use crate::outcome::{BACKGROUNDS, Outcome, Point, Score};
 use crate::plane::{as_shown, wanted};
+use crate::variants::{VariantsOptions, compare_variants};
 use image::imageops::FilterType;
 use parbake::{
-    BakeError, BakeOptions, BakeReport, EvaluateOptions, ImageOptions, Limits, PictureUv, UvMode,
-    VariantsOptions, Watcher, bake, bake_image, compare_variants, compress, encode_png, evaluate_before,
-    laid_out, read_image, read_model, subdivided, wall_pair, write_file, write_glb,
+    BakeError, BakeOptions, BakeReport, EvaluateOptions, ImageOptions, Limits, PictureUv, UvMode, Watcher,
+    bake, bake_image, compress, encode_png, evaluate_before, laid_out, read_image, read_model, subdivided,
+    wall_pair, write_file, write_glb,
 };
 use parbake_metric::{Rgb, mean_squared_error, ms_ssim, psnr_from_mse};
 use parbake_model::{Image, Model};

@@ -5,8 +5,8 @@ use crate::exhibits::drawn::Drawn;
 use crate::results::Results;
 use crate::scope::Scope;
 use crate::table::Table;
-use parbake_page::text::{count, duration, escape};
-use parbake_page::{document, section};
+use parbake_report::page::text::{count, duration, escape};
+use parbake_report::page::{document, section};
 use std::collections::BTreeMap;
 
 /// What is known of a run as a whole.

@@ -16,7 +16,7 @@ use crate::report;
 use crate::results::Results;
 use crate::scope::Scope;
 use parbake::write_file;
-use parbake_page::text::decimal;
+use parbake_report::page::text::decimal;
 use std::path::Path;
 
 /// What a run leaves besides its files.

@@ -2,7 +2,7 @@
 //!
 //! Contract: all three show the same numbers; what was not measured is a dash, never a zero.
 
-use parbake_page::text::{NOTHING, change, decimal, escape, verdict};
+use parbake_report::page::text::{NOTHING, change, decimal, escape, verdict};
 
 /// What stands in a cell.
 #[derive(Clone, Debug, PartialEq)]

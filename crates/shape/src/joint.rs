@@ -27,17 +27,17 @@ use crate::points::{Motion, Points};
 use crate::provisional::{MovingTexture, Provisional};
 use crate::views::{Judgement, Outline, Views};
 use glam::{Vec3, Vec4};
-use parbake_adam::rate_at;
-use parbake_fit::reference::Reference as Rendered;
-use parbake_fit::views::mixed;
-use parbake_fit::watch::{Stage, Watch};
+use parbake_image::display::Display;
 use parbake_model::Mesh;
+use parbake_progress::{Stage, Watcher};
 use parbake_render::background::Background;
 use parbake_render::camera::{Camera, Projection};
-use parbake_render::display::Display;
 use parbake_render::edges::EdgeAdjacency;
 use parbake_render::loss::{Comparison, LossValue};
 use parbake_render::surface::{Surface, Textures};
+use parbake_solve::adam::rate_at;
+use parbake_solve::random::mixed;
+use parbake_views::reference::Reference as Rendered;
 use rayon::prelude::*;
 
 /// How the shape is fitted.
@@ -158,7 +158,7 @@ pub fn fit_shape(
     size: usize,
     display: Display,
     options: &ShapeOptions,
-    watch: &impl Watch,
+    watch: &impl Watcher,
 ) -> Shaped {
     let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
     let laplacian = Laplacian::new(points.home.len(), &points.triangles);
@@ -193,7 +193,7 @@ pub fn fit_shape(
     let coarse = Views { references: &halved, size: size / 2, ..fine };
     for step in 0..options.steps {
         watch.progress(Stage::Shape, step, options.steps);
-        if references.is_empty() || watch.should_stop() {
+        if references.is_empty() || watch.stopped() {
             break;
         }
         // The pool's every prefix is well spread, and so is every run of it.

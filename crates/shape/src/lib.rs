@@ -9,7 +9,9 @@
 //! moving_points points that follow them by Adam, behind the guard
 //! provisional   a texture that follows them, and is thrown away
 //! joint         the fit: vertices and a provisional texture, against rendered views
+//! stage         the stage of a bake: small textures and views, the fit, what moved
 //! paper         the paper's optimiser: textures, parallax and displacement from nothing
+//! paper_stage   its stage of a bake
 //! ```
 
 pub mod guard;
@@ -18,8 +20,10 @@ pub mod laplacian;
 pub mod moving_points;
 pub mod normals;
 pub mod paper;
+pub mod paper_stage;
 pub mod points;
 pub mod provisional;
+pub mod stage;
 pub mod views;
 
 pub use joint::{ShapeOptions, Shaped, fit_shape};

@@ -9,7 +9,7 @@
 use crate::guard::Guard;
 use crate::points::{Motion, Points};
 use glam::{Vec3, Vec4};
-use parbake_adam::{Adam, AdamOptions};
+use parbake_solve::adam::{Adam, AdamOptions};
 
 /// The points on their way.
 pub struct MovingPoints<'a> {

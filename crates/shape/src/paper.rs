@@ -15,15 +15,15 @@ use crate::points::{Motion, Points};
 use crate::provisional::{MovingTexture, Provisional};
 use crate::views::{Judgement, Views};
 use glam::{Vec2, Vec3, Vec4};
-use parbake_adam::{Adam, AdamOptions, rate_at};
-use parbake_fit::canvas::Canvas;
-use parbake_fit::views::unit_interval;
-use parbake_fit::watch::{Stage, Watch};
+use parbake_image::FloatImage;
+use parbake_image::maps::lift_to_hemisphere;
 use parbake_model::Mesh;
+use parbake_progress::{Stage, Watcher};
 use parbake_render::edges::EdgeAdjacency;
 use parbake_render::parallax::ShParallax;
 use parbake_render::surface::{Surface, Textures};
-use parbake_render::texture::Level;
+use parbake_solve::adam::{Adam, AdamOptions, rate_at};
+use parbake_solve::random::unit_interval;
 
 /// What moves, and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,7 +90,7 @@ fn start_map(order: usize, size: usize, epsilon: f32) -> ShParallax {
     for (i, c) in map.coefficients.iter_mut().enumerate() {
         *c = Vec2::new(noise(2 * i), noise(2 * i + 1));
     }
-    map.depth = Some(Level::zeros(size, size));
+    map.depth = Some(FloatImage::zeros(size, size));
     map
 }
 
@@ -133,33 +133,28 @@ impl MovingMap {
     }
 }
 
-/// A normal of the tangent frame that looks out of the surface.
-fn outwards(normal: Vec3) -> Vec3 {
-    Vec3::new(normal.x, normal.y, normal.z.max(0.02)).normalize()
-}
-
 /// Runs the algorithm.
 pub fn paper_fit(
     mesh: &Mesh,
     views: &Views,
     seed: u64,
     options: &PaperOptions,
-    watch: &impl Watch,
+    watch: &impl Watcher,
 ) -> PaperResult {
     let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
     let edges = EdgeAdjacency::new(&mesh.positions, &mesh.triangles);
     let mut moving = MovingPoints::new(&points, options.motion.unwrap_or_default(), options.vertex_rate);
     let grey = Provisional {
-        color: Canvas::solid(options.texture_size, Vec3::splat(0.5).extend(0.0)),
-        normal: Canvas::solid(options.texture_size, Vec4::Z),
+        color: FloatImage::solid(options.texture_size, Vec3::splat(0.5).extend(0.0)),
+        normal: FloatImage::solid(options.texture_size, Vec4::Z),
     };
-    let mut provisional = MovingTexture::new(grey, options.rate, outwards);
+    let mut provisional = MovingTexture::new(grey, options.rate, lift_to_hemisphere);
     let mut map = options.parallax.map(|(order, size)| MovingMap::new(order, size, options));
     let mut losses = Vec::new();
     let total = options.steps + options.last_steps;
     for step in 0..total {
         watch.progress(Stage::Shape, step, total);
-        if views.references.is_empty() || watch.should_stop() {
+        if views.references.is_empty() || watch.stopped() {
             break;
         }
         let first = step * options.views_per_step;

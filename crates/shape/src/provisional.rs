@@ -5,18 +5,18 @@
 //! or sphere that the fit's own rule allows.
 
 use glam::{Vec3, Vec4};
-use parbake_adam::{Adam, AdamOptions};
-use parbake_fit::canvas::Canvas;
+use parbake_image::FloatImage;
+use parbake_image::pyramid::Pyramid;
 use parbake_render::pipeline::Gradients;
-use parbake_render::texture::{Level, Pyramid};
+use parbake_solve::adam::{Adam, AdamOptions};
 
 /// A provisional texture: colours as shading sees them, normals in the fit's own frame.
 #[derive(Clone, Debug)]
 pub struct Provisional {
     /// 0 … 1.
-    pub color: Canvas,
+    pub color: FloatImage<Vec4>,
     /// Unit vectors.
-    pub normal: Canvas,
+    pub normal: FloatImage<Vec4>,
 }
 
 impl Provisional {
@@ -26,12 +26,12 @@ impl Provisional {
     }
 }
 
-fn pyramid(canvas: &Canvas) -> Pyramid<3> {
+fn pyramid(canvas: &FloatImage<Vec4>) -> Pyramid<3> {
     let texels = canvas.texels.iter().map(|t| [t.x, t.y, t.z]).collect();
-    Pyramid::single(Level { width: canvas.size, height: canvas.size, texels })
+    Pyramid::single(FloatImage { width: canvas.width, height: canvas.width, texels })
 }
 
-fn lanes(level: Option<&Level<3>>) -> Vec<Vec4> {
+fn lanes(level: Option<&FloatImage<[f32; 3]>>) -> Vec<Vec4> {
     level.map(|l| l.texels.iter().map(|&[x, y, z]| Vec4::new(x, y, z, 0.0)).collect()).unwrap_or_default()
 }
 
@@ -48,8 +48,9 @@ pub struct MovingTexture {
 impl MovingTexture {
     /// From this start; `rate` is a value's change in a step at first, at most.
     pub fn new(start: Provisional, rate: f32, unit: fn(Vec3) -> Vec3) -> Self {
-        let adam =
-            |canvas: &Canvas| Adam::new(canvas.texels.len(), AdamOptions { rate, ..AdamOptions::default() });
+        let adam = |canvas: &FloatImage<Vec4>| {
+            Adam::new(canvas.texels.len(), AdamOptions { rate, ..AdamOptions::default() })
+        };
         Self { color: adam(&start.color), normal: adam(&start.normal), texture: start, unit }
     }
 

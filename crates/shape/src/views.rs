@@ -4,13 +4,13 @@
 //! Contract: references are of one size and were rendered without jitter. Views are summed in
 //! their order, so the results do not depend on the number of threads.
 
-use parbake_fit::reference::Reference as Rendered;
+use parbake_image::display::Display;
 use parbake_render::background::{Background, Composer};
-use parbake_render::display::Display;
 use parbake_render::loss::{Comparison, LossValue, Reference};
 use parbake_render::pipeline::{Gradients, View, adjoint, forward};
 use parbake_render::shade::Lambert;
 use parbake_render::surface::{Surface, Textures};
+use parbake_views::reference::Reference as Rendered;
 use rayon::prelude::*;
 
 /// The views, and how the surface is compared with them.

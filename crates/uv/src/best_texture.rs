@@ -19,32 +19,17 @@ use crate::rounding::rounded;
 use crate::runs::Runs;
 use crate::signal::Signal;
 use glam::{DVec2, Vec4};
+use parbake_image::FloatImage;
 use rayon::prelude::*;
 
-/// A square texture of four channels, row 0 at v = 0.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Texture {
-    /// Texels along a side, ≥ 2.
-    pub size: usize,
-    /// size² texels.
-    pub texels: Vec<Vec4>,
-}
-
-impl Texture {
-    /// One value everywhere.
-    pub fn solid(size: usize, value: Vec4) -> Self {
-        Self { size, texels: vec![value; size * size] }
-    }
-}
-
 /// The texture twice as fine, each texel four times.
-fn doubled(coarse: &Texture) -> Texture {
-    let size = 2 * coarse.size;
-    let texel = |i: usize| coarse.texels[i / size / 2 * coarse.size + i % size / 2];
-    Texture { size, texels: (0..size * size).into_par_iter().map(texel).collect() }
+fn doubled(coarse: &FloatImage<Vec4>) -> FloatImage<Vec4> {
+    let size = 2 * coarse.width;
+    let texel = |i: usize| coarse.texels[i / size / 2 * coarse.width + i % size / 2];
+    FloatImage::square(size, (0..size * size).into_par_iter().map(texel).collect())
 }
 
-/// Texture coordinates and the signals that they carry.
+/// FloatImage<Vec4> coordinates and the signals that they carry.
 #[derive(Clone, Copy)]
 pub struct Mapped<'a> {
     /// P points.
@@ -81,37 +66,37 @@ impl Solve {
 }
 
 /// The best texture; begins at `start`.
-pub fn best_texture(mapped: &Mapped, start: Texture, solve: &Solve) -> Texture {
-    NormalEquations::assemble(mapped, start.size, solve.smoothness).solve(start, solve, None)
+pub fn best_texture(mapped: &Mapped, start: FloatImage<Vec4>, solve: &Solve) -> FloatImage<Vec4> {
+    NormalEquations::assemble(mapped, start.width, solve.smoothness).solve(start, solve, None)
 }
 
 /// The best texture whose values lie in [0, 1]; begins at `start`.
 ///
 /// Texels that leave the box are held at its border and the rest is solved again
 /// (active set), at most a few times.
-pub fn best_texture_in_box(mapped: &Mapped, start: Texture, solve: &Solve) -> Texture {
-    NormalEquations::assemble(mapped, start.size, solve.smoothness).solve_in_box(start, solve)
+pub fn best_texture_in_box(mapped: &Mapped, start: FloatImage<Vec4>, solve: &Solve) -> FloatImage<Vec4> {
+    NormalEquations::assemble(mapped, start.width, solve.smoothness).solve_in_box(start, solve)
 }
 
 /// A first guess for a texture of this size: rough textures from coarse to fine, so that
 /// conjugate gradients need not carry what is far apart from texel to texel.
-pub fn rough_texture(mapped: &Mapped, size: usize) -> Texture {
+pub fn rough_texture(mapped: &Mapped, size: usize) -> FloatImage<Vec4> {
     const COARSEST: usize = 64;
     if size <= COARSEST || !size.is_multiple_of(2) {
-        return Texture::solid(size, Vec4::splat(0.5));
+        return FloatImage::solid(size, Vec4::splat(0.5));
     }
     let rough = Solve { steps: 10, ..Solve::ROUGH };
     doubled(&best_texture(mapped, rough_texture(mapped, size / 2), &rough))
 }
 
 /// The best texture whose values are 255ths, as files of eight bits hold them; begins at `start`.
-pub fn best_texture_in_bytes(mapped: &Mapped, start: Texture, solve: &Solve) -> Texture {
-    let equations = NormalEquations::assemble(mapped, start.size, solve.smoothness);
+pub fn best_texture_in_bytes(mapped: &Mapped, start: FloatImage<Vec4>, solve: &Solve) -> FloatImage<Vec4> {
+    let equations = NormalEquations::assemble(mapped, start.width, solve.smoothness);
     rounded(&equations, equations.solve_in_box(start, solve))
 }
 
 impl NormalEquations {
-    fn solve_in_box(&self, start: Texture, solve: &Solve) -> Texture {
+    fn solve_in_box(&self, start: FloatImage<Vec4>, solve: &Solve) -> FloatImage<Vec4> {
         const PASSES: usize = 6;
         let mut texture = self.solve(start, solve, None);
         for _ in 0..PASSES {
@@ -137,7 +122,7 @@ impl NormalEquations {
     }
 
     /// `free` holds 0 in lanes that must stay.
-    fn solve(&self, mut texture: Texture, solve: &Solve, free: Option<&[Vec4]>) -> Texture {
+    fn solve(&self, mut texture: FloatImage<Vec4>, solve: &Solve, free: Option<&[Vec4]>) -> FloatImage<Vec4> {
         let size = self.size;
         let x = &mut texture.texels;
         let mask = |i: usize| free.map_or(Vec4::ONE, |f| f[i]);
@@ -228,7 +213,8 @@ mod tests {
         let few = Solve { steps: 5, ..Solve::FINAL };
         let left =
             |start| shown_errors(&mapped, &best_texture_in_box(&mapped, start, &few)).iter().sum::<f64>();
-        let (flat, fine) = (left(Texture::solid(256, Vec4::splat(0.5))), left(rough_texture(&mapped, 256)));
+        let (flat, fine) =
+            (left(FloatImage::solid(256, Vec4::splat(0.5))), left(rough_texture(&mapped, 256)));
         assert!(fine < 0.9 * flat, "{fine} of {flat}");
     }
 }

@@ -1,4 +1,4 @@
-//! Texture coordinates that move to where they show most, and stay sound on the way.
+//! FloatImage<Vec4> coordinates that move to where they show most, and stay sound on the way.
 //!
 //! ```text
 //! signal, runs                        what the surface shall show
@@ -13,10 +13,13 @@
 //! lbfgs, descent                      feasible descent
 //! variable_projection, optimise       the default method
 //! paper                               the paper's method
+//! surface, picture                    the UV stages of a bake: of models, and of pictures on planes
+//! mode, moves, convergence            what is asked for, and what became of it
 //! ```
 
 pub mod best_texture;
 pub mod contact;
+pub mod convergence;
 pub mod curvature;
 pub mod descent;
 pub mod distortion;
@@ -26,10 +29,13 @@ pub mod inversion;
 pub mod laplacian;
 pub mod lbfgs;
 pub mod metric;
+pub mod mode;
+pub mod moves;
 pub(crate) mod normal_equations;
 pub mod normal_matrix;
 pub mod optimise;
 pub mod paper;
+pub mod picture;
 pub mod pyramid;
 pub mod region;
 pub mod residual;
@@ -38,4 +44,5 @@ pub mod runs;
 pub mod shown;
 pub mod signal;
 pub mod stiffness;
+pub mod surface;
 pub mod variable_projection;

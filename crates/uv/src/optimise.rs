@@ -9,7 +9,7 @@
 //!
 //! Contract: from a sound layout to a sound layout (`region.rs`); deterministic.
 
-use crate::best_texture::{Mapped, Solve, Texture, best_texture};
+use crate::best_texture::{Mapped, Solve, best_texture};
 use crate::contact::ContactOptions;
 use crate::curvature::Curvature;
 use crate::descent::{Descent, DescentOptions, Objective, Reach, Region, descend};
@@ -24,6 +24,7 @@ use crate::stiffness::Stiffness;
 use crate::variable_projection::{Best, VariableProjection};
 use glam::{DMat2, DVec2, Vec4};
 use parbake_atlas::Layout;
+use parbake_image::FloatImage;
 
 /// What the optimisation works on.
 #[derive(Clone, Copy)]
@@ -124,7 +125,7 @@ const FIRST_WEIGHT: f64 = 0.1;
 
 impl Balance {
     /// Baselines of a start's layout; also returns its best texture.
-    pub fn new(problem: &Problem, layout: &Layout) -> (Self, Texture) {
+    pub fn new(problem: &Problem, layout: &Layout) -> (Self, FloatImage<Vec4>) {
         let runs = Runs::new(&layout.points, &layout.triangles, &problem.showings[0]);
         let whole = Mapped {
             points: &layout.points,
@@ -133,7 +134,7 @@ impl Balance {
             runs: &runs,
         };
         let first = Mapped { showings: &problem.showings[..1], ..whole };
-        let start = Texture::solid(problem.texture_size, Vec4::splat(0.5));
+        let start = FloatImage::solid(problem.texture_size, Vec4::splat(0.5));
         let texture = best_texture(&first, start, &Solve { steps: 60, tolerance: 1e-4, ..Solve::ROUGH });
         let mut unused = vec![DVec2::ZERO; layout.points.len()];
         let left = residual(&whole, &texture, &mut unused);
@@ -199,7 +200,7 @@ pub fn tensors(problem: &Problem, layout: &Layout) -> Vec<DMat2> {
     let runs = Runs::new(&layout.points, &layout.triangles, &signal[0]);
     let mapped =
         Mapped { points: &layout.points, triangles: &layout.triangles, showings: signal, runs: &runs };
-    let start = Texture::solid(size, Vec4::splat(0.5));
+    let start = FloatImage::solid(size, Vec4::splat(0.5));
     let texture = best_texture(&mapped, start, &Solve { smoothness: 1e-3, ..Solve::ROUGH });
     structure_tensors(&mapped, &texture, problem.rest)
 }
@@ -237,7 +238,7 @@ pub fn shape(
 #[derive(Clone, Debug)]
 pub struct Refined {
     /// The best texture for the layout and the balance, not clamped.
-    pub texture: Texture,
+    pub texture: FloatImage<Vec4>,
     /// What is left of each showing, relative to its baseline.
     pub relative: Vec<f64>,
     /// The descent.
@@ -250,7 +251,7 @@ pub fn refine(
     problem: &Problem,
     balance: &Balance,
     layout: &mut Layout,
-    texture: Texture,
+    texture: FloatImage<Vec4>,
     options: &UvOptions,
     step: impl FnMut(&[DVec2], f64) -> bool,
 ) -> Refined {

@@ -20,12 +20,13 @@
 mod energy;
 pub mod texture_loss;
 
-use crate::best_texture::{Mapped, Texture};
+use crate::best_texture::Mapped;
 use crate::contact::Contact;
 use crate::descent::{Place, Reach, Region, Step};
 use crate::lbfgs::{Identity, Lbfgs};
 use crate::signal::{Pixels, Signal};
-use parbake_adam::{Adam, AdamOptions};
+use parbake_image::FloatImage;
+use parbake_solve::adam::{Adam, AdamOptions};
 
 use energy::Problem;
 use glam::{DMat2, DVec2, Vec4};
@@ -143,7 +144,7 @@ pub struct PaperResult {
     /// P points.
     pub points: Vec<DVec2>,
     /// Values in [0, 1], not rounded.
-    pub texture: Texture,
+    pub texture: FloatImage<Vec4>,
     /// Mean squared error of points and texture together.
     pub error: f64,
     /// Rounds done.
@@ -171,7 +172,7 @@ pub fn paper_method(
     let mapped = Mapped { showings: std::slice::from_ref(&signal), ..*mapped };
     let size = size.max(2);
     let problem = Problem::new(mapped, &signal, rest, contact, size, options);
-    let mut texture = Texture::solid(size, Vec4::splat(0.5));
+    let mut texture = FloatImage::solid(size, Vec4::splat(0.5));
     let mut painter = Painter::new(&texture, options);
     let mut errors = vec![0.0; mapped.triangles.len()];
     let mut history = PaperHistory::default();
@@ -187,7 +188,7 @@ pub fn paper_method(
     let mut place =
         Place::new(mapped.points.to_vec(), &mut problem.energy(mapped.points, &texture, &errors), region);
     let mut memory = Lbfgs::new(options.memory);
-    let mut best: Option<(f64, Vec<DVec2>, Texture)> = None;
+    let mut best: Option<(f64, Vec<DVec2>, FloatImage<Vec4>)> = None;
     let (mut rounds, mut stopped) = (0, false);
     while rounds < options.rounds {
         let loss = problem.loss(&place.points, size);
@@ -249,7 +250,7 @@ struct Painter {
 }
 
 impl Painter {
-    fn new(texture: &Texture, options: &PaperOptions) -> Self {
+    fn new(texture: &FloatImage<Vec4>, options: &PaperOptions) -> Self {
         let count = texture.texels.len();
         let adam = Adam::new(count, options.adam);
         Self { adam, gradient: vec![Vec4::ZERO; count], threshold: options.threshold }
@@ -259,11 +260,11 @@ impl Painter {
     /// texture before each step, and how many were done.
     fn steps(
         &mut self,
-        texture: &mut Texture,
+        texture: &mut FloatImage<Vec4>,
         loss: &TextureLoss,
         steps: usize,
         rate: Rate,
-        mut watch: impl FnMut(usize, &Texture),
+        mut watch: impl FnMut(usize, &FloatImage<Vec4>),
     ) -> f64 {
         let start = texture.texels.clone();
         let mut before = Vec::new();

@@ -7,17 +7,18 @@
 //! `Σ ωₛ (|rˡ⁺¹|² − |rˡ|²) · ∂λ/∂uv`. At the best texture this is the whole derivative
 //! (variable projection).
 
-use crate::best_texture::{Mapped, Texture};
+use crate::best_texture::Mapped;
 use crate::footprint::{Footprint, OnLevel, shares};
 use crate::pyramid::{level_count, levels};
 use crate::signal::Sample;
 use glam::{DVec2, Vec2, Vec4};
+use parbake_image::FloatImage;
 use rayon::prelude::*;
 
 /// The residual of each showing, and the derivative of their sum, which is added to
 /// `gradient`.
-pub fn residual(mapped: &Mapped, texture: &Texture, gradient: &mut [DVec2]) -> Vec<f64> {
-    let pyramid = levels(&texture.texels, texture.size, level_count(texture.size));
+pub fn residual(mapped: &Mapped, texture: &FloatImage<Vec4>, gradient: &mut [DVec2]) -> Vec<f64> {
+    let pyramid = levels(&texture.texels, texture.width, level_count(texture.width));
     // For each run the derivatives for its points, and the errors of each showing.
     let parts: Vec<(Vec<DVec2>, Vec<f64>)> = (0..mapped.runs.count())
         .into_par_iter()
@@ -26,7 +27,7 @@ pub fn residual(mapped: &Mapped, texture: &Texture, gradient: &mut [DVec2]) -> V
             let mut slopes = vec![DVec2::ZERO; own.points.len()];
             let mut errors = vec![0.0; mapped.showings.len()];
             for (t, corners) in mapped.runs.triangles(run).zip(&own.corners) {
-                let found = triangle(mapped, &pyramid, texture.size, t, &mut errors);
+                let found = triangle(mapped, &pyramid, texture.width, t, &mut errors);
                 for (corner, slope) in corners.iter().zip(found) {
                     slopes[*corner as usize] += slope;
                 }
@@ -45,11 +46,11 @@ pub fn residual(mapped: &Mapped, texture: &Texture, gradient: &mut [DVec2]) -> V
 }
 
 /// The residual of all showings by triangle (F).
-pub fn residual_by_triangle(mapped: &Mapped, texture: &Texture) -> Vec<f64> {
-    let pyramid = levels(&texture.texels, texture.size, level_count(texture.size));
+pub fn residual_by_triangle(mapped: &Mapped, texture: &FloatImage<Vec4>) -> Vec<f64> {
+    let pyramid = levels(&texture.texels, texture.width, level_count(texture.width));
     let of = |errors: &mut Vec<f64>, t: usize| {
         errors.fill(0.0);
-        triangle(mapped, &pyramid, texture.size, t, errors);
+        triangle(mapped, &pyramid, texture.width, t, errors);
         errors.iter().sum()
     };
     let room = || vec![0.0; mapped.showings.len()];

@@ -15,11 +15,11 @@
 //! Texels depend on those before them, so this runs on one thread; a pass costs a few steps of the
 //! conjugate gradients before it.
 
-use crate::best_texture::Texture;
 use crate::normal_equations::NormalEquations;
 use crate::normal_matrix::NormalMatrix;
 use crate::pyramid::levels;
 use glam::Vec4;
+use parbake_image::FloatImage;
 
 /// After the third pass pictures gain another 0.02 dB at most.
 const PASSES: usize = 3;
@@ -28,7 +28,7 @@ const PASSES: usize = 3;
 const WHITE: f32 = 255.0;
 
 /// The texture with values that are 255ths in [0, 1].
-pub(crate) fn rounded(equations: &NormalEquations, texture: Texture) -> Texture {
+pub(crate) fn rounded(equations: &NormalEquations, texture: FloatImage<Vec4>) -> FloatImage<Vec4> {
     let mut rounding = Rounding::new(equations, texture);
     for _ in 0..PASSES {
         if !rounding.pass() {
@@ -40,14 +40,14 @@ pub(crate) fn rounded(equations: &NormalEquations, texture: Texture) -> Texture 
 
 struct Rounding<'a> {
     equations: &'a NormalEquations,
-    texture: Texture,
+    texture: FloatImage<Vec4>,
     /// `Aˡ Dˡ q` on each level.
     products: Vec<Vec<Vec4>>,
 }
 
 impl<'a> Rounding<'a> {
-    fn new(equations: &'a NormalEquations, texture: Texture) -> Self {
-        let pyramid = levels(&texture.texels, texture.size, equations.levels.len());
+    fn new(equations: &'a NormalEquations, texture: FloatImage<Vec4>) -> Self {
+        let pyramid = levels(&texture.texels, texture.width, equations.levels.len());
         let product = |(matrix, x): (&NormalMatrix, &Vec<Vec4>)| {
             let mut product = vec![Vec4::ZERO; x.len()];
             matrix.product(x, &mut product);
@@ -59,7 +59,7 @@ impl<'a> Rounding<'a> {
 
     /// Visits each texel once; false if none changed.
     fn pass(&mut self) -> bool {
-        let size = self.texture.size;
+        let size = self.texture.width;
         let mut changed = false;
         for texel in 0..size * size {
             let place = [texel % size, texel / size];
@@ -79,7 +79,7 @@ impl<'a> Rounding<'a> {
     fn residual(&self, texel: usize, [x, y]: [usize; 2]) -> Vec4 {
         let (mut residual, mut share) = (self.equations.right[texel], 1.0);
         for (level, product) in self.products.iter().enumerate() {
-            residual -= product[(y >> level) * (self.texture.size >> level) + (x >> level)] * share;
+            residual -= product[(y >> level) * (self.texture.width >> level) + (x >> level)] * share;
             share *= 0.25;
         }
         residual
@@ -133,7 +133,7 @@ mod tests {
         let (points, triangles, showings) = dark_square();
         let runs = Runs::new(&points, &triangles, &showings[0]);
         let mapped = Mapped { points: &points, triangles: &triangles, showings: &showings, runs: &runs };
-        let start = || Texture::solid(32, Vec4::splat(0.5));
+        let start = || FloatImage::solid(32, Vec4::splat(0.5));
         let mut apart = best_texture_in_box(&mapped, start(), &Solve::FINAL);
         apart.texels.iter_mut().for_each(|t| *t = (*t * WHITE).round() / WHITE);
         let together = best_texture_in_bytes(&mapped, start(), &Solve::FINAL);
@@ -153,7 +153,7 @@ mod tests {
         let mapped = Mapped { points: &points, triangles: &triangles, showings: &showings, runs: &runs };
         let equations = NormalEquations::assemble(&mapped, 32, 1e-6);
         assert!(equations.levels.len() > 1);
-        let mut rounding = Rounding::new(&equations, Texture::solid(32, Vec4::splat(0.0123)));
+        let mut rounding = Rounding::new(&equations, FloatImage::solid(32, Vec4::splat(0.0123)));
         assert!(rounding.pass());
         let anew = Rounding::new(&equations, rounding.texture.clone());
         for (kept, anew) in rounding.products.iter().zip(&anew.products) {

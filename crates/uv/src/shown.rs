@@ -1,15 +1,16 @@
 //! How a texture really looks: the squared error of the trilinear fetch that engines do,
 //! not the bound that is minimised (`best_texture.rs`).
 
-use crate::best_texture::{Mapped, Texture};
+use crate::best_texture::Mapped;
 use crate::footprint::{Footprint, shares};
 use crate::pyramid::{level_count, levels};
 use glam::Vec4;
+use parbake_image::FloatImage;
 use rayon::prelude::*;
 
 /// The weighted squared error of each showing, summed over channels and samples.
-pub fn shown_errors(mapped: &Mapped, texture: &Texture) -> Vec<f64> {
-    let pyramid = levels(&texture.texels, texture.size, level_count(texture.size));
+pub fn shown_errors(mapped: &Mapped, texture: &FloatImage<Vec4>) -> Vec<f64> {
+    let pyramid = levels(&texture.texels, texture.width, level_count(texture.width));
     let parts: Vec<Vec<f64>> = (0..mapped.runs.count())
         .into_par_iter()
         .map(|run| {
@@ -17,11 +18,11 @@ pub fn shown_errors(mapped: &Mapped, texture: &Texture) -> Vec<f64> {
             for t in mapped.runs.triangles(run) {
                 let footprint = Footprint::new(mapped.points, mapped.triangles[t]);
                 for (signal, error) in mapped.showings.iter().zip(&mut errors) {
-                    let level = footprint.level(signal.pixels.of(t), texture.size, pyramid.len());
+                    let level = footprint.level(signal.pixels.of(t), texture.width, pyramid.len());
                     for sample in signal.of(t) {
                         let mut shown = Vec4::ZERO;
                         for (l, share) in shares(&level) {
-                            let size = texture.size >> l;
+                            let size = texture.width >> l;
                             let ([x, y], [fx, fy], _) = footprint.on(size).place(sample);
                             let row = |y: usize| {
                                 let (a, b) = (pyramid[l][y * size + x], pyramid[l][y * size + x + 1]);

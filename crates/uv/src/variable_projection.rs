@@ -14,19 +14,21 @@
 //! start, since with the texture of a step that went too far a shorter one would look bad too;
 //! its error tells what next to nothing is. It decides how long a solve takes, not what it finds.
 
-use crate::best_texture::{Mapped, Solve, Texture, best_texture};
+use crate::best_texture::{Mapped, Solve, best_texture};
 use crate::contact::Contact;
 use crate::descent::Objective;
 use crate::distortion::Distortion;
 use crate::residual::residual;
 use glam::DVec2;
+use glam::Vec4;
+use parbake_image::FloatImage;
 
 /// The objective.
 pub struct VariableProjection<'a> {
     /// What is mapped; its points are those of the start.
     pub mapped: Mapped<'a>,
     /// The best place's texture.
-    pub texture: Texture,
+    pub texture: FloatImage<Vec4>,
     /// Holds triangles open.
     pub distortion: &'a Distortion,
     /// μ: weight of the distortion.

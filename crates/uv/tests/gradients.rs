@@ -9,7 +9,8 @@ mod common;
 use common::{Random, quarters, signal};
 use glam::{DMat2, DVec2, Vec4, dvec2, vec4};
 use parbake_atlas::Layout;
-use parbake_uv::best_texture::{Mapped, Solve, Texture, best_texture};
+use parbake_image::FloatImage;
+use parbake_uv::best_texture::{Mapped, Solve, best_texture};
 use parbake_uv::contact::{Contact, ContactOptions};
 use parbake_uv::descent::Objective;
 use parbake_uv::distortion::Distortion;
@@ -64,7 +65,7 @@ fn compare(points: &[DVec2], gradient: &[DVec2], tolerance: f64, mut value: impl
     }
 }
 
-fn sum(mapped: &Mapped, texture: &Texture) -> f64 {
+fn sum(mapped: &Mapped, texture: &FloatImage<Vec4>) -> f64 {
     let mut unused = vec![DVec2::ZERO; mapped.points.len()];
     residual(mapped, texture, &mut unused).iter().sum()
 }
@@ -77,7 +78,7 @@ fn residual_for_a_fixed_texture() {
     let mapped =
         Mapped { points: &layout.points, triangles: &layout.triangles, showings: &showings, runs: &runs };
     let mut random = Random(3);
-    let mut texture = Texture::solid(SIZE, Vec4::ZERO);
+    let mut texture = FloatImage::solid(SIZE, Vec4::ZERO);
     texture.texels.fill_with(|| (Vec4::splat(random.next() as f32) + random.next() as f32) * 0.5);
     for only in [&showings[..1], &showings[1..], &showings[..]] {
         let mapped = Mapped { showings: only, ..mapped };
@@ -95,7 +96,7 @@ fn residual_of_the_best_texture() {
     let runs = Runs::new(&layout.points, &layout.triangles, &showings[0]);
     let mapped =
         Mapped { points: &layout.points, triangles: &layout.triangles, showings: &showings, runs: &runs };
-    let texture = best_texture(&mapped, Texture::solid(SIZE, Vec4::splat(0.5)), &EXACT);
+    let texture = best_texture(&mapped, FloatImage::solid(SIZE, Vec4::splat(0.5)), &EXACT);
     let mut gradient = vec![DVec2::ZERO; layout.points.len()];
     residual(&mapped, &texture, &mut gradient);
     compare(&layout.points, &gradient, 0.03, |points| {
@@ -112,7 +113,7 @@ fn the_whole_objective() {
     let runs = Runs::new(&layout.points, &layout.triangles, &showings[0]);
     let mapped =
         Mapped { points: &layout.points, triangles: &layout.triangles, showings: &showings, runs: &runs };
-    let start = best_texture(&mapped, Texture::solid(SIZE, Vec4::splat(0.5)), &EXACT);
+    let start = best_texture(&mapped, FloatImage::solid(SIZE, Vec4::splat(0.5)), &EXACT);
     let distortion =
         signal_specialised(&structure_tensors(&mapped, &start, &layout.rest), &layout.rest, 1e-3);
     let options =
@@ -151,7 +152,7 @@ fn a_short_step_looks_better_after_a_bad_one() {
     let distortion = Distortion::symmetric_dirichlet(&layout.rest, 1.0, |_| 1.0);
     let mut objective = VariableProjection {
         mapped,
-        texture: Texture::solid(SIZE, Vec4::splat(0.5)),
+        texture: FloatImage::solid(SIZE, Vec4::splat(0.5)),
         distortion: &distortion,
         distortion_weight: 1e-4,
         contact: None,

@@ -6,7 +6,8 @@ mod common;
 use common::{Random, assert_sound, quarters, signal};
 use glam::{DVec2, Vec4};
 use parbake_atlas::Layout;
-use parbake_uv::best_texture::{Mapped, Solve, Texture};
+use parbake_image::FloatImage;
+use parbake_uv::best_texture::{Mapped, Solve};
 use parbake_uv::contact::{Border, ContactOptions};
 use parbake_uv::descent::{DescentOptions, Reach, descend};
 use parbake_uv::distortion::Distortion;
@@ -114,7 +115,7 @@ proptest! {
         let triangles = &start.triangles;
         let mut objective = VariableProjection {
             mapped: Mapped { points: &start.points, triangles, showings: &showings, runs: &runs },
-            texture: Texture::solid(SIZE, Vec4::ZERO),
+            texture: FloatImage::solid(SIZE, Vec4::ZERO),
             distortion: &distortion,
             distortion_weight: settings.distortion_weight,
             contact: None,

@@ -2,7 +2,8 @@
 
 use glam::{DMat2, DVec2, Vec4, dvec2};
 use parbake_atlas::Layout;
-use parbake_uv::best_texture::{Mapped, Texture};
+use parbake_image::FloatImage;
+use parbake_uv::best_texture::Mapped;
 use parbake_uv::contact::{Border, Contact, ContactOptions};
 use parbake_uv::descent::Region;
 use parbake_uv::inversion;
@@ -131,11 +132,12 @@ fn texture_gradient_is_the_derivative_of_the_error() {
     let mean_over = 3.0 * plane.signal.weight();
     let number = |i: usize| ((i * 2_654_435_761) % 1009) as f32 / 1009.0;
     let texels = (0..64).map(|i| Vec4::new(number(i + 1), number(i + 70), number(i + 140), 0.0)).collect();
-    let texture = Texture { size: 8, texels };
+    let texture = FloatImage::square(8, texels);
     let mut gradient = vec![Vec4::ONE; 64];
     TextureLoss::new(&mapped, 8, mean_over).gradient(&texture.texels, &mut gradient);
-    let error =
-        |t: &Texture| residual(&mapped, t, &mut vec![DVec2::ZERO; mapped.points.len()])[0] / mean_over;
+    let error = |t: &FloatImage<Vec4>| {
+        residual(&mapped, t, &mut vec![DVec2::ZERO; mapped.points.len()])[0] / mean_over
+    };
     for (texel, gradient) in gradient.iter().enumerate() {
         for (channel, got) in gradient.truncate().to_array().into_iter().map(f64::from).enumerate() {
             let h = 1.0 / 64.0;

@@ -19,7 +19,6 @@ mod parallax;
 mod references;
 mod runs;
 mod scene;
-mod short_uv;
 mod textures;
 mod topology;
 mod uri;
@@ -28,7 +27,6 @@ mod write_material;
 mod write_mesh;
 mod write_parallax;
 
-pub use short_uv::{short_uv, short_uvs_pay};
 pub use write::{glb_bytes, write_glb};
 
 use crate::context::{Context, Textures};

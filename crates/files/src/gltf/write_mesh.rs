@@ -1,15 +1,15 @@
 //! A mesh in a GLB file: one primitive for each material in use, all on the same vertices, or one
 //! for each run of triangles that repeat ([`super::runs`]).
 //!
-//! Coordinates that are all 65535ths, as [`crate::short_uv`] makes them, take half the bytes where
+//! Coordinates that are all 65535ths, as [`parbake_model::short_uv`] makes them, take half the bytes where
 //! they are many, and come back to the bit.
 
 use super::binary::Binary;
 use super::runs::{Run, runs};
-use super::short_uv::{is_short, nearest_short, short_uvs_pay};
 use crate::unit::{unit, unit_tangent};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{Mesh, Model};
+use parbake_model::{is_short, nearest_short, short_uvs_pay};
 use serde_json::{Value, json};
 
 /// The primitives of a model's mesh; `used` are the materials that its triangles name, which

@@ -1,15 +1,15 @@
 //! The built-in pair of models as benches see it: a fifth of a default bake's views.
 
-use parbake_fit::reference::{Reference, Sampling, render_references};
-use parbake_fit::views::{Rig, view_pool};
+use parbake_image::display::{Curve, Display};
 use parbake_mesh::demo::{demo_low, demo_model};
 use parbake_mesh::{compute_tangents, ensure_normals};
 use parbake_model::Mesh;
 use parbake_render::camera::Projection;
-use parbake_render::display::{Curve, Display};
 use parbake_render::interpretation::Interpretation;
 use parbake_render::scene::Scene;
 use parbake_render::shade::Lambert;
+use parbake_views::pool::{Rig, view_pool};
+use parbake_views::reference::{Reference, Sampling, render_references};
 
 /// Pixels along a side of a view.
 pub const VIEW_SIZE: usize = 192;

@@ -4,12 +4,12 @@
 //! Contract: only texels that some view fetches count, so no chart holds another; maps without
 //! texels have no plate.
 
-use crate::sighted::Sighted;
-use crate::thin_plate::ThinPlate;
+use parbake_image::pyramid::taps;
 use parbake_model::Wrap;
 use parbake_model::glam::Vec4;
 use parbake_render::parallax_variants::shift_map::ShiftMap;
-use parbake_render::texture::taps;
+use parbake_solve::thin_plate::ThinPlate;
+use parbake_views::sighted::Sighted;
 use rayon::prelude::*;
 
 /// A plate on the texels that views fetch.
@@ -58,7 +58,7 @@ mod tests {
     /// A pixel that fetches the texel in this column and row of three.
     fn at(u: usize, v: usize) -> Sighted {
         let uv = Vec2::new(u as f32 + 0.5, v as f32 + 0.5) / 3.0;
-        Sighted { uv, sight: [0; 4], light: [0; 9], target: [0; 3], weight: 0 }
+        Sighted::at(uv)
     }
 
     /// Protects maps whose last lane is padding, and texels that no view fetches: a bump in the

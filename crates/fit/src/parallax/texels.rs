@@ -1,46 +1,75 @@
-//! The textures of a fit of shifts, albedo and normal of a texel side by side: whoever reads one
-//! reads the other, and both then come with one line of the cache.
+//! The maps of a parallax fit, those of a texel side by side: whoever reads one reads the others, and
+//! all then come with one line of the cache.
 //!
 //! Forward: a bilinear fetch. Adjoint: each of the four texels receives its weight times the
 //! gradient, and the coordinate what the slopes say.
 
-use crate::canvas::Canvas;
+use parbake_image::maps::lift_to_hemisphere;
+use parbake_image::pyramid::{Taps, taps};
+use parbake_image::{Domain, FloatImage, MapKind, MapSet, MapValues};
 use parbake_model::Wrap;
-use parbake_model::glam::{Vec2, Vec3, Vec4};
-use parbake_render::texture::{Taps, taps};
+use parbake_model::glam::{Vec2, Vec4};
 use rayon::prelude::*;
 
-/// Albedo, 0 … 1, and unit tangent-space normal; or their gradients.
-pub(super) type Texel = [Vec4; 2];
+/// The values of N maps at one texel; or their gradients.
+pub(super) type Texel<const N: usize> = [Vec4; N];
 
 /// Texels of one task.
 pub(super) const BAND: usize = 4096;
 
-/// A square texture that repeats.
-pub(super) struct Texels {
+/// N maps of a square texture that repeats.
+pub(super) struct Texels<const N: usize> {
     pub size: usize,
+    /// Which maps.
+    pub kinds: [MapKind; N],
     /// size² texels, row 0 on top.
-    pub texels: Vec<Texel>,
+    pub texels: Vec<Texel<N>>,
 }
 
 /// What a fetch gives: values, and how they change with the coordinate, for a texture's width.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Fetched {
-    pub value: Texel,
-    pub per_u: Texel,
-    pub per_v: Texel,
+#[derive(Clone, Copy)]
+pub(super) struct Fetched<const N: usize> {
+    pub value: Texel<N>,
+    pub per_u: Texel<N>,
+    pub per_v: Texel<N>,
 }
 
-impl Texels {
-    pub fn new(color: &Canvas, normal: &Canvas) -> Self {
-        let pairs = color.texels.par_iter().zip(&normal.texels);
-        Self { size: color.size, texels: pairs.map(|(color, normal)| [*color, *normal]).collect() }
+impl<const N: usize> Default for Fetched<N> {
+    fn default() -> Self {
+        let zero = [Vec4::ZERO; N];
+        Self { value: zero, per_u: zero, per_v: zero }
+    }
+}
+
+impl<const N: usize> Texels<N> {
+    /// Of a set that has N maps.
+    pub fn new(maps: &MapSet) -> Self {
+        let size = maps.size();
+        let mut kinds = [MapKind::BaseColor; N];
+        let mut texels = vec![[Vec4::ZERO; N]; size * size];
+        for (k, (kind, map)) in maps.iter().enumerate().take(N) {
+            kinds[k] = kind;
+            texels.par_iter_mut().zip(&map.texels).for_each(|(texel, value)| texel[k] = *value);
+        }
+        Self { size, kinds, texels }
     }
 
-    /// Writes both textures back.
-    pub fn write(&self, color: &mut Canvas, normal: &mut Canvas) {
-        let both = color.texels.par_iter_mut().zip(&mut normal.texels);
-        both.zip(&self.texels).for_each(|((color, normal), texel)| [*color, *normal] = *texel);
+    /// Writes all maps back.
+    pub fn write(&self, maps: &mut MapSet) {
+        for (k, kind) in self.kinds.into_iter().enumerate() {
+            let texels = self.texels.par_iter().map(|texel| texel[k]).collect();
+            maps.insert(kind, FloatImage::square(self.size, texels));
+        }
+    }
+
+    /// The values of a texel as shading reads them.
+    #[inline(always)]
+    pub fn values(&self, texel: &Texel<N>) -> MapValues {
+        let mut values = MapValues::NEUTRAL;
+        for k in 0..N {
+            values[self.kinds[k]] = texel[k];
+        }
+        values
     }
 
     /// Where a coordinate is fetched.
@@ -51,11 +80,11 @@ impl Texels {
 
     /// The blend of four texels, and its slopes.
     #[inline]
-    pub fn fetch(&self, at: &Taps) -> Fetched {
+    pub fn fetch(&self, at: &Taps) -> Fetched<N> {
         let [a, b, c, d] = at.index;
         let [a, b, c, d] = [a, b, c, d].map(|i| &self.texels[i as usize]);
         let mut out = Fetched::default();
-        for k in 0..2 {
+        for k in 0..N {
             let (across_above, across_below) = (b[k] - a[k], d[k] - c[k]);
             let above = a[k] + across_above * at.fx;
             let down = c[k] + across_below * at.fx - above;
@@ -66,39 +95,53 @@ impl Texels {
         out
     }
 
-    /// Brings albedos back between 0 and 1, and normals to unit length, in front of their surface.
+    /// Brings all values back into their domains.
     pub fn bring_back(&mut self) {
-        self.texels.par_chunks_mut(BAND).flatten_iter().for_each(|[color, normal]| {
-            *color = color.clamp(Vec4::ZERO, Vec4::ONE);
-            let [x, y, z, _] = normal.to_array();
-            *normal = Vec3::new(x, y, z.max(0.02)).normalize().extend(0.0);
+        let domains = self.kinds.map(|kind| kind.spec().domain);
+        self.texels.par_chunks_mut(BAND).flatten_iter().for_each(|texel| {
+            for k in 0..N {
+                texel[k] = match domains[k] {
+                    Domain::Box => texel[k].clamp(Vec4::ZERO, Vec4::ONE),
+                    Domain::Hemisphere => lift_to_hemisphere(texel[k].truncate()).extend(0.0),
+                };
+            }
         });
     }
 }
 
-impl Fetched {
+impl<const N: usize> Fetched<N> {
     /// Gradient of the coordinate, given that of the values, for texels of this many in a row.
     #[inline]
-    pub fn by_coordinate(&self, gradient: &Texel, size: usize) -> Vec2 {
-        let along = |slope: &Texel| (slope[0] * gradient[0] + slope[1] * gradient[1]).element_sum();
+    pub fn by_coordinate(&self, gradient: &Texel<N>, size: usize) -> Vec2 {
+        let along = |slope: &Texel<N>| {
+            let mut sum = slope[0] * gradient[0];
+            for k in 1..N {
+                sum += slope[k] * gradient[k];
+            }
+            sum.element_sum()
+        };
         Vec2::new(along(&self.per_u), along(&self.per_v)) * size as f32
     }
 }
 
 /// Adds the gradient of a fetch to the texels that it blended.
 #[inline]
-pub(super) fn scatter(at: &Taps, gradient: &Texel, into: &mut [Texel]) {
+pub(super) fn scatter<const N: usize>(at: &Taps, gradient: &Texel<N>, into: &mut [Texel<N>]) {
     for (index, weight) in at.index.into_iter().zip(at.weights()) {
         let texel = &mut into[index as usize];
-        texel[0] += gradient[0] * weight;
-        texel[1] += gradient[1] * weight;
+        for k in 0..N {
+            texel[k] += gradient[k] * weight;
+        }
     }
 }
 
 /// Adds the gradients of others to these, one after the other, and leaves zeros in their places:
 /// they are wanted next, and are in the cache now.
-pub(super) fn gather<'a>(into: &mut [Texel], others: impl Iterator<Item = &'a mut [Texel]>) {
-    let mut by_band: Vec<Vec<&mut [Texel]>> = Vec::new();
+pub(super) fn gather<'a, const N: usize>(
+    into: &mut [Texel<N>],
+    others: impl Iterator<Item = &'a mut [Texel<N>]>,
+) {
+    let mut by_band: Vec<Vec<&mut [Texel<N>]>> = Vec::new();
     by_band.resize_with(into.len().div_ceil(BAND), Vec::new);
     for other in others {
         by_band.iter_mut().zip(other.chunks_mut(BAND)).for_each(|(band, other)| band.push(other));
@@ -106,9 +149,10 @@ pub(super) fn gather<'a>(into: &mut [Texel], others: impl Iterator<Item = &'a mu
     into.par_chunks_mut(BAND).zip(by_band).for_each(|(into, others)| {
         for other in others {
             for (into, from) in into.iter_mut().zip(other) {
-                into[0] += from[0];
-                into[1] += from[1];
-                *from = [Vec4::ZERO; 2];
+                for k in 0..N {
+                    into[k] += from[k];
+                }
+                *from = [Vec4::ZERO; N];
             }
         }
     });
@@ -129,11 +173,10 @@ mod tests {
     /// Protects both gradients of a fetch, also across the seam of a texture that repeats.
     #[test]
     fn adjoints_match_central_differences() {
-        let canvas =
-            |first: usize| Canvas { size: 4, texels: (0..16).map(|i| lane(first + 3 * i)).collect() };
-        let texels = Texels::new(&canvas(0), &canvas(100));
+        let canvas = |first: usize| FloatImage::square(4, (0..16).map(|i| lane(first + 3 * i)).collect());
+        let texels = Texels::<2>::new(&MapSet::of(canvas(0), canvas(100)));
         let gradient = [lane(5), lane(9)];
-        let value = |texels: &Texels, uv: Vec2| {
+        let value = |texels: &Texels<2>, uv: Vec2| {
             let Fetched { value, .. } = texels.fetch(&texels.taps(uv));
             value[0].dot(gradient[0]) + value[1].dot(gradient[1])
         };
@@ -148,7 +191,7 @@ mod tests {
             let mut into = vec![[Vec4::ZERO; 2]; 16];
             scatter(&at, &gradient, &mut into);
             for (i, slope) in into.iter().enumerate() {
-                let mut moved = Texels { size: 4, texels: texels.texels.clone() };
+                let mut moved = Texels { texels: texels.texels.clone(), ..texels };
                 moved.texels[i][1].y += 1.0;
                 assert!((slope[1].y - (value(&moved, uv) - value(&texels, uv))).abs() < 1e-5);
             }

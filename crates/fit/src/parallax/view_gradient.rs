@@ -11,45 +11,46 @@
 //! its pixel; pixels are summed in their order.
 
 use super::texels::{Fetched, Texel, Texels, scatter};
-use crate::color::respond;
-use crate::sighted::Sighted;
+use crate::problem::respond;
+use parbake_image::display_table::DisplayTable;
+use parbake_image::pyramid::Taps;
 use parbake_model::glam::{Vec2, Vec4};
-use parbake_render::display_table::DisplayTable;
 use parbake_render::frame::TangentLight;
 use parbake_render::parallax_variants::shift_map::{ShiftMap, Vantage};
-use parbake_render::shade::cosine_with_derivative;
-use parbake_render::texture::Taps;
+use parbake_render::shade::{Brdf, Jacobian};
+use parbake_views::sighted::Sighted;
 
 /// Pixels of a group.
 const GROUP: usize = 16;
 
 /// Loss and gradients of some views.
-pub(super) struct Sums<M> {
+pub(super) struct Sums<M, const N: usize> {
     /// Squared differences of all three channels.
     pub loss: f64,
     pub map: M,
-    pub texels: Vec<Texel>,
+    pub texels: Vec<Texel<N>>,
 }
 
-impl<M: ShiftMap> Sums<M> {
-    pub fn zeros(map: &M, texels: &Texels) -> Self {
-        Self { loss: 0.0, map: map.zeros_like(), texels: vec![[Vec4::ZERO; 2]; texels.texels.len()] }
+impl<M: ShiftMap, const N: usize> Sums<M, N> {
+    pub fn zeros(map: &M, texels: &Texels<N>) -> Self {
+        Self { loss: 0.0, map: map.zeros_like(), texels: vec![[Vec4::ZERO; N]; texels.texels.len()] }
     }
 }
 
 /// Adds what one view says.
-pub(super) fn add_view<M: ShiftMap>(
+pub(super) fn add_view<B: Brdf, M: ShiftMap, const N: usize>(
     pixels: &[Sighted],
     map: &M,
-    texels: &Texels,
+    texels: &Texels<N>,
+    brdf: &B,
     display: &DisplayTable,
-    sums: &mut Sums<M>,
+    sums: &mut Sums<M, N>,
 ) {
     let mut from = [Vantage::default(); GROUP];
     let mut light = [TangentLight::default(); GROUP];
     let mut at = [Taps::default(); GROUP];
-    let mut fetched = [Fetched::default(); GROUP];
-    let mut gradient = [[Vec4::ZERO; 2]; GROUP];
+    let mut fetched = [Fetched::<N>::default(); GROUP];
+    let mut gradient = [[Vec4::ZERO; N]; GROUP];
     let mut to_shift = [Vec2::ZERO; GROUP];
     for group in pixels.chunks(GROUP) {
         for (i, pixel) in group.iter().enumerate() {
@@ -62,7 +63,7 @@ pub(super) fn add_view<M: ShiftMap>(
         }
         for (i, pixel) in group.iter().enumerate() {
             let square;
-            (square, gradient[i]) = compare(pixel, &light[i], &fetched[i].value, display);
+            (square, gradient[i]) = compare(pixel, &light[i], &fetched[i].value, texels, brdf, display);
             sums.loss += f64::from(square);
             to_shift[i] = fetched[i].by_coordinate(&gradient[i], texels.size);
         }
@@ -75,22 +76,21 @@ pub(super) fn add_view<M: ShiftMap>(
     }
 }
 
-/// The weighted squared difference of one pixel, and half its gradient by albedo and normal.
+/// The weighted squared difference of one pixel, and half its gradient by each map.
 #[inline]
-fn compare(
+fn compare<B: Brdf, const N: usize>(
     pixel: &Sighted,
     light: &TangentLight,
-    [albedo, normal]: &Texel,
+    value: &Texel<N>,
+    texels: &Texels<N>,
+    brdf: &B,
     display: &DisplayTable,
-) -> (f32, Texel) {
-    let (k, per_normal) = cosine_with_derivative(light, normal.truncate());
+) -> (f32, Texel<N>) {
+    let values = texels.values(value);
+    let slopes: [(Vec4, Jacobian); N] = texels.kinds.map(|kind| brdf.jacobian(kind, light, &values));
     let [r, g, b] = pixel.target.map(|t| f32::from(t) * (1.0 / 65535.0));
-    let response = respond(display, *albedo * k.max(0.0), Vec4::new(r, g, b, 0.0));
+    let response = respond(display, slopes[0].0, Vec4::new(r, g, b, 0.0));
     let weight = f32::from(pixel.weight) * (1.0 / 65535.0);
     let to_light = response.residual * response.slope * weight;
-    let to_k = to_light.dot(*albedo);
-    // Turned away from the light: only asked to turn back, see `normal.rs`.
-    let to_color = if k > 0.0 { to_light * k } else { Vec4::ZERO };
-    let to_normal = if k > 0.0 || to_k < 0.0 { (per_normal * to_k).extend(0.0) } else { Vec4::ZERO };
-    (response.residual.length_squared() * weight, [to_color, to_normal])
+    (response.residual.length_squared() * weight, slopes.map(|(_, slope)| slope.pull(to_light)))
 }

@@ -4,11 +4,11 @@
 pub mod options;
 
 use crate::error::BakeError;
-use crate::message::{Message, Stage, Watcher};
 use crate::studio::Studio;
 use options::EvaluateOptions;
 use parbake_metric::Rgb;
 use parbake_model::Model;
+use parbake_progress::{Message, Stage, Watcher};
 use parbake_render::camera::fibonacci_sphere;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -99,7 +99,7 @@ pub fn evaluate_before(
 }
 
 /// All figures of one pair of pictures of equal size.
-pub(crate) fn compare(high: &Rgb, low: &Rgb, with_flip: bool) -> ViewFigures {
+pub fn compare(high: &Rgb, low: &Rgb, with_flip: bool) -> ViewFigures {
     let error = parbake_metric::mean_squared_error(high, low).unwrap_or(f64::NAN);
     ViewFigures {
         psnr: parbake_metric::psnr_from_mse(error),
@@ -108,7 +108,8 @@ pub(crate) fn compare(high: &Rgb, low: &Rgb, with_flip: bool) -> ViewFigures {
     }
 }
 
-pub(crate) fn mean(views: &[ViewFigures]) -> ViewFigures {
+/// Averages over views; a figure that a view lacks is left out.
+pub fn mean(views: &[ViewFigures]) -> ViewFigures {
     let count = views.len().max(1) as f64;
     let optional = |of: fn(&ViewFigures) -> Option<f64>| {
         let all: Option<Vec<f64>> = views.iter().map(of).collect();

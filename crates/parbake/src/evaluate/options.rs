@@ -89,7 +89,11 @@ impl EvaluateOptions {
         self.checked_background().map(|_| ())
     }
 
-    pub(crate) fn checked_background(&self) -> Result<[f32; 3], BakeError> {
+    /// Checks every range; gives the background in linear light.
+    ///
+    /// # Errors
+    /// An option out of range.
+    pub fn checked_background(&self) -> Result<[f32; 3], BakeError> {
         let fail = |option, value: String, range: &str| {
             Err(BakeError::Option { option, value, range: range.into() })
         };
@@ -122,7 +126,8 @@ impl EvaluateOptions {
         }
     }
 
-    pub(crate) fn projection(&self) -> Projection {
+    /// How the views project.
+    pub fn projection(&self) -> Projection {
         match self.ortho {
             Some(half_width) => Projection::Orthographic(half_width),
             None => Projection::Perspective((self.fov.to_radians() * 0.5).tan()),

@@ -16,7 +16,7 @@
 use super::heights::Heights;
 use super::march::March;
 use super::shift_map::{ShiftMap, Vantage};
-use crate::texture::Level;
+use parbake_image::FloatImage;
 use parbake_model::Wrap;
 use parbake_model::glam::{Vec2, Vec4};
 
@@ -56,7 +56,7 @@ impl HeightParallax {
     /// march lies half-way down; a height of 1 spans `scale` texture widths.
     pub fn flat(variant: Variant, size: usize, scale: f32) -> Self {
         let start = if variant.marches() { MARCH_START } else { 0.0 };
-        let level = Level { width: size, height: size, texels: vec![[start]; size * size] };
+        let level = FloatImage { width: size, height: size, texels: vec![[start]; size * size] };
         Self { variant, heights: Heights { level, wrap: [Wrap::Clamp; 2] }, scale, limit: 0.25 }
     }
 
@@ -103,7 +103,10 @@ impl ShiftMap for HeightParallax {
 
     fn zeros_like(&self) -> Self {
         let Heights { level, wrap } = &self.heights;
-        Self { heights: Heights { level: Level::zeros(level.width, level.height), wrap: *wrap }, ..*self }
+        Self {
+            heights: Heights { level: FloatImage::zeros(level.width, level.height), wrap: *wrap },
+            ..*self
+        }
     }
 
     fn parameters(&self) -> Vec<Vec4> {
@@ -134,7 +137,7 @@ mod tests {
     fn map(variant: Variant) -> HeightParallax {
         let texels = (0..6 * 5).map(|i| [0.5 + 0.3 * noise(7 * i + 2)]).collect();
         let mut map = HeightParallax::flat(variant, 1, 0.2);
-        map.heights.level = Level { width: 6, height: 5, texels };
+        map.heights.level = FloatImage { width: 6, height: 5, texels };
         map
     }
 

@@ -1,6 +1,7 @@
 //! A map of heights below the surface, as a single step or a march fetches it.
 
-use crate::texture::{Level, Taps, taps};
+use parbake_image::FloatImage;
+use parbake_image::pyramid::{Taps, taps};
 use parbake_model::Wrap;
 use parbake_model::glam::Vec2;
 
@@ -8,7 +9,7 @@ use parbake_model::glam::Vec2;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heights {
     /// Heights below the surface in units of a scale, 0 … 1.
-    pub level: Level<1>,
+    pub level: FloatImage<[f32; 1]>,
     /// Wrap modes along u and v.
     pub wrap: [Wrap; 2],
 }

@@ -14,7 +14,7 @@
 //! differentiated, and so are the places where they were fetched.
 
 use super::heights::Heights;
-use crate::texture::Level;
+use parbake_image::FloatImage;
 use parbake_model::glam::Vec2;
 
 /// Layers that marches go through, as in the paper.
@@ -70,7 +70,7 @@ impl March {
     }
 
     /// Adds the gradients of the heights.
-    pub fn adjoint(&self, map: &Heights, to_shift: Vec2, into: &mut Level<1>) {
+    pub fn adjoint(&self, map: &Heights, to_shift: Vec2, into: &mut FloatImage<[f32; 1]>) {
         let mut n = self.last;
         let mut to_place = to_shift;
         if let Some((a, b)) = self.ends() {
@@ -96,7 +96,14 @@ impl March {
     }
 
     /// Takes the gradient of h(t_i) to the texels and to t_i.
-    fn fetched(&self, map: &Heights, i: usize, to_place: &mut Vec2, to_height: f32, into: &mut Level<1>) {
+    fn fetched(
+        &self,
+        map: &Heights,
+        i: usize,
+        to_place: &mut Vec2,
+        to_height: f32,
+        into: &mut FloatImage<[f32; 1]>,
+    ) {
         let at = map.taps(self.places[i]);
         into.scatter(&at, &[to_height]);
         *to_place += map.level.uv_adjoint(&at, &[to_height]);

@@ -13,7 +13,7 @@ use crate::paper;
 use crate::results::Results;
 use crate::scope::Scope;
 use parbake::BakeOptions;
-use parbake_page::charts::{Bar, BarChart, BarGroup, LineChart, Series};
+use parbake_report::page::charts::{Bar, BarChart, BarGroup, LineChart, Series};
 
 /// How to read Figure 16.
 pub const LEAD_PARTS: &str = "LOD-3, before black: decibels over the fit of textures alone. SH without vertices has no \

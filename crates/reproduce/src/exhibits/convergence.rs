@@ -6,7 +6,7 @@ use crate::experiment::{Experiment, stem};
 use crate::outcome::{Outcome, Point};
 use crate::results::Results;
 use crate::scope::Scope;
-use parbake_page::charts::{LineChart, Series};
+use parbake_report::page::charts::{LineChart, Series};
 
 /// How to read it.
 pub const LEAD: &str = "The paper's method on pictures at 64²: textures alone, then textures and coordinates in turns, \

@@ -14,8 +14,8 @@ use crate::scope::Scope;
 use crate::table::{Cell, Table};
 use parbake::{BakeOptions, ImageOptions, Limits, PictureUv, UvMode, read_image, read_model};
 use parbake_model::Model;
-use parbake_page::text::{decimal, escape};
-use parbake_page::{amplified_difference, embed, embed_rgb, uv_layout};
+use parbake_report::page::text::{decimal, escape};
+use parbake_report::page::{amplified_difference, embed, embed_rgb, uv_layout};
 use std::path::Path;
 
 /// How to read Figure 10.

@@ -10,7 +10,8 @@ use crate::paper;
 use crate::results::Results;
 use crate::scope::Scope;
 use crate::table::{Cell, Table};
-use parbake::{BakeOptions, Convention, ShapeMode, VariantFigures, VariantsOptions};
+use crate::variants::{VariantFigures, VariantsOptions};
+use parbake::{BakeOptions, Convention, ShapeMode};
 
 /// How to read it.
 pub const LEAD: &str = "LOD-3, before black. Ours in the first table are bakes: what is named moves, all else stays. \

@@ -10,8 +10,8 @@ use parbake::{EvaluateOptions, Limits, Studio, read_model};
 use parbake_metric::Rgb;
 use parbake_model::Model;
 use parbake_model::glam::Vec3;
-use parbake_page::embed_rgb;
-use parbake_page::text::{decimal, escape};
+use parbake_report::page::embed_rgb;
+use parbake_report::page::text::{decimal, escape};
 use std::fmt::Write;
 use std::path::Path;
 

@@ -11,7 +11,7 @@ use crate::paper;
 use crate::results::Results;
 use crate::scope::Scope;
 use parbake::UvMode;
-use parbake_page::charts::{Violin, ViolinChart, ViolinGroup};
+use parbake_report::page::charts::{Violin, ViolinChart, ViolinGroup};
 
 /// How to read them.
 pub const LEAD: &str = "A dot is a model, a violin the spread of all, its mark the median: decibels over the fit of \

@@ -8,9 +8,10 @@ use crate::perform::variant_file;
 use crate::results::Results;
 use crate::scope::Scope;
 use crate::table::{Cell, Table};
-use parbake::{Limits, VariantsOptions, read_image};
-use parbake_page::embed;
-use parbake_page::text::{decimal, escape};
+use crate::variants::VariantsOptions;
+use parbake::{Limits, read_image};
+use parbake_report::page::embed;
+use parbake_report::page::text::{decimal, escape};
 
 /// How to read Figure 12.
 pub const LEAD_MEASURED: &str = "The same wall; heights are its own depth, measured along the normals, and only \

@@ -11,13 +11,15 @@
 
 use super::texture_loss::TextureLoss;
 use super::{Guide, PaperOptions, PaperPoint};
-use crate::best_texture::{Mapped, Texture};
+use crate::best_texture::Mapped;
 use crate::contact::Contact;
 use crate::descent::Objective;
 use crate::distortion::Distortion;
 use crate::residual::{residual, residual_by_triangle};
 use crate::signal::Signal;
+use glam::Vec4;
 use glam::{DMat2, DVec2};
+use parbake_image::FloatImage;
 use std::borrow::Cow;
 
 /// What stays the same in all steps.
@@ -38,7 +40,7 @@ pub(super) struct StepEnergy<'a> {
     problem: &'a Problem<'a>,
     distortion: Distortion,
     /// The texture, and the samples with their weights in the energy.
-    image: Option<(&'a Texture, Cow<'a, Signal>, f64)>,
+    image: Option<(&'a FloatImage<Vec4>, Cow<'a, Signal>, f64)>,
 }
 
 impl<'a> Problem<'a> {
@@ -68,7 +70,7 @@ impl<'a> Problem<'a> {
     }
 
     /// L_diff; overwrites `errors` with eₜ of all triangles.
-    pub fn errors(&self, points: &[DVec2], texture: &Texture, errors: &mut [f64]) -> f64 {
+    pub fn errors(&self, points: &[DVec2], texture: &FloatImage<Vec4>, errors: &mut [f64]) -> f64 {
         let mapped = Mapped { points, ..self.mapped };
         let left = residual_by_triangle(&mapped, texture);
         for ((error, part), mean_over) in errors.iter_mut().zip(&left).zip(&self.triangle_mean_over) {
@@ -82,7 +84,7 @@ impl<'a> Problem<'a> {
         &self,
         iteration: usize,
         points: &[DVec2],
-        texture: &Texture,
+        texture: &FloatImage<Vec4>,
         errors: &mut [f64],
     ) -> PaperPoint {
         let loss = self.errors(points, texture, errors);
@@ -101,7 +103,12 @@ impl<'a> Problem<'a> {
     }
 
     /// The energy of a step from `points`, with the errors and the texture there.
-    pub fn energy(&'a self, points: &[DVec2], texture: &'a Texture, errors: &[f64]) -> StepEnergy<'a> {
+    pub fn energy(
+        &'a self,
+        points: &[DVec2],
+        texture: &'a FloatImage<Vec4>,
+        errors: &[f64],
+    ) -> StepEnergy<'a> {
         let PaperOptions { guide, content_weight, distortion_weight, scale, .. } = *self.options;
         let held = if guide == Guide::ImageLoss { 0.0 } else { content_weight };
         let distortion =

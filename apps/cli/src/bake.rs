@@ -1,0 +1,265 @@
+//! `parbake bake`.
+
+use crate::arguments::{BakeCommand, Talk};
+use crate::failure::{Ending, Failure};
+use crate::options_file::merged;
+use crate::progress::{Console, interrupted};
+use clap::ArgMatches;
+use parbake::{
+    BakeOptions, BakeReport, Baked, Limits, Loaded, Message, Model, Parallax, Stage, StageTime, Watcher,
+    bake, read_model, with_threads, write_file, write_glb, write_obj,
+};
+use parbake_report::html_report;
+use std::io::Write;
+use std::path::Path;
+
+/// Runs the command.
+pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure> {
+    let options = merged(&command.bake, given, command.options.as_deref())?;
+    options.check()?;
+    check_output(&command.output)?;
+    check_outputs(command)?;
+    check_maps(&command.output, &options)?;
+    let console = Console::for_bake(command.talk, options.time_budget);
+    with_threads(options.threads, || {
+        let pair = read_pair(&command.high, &command.low, &console)?;
+        let baked = bake_and_write(&pair, &options, &command.output, &console)?;
+        if let Some(path) = &command.json {
+            write_json(path, &baked.report)?;
+        }
+        if let Some(path) = &command.report {
+            write_report(path, &pair.high, &baked, &console)?;
+        }
+        console.finish();
+        tell(&console, command.talk, &baked.report, &command.output);
+        Ok(ending(&baked.report))
+    })?
+}
+
+/// Interrupted only if that cost anything: a report is finished all the same.
+pub fn ending(report: &BakeReport) -> Ending {
+    if interrupted() && report.stopped_early { Ending::Interrupted } else { Ending::Finished }
+}
+
+/// Refuses what cannot be written, before any work is done.
+pub fn check_output(path: &Path) -> Result<(), Failure> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+    if !matches!(extension.as_str(), "glb" | "obj") {
+        return Err(Failure::Usage(format!("{}: the output must end in .glb or .obj", path.display())));
+    }
+    check_place(path)
+}
+
+/// Refuses maps that the output's format has no place for.
+pub fn check_maps(output: &Path, options: &BakeOptions) -> Result<(), Failure> {
+    if options.parallax == Parallax::None || !is_obj(output) {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!(
+        "{}: an OBJ cannot hold a parallax map; write a .glb, or leave --parallax out",
+        output.display()
+    )))
+}
+
+fn is_obj(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"))
+}
+
+/// Refuses a file that has no folder to lie in, or would take a folder's place.
+pub fn check_place(path: &Path) -> Result<(), Failure> {
+    if path.is_dir() {
+        return Err(Failure::Usage(format!("{}: this is a folder; give it a file's name", path.display())));
+    }
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+    match folder {
+        Some(folder) if !folder.is_dir() => Err(Failure::Usage(format!(
+            "{}: there is no folder {}; make it first",
+            path.display(),
+            folder.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses to write over an input: artists keep their only copy in such files.
+pub fn check_not_input(output: &Path, inputs: &[&Path]) -> Result<(), Failure> {
+    let whole = |path: &Path| path.canonicalize().ok();
+    // An OBJ takes its material file with it.
+    let written = [output.to_path_buf(), output.with_extension("mtl")];
+    for input in inputs {
+        let read = [input.to_path_buf(), input.with_extension("mtl")];
+        let hit = written
+            .iter()
+            .any(|w| whole(w).is_some_and(|w| read.iter().any(|r| whole(r).as_ref() == Some(&w))));
+        if hit {
+            return Err(Failure::Usage(format!(
+                "{}: this would overwrite the input {}; choose another name",
+                output.display(),
+                input.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn check_outputs(command: &BakeCommand) -> Result<(), Failure> {
+    let inputs = [command.high.as_path(), command.low.as_path()];
+    check_not_input(&command.output, &inputs)?;
+    let json = command.json.as_deref().filter(|path| path.as_os_str() != "-");
+    let others: Vec<&Path> = json.into_iter().chain(command.report.as_deref()).collect();
+    for (index, path) in others.iter().enumerate() {
+        check_place(path)?;
+        check_not_input(path, &inputs)?;
+        if *path == command.output || others[..index].contains(path) {
+            return Err(Failure::Usage(format!("{}: two outputs have this name", path.display())));
+        }
+    }
+    Ok(())
+}
+
+/// Writes a model as its extension says.
+pub fn write_model(path: &Path, model: &Model) -> Result<u64, Failure> {
+    Ok(if is_obj(path) { write_obj(path, model) } else { write_glb(path, model) }?)
+}
+
+/// Reads one model and passes its warnings on.
+pub fn read(path: &Path, console: &Console) -> Result<Loaded, Failure> {
+    let loaded = read_model(path, &Limits::default())?;
+    for warning in &loaded.warnings {
+        console.message(Message::Warning(warning.clone()));
+    }
+    Ok(loaded)
+}
+
+/// Both models of a bake.
+pub struct Pair {
+    /// The detailed one.
+    pub high: Model,
+    /// The coarse one.
+    pub low: Model,
+    /// What their readers had to say.
+    pub warnings: Vec<String>,
+    /// Seconds that reading took; none for models that were not read.
+    pub seconds: Option<f64>,
+}
+
+/// Reads both models at once.
+pub fn read_pair(high: &Path, low: &Path, console: &Console) -> Result<Pair, Failure> {
+    console.message(Message::Progress { stage: Stage::Read, done: 0, total: 2 });
+    let begin = console.seconds();
+    let (high, low) = parbake::join(|| read(high, console), || read(low, console));
+    let (high, low) = (high?, low?);
+    let warnings = [high.warnings, low.warnings].concat();
+    Ok(Pair { high: high.model, low: low.model, warnings, seconds: Some(console.seconds() - begin) })
+}
+
+/// Bakes and writes the model; completes the report with what happened around it.
+pub fn bake_and_write(
+    pair: &Pair,
+    options: &BakeOptions,
+    output: &Path,
+    console: &Console,
+) -> Result<Baked, Failure> {
+    let mut baked = bake(&pair.high, &pair.low, options, console)?;
+    let begin = console.seconds();
+    write_model(output, &baked.model)?;
+    let report = &mut baked.report;
+    report.warnings.splice(0..0, pair.warnings.iter().cloned());
+    let reading = pair.seconds.map(|seconds| StageTime { stage: Stage::Read, seconds });
+    report.stages.splice(0..0, reading);
+    report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
+    for stage in &report.stages {
+        console.detail(&format!("{:24} {:7.3} s", stage.stage.label(), stage.seconds));
+    }
+    Ok(baked)
+}
+
+/// Renders and writes the HTML report.
+pub fn write_report(path: &Path, high: &Model, baked: &Baked, console: &Console) -> Result<(), Failure> {
+    let html = html_report(high, baked, console)?;
+    write_file(path, html.as_bytes())?;
+    Ok(())
+}
+
+/// Writes any report as JSON, to standard output for "-".
+pub fn write_json(path: &Path, report: &impl serde::Serialize) -> Result<(), Failure> {
+    let json =
+        serde_json::to_string_pretty(report).map_err(|e| Failure::Output(format!("no JSON report: {e}")))?;
+    if path.as_os_str() == "-" {
+        return print(&json);
+    }
+    Ok(write_file(path, json.as_bytes())?)
+}
+
+/// Prints to standard output; a reader that has seen enough is no failure.
+pub fn print(text: &str) -> Result<(), Failure> {
+    match writeln!(std::io::stdout().lock(), "{text}") {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::Output(format!("standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The last lines: what came of it.
+pub fn tell(console: &Console, talk: Talk, report: &BakeReport, output: &Path) {
+    let decibels = |mean_square: f64| -10.0 * mean_square.max(1e-10).log10();
+    let losses: Vec<f64> = report.losses.iter().map(|l| decibels(l.mean_square)).collect();
+    if let (Some(first), Some(last)) = (losses.first(), losses.last()) {
+        console.say(&format!(
+            "{}: {first:.2} dB projected, {last:.2} dB baked on the surface seen by {} training views; {:.1} s",
+            output.display(),
+            report.views,
+            console.seconds()
+        ));
+    }
+    if talk.verbose {
+        tell_of_shape(console, report);
+        let share = 100.0 * report.unseen_texels as f64 / report.covered_texels.max(1) as f64;
+        console.say(&format!(
+            "{} texels on the surface, {} ({share:.1} %) seen by no view; {} samples",
+            report.covered_texels, report.unseen_texels, report.samples
+        ));
+        for step in &report.losses {
+            console.say(&format!(
+                "  {:8.3} s  {:8}  {:.3} dB",
+                step.seconds,
+                step.moved,
+                decibels(step.mean_square)
+            ));
+        }
+        if let Some(bytes) = report.peak_memory {
+            console.say(&format!("peak memory {:.0} MB", bytes as f64 / 1e6));
+        }
+    }
+}
+
+/// What became of vertices and silhouettes.
+fn tell_of_shape(console: &Console, report: &BakeReport) {
+    if let Some(shape) = &report.shape {
+        let [mean, most] = shape.moved.map(|share| 100.0 * share);
+        console.say(&format!(
+            "vertices moved by {mean:.2} % of the model's length in the mean, {most:.2} % at most, in {} steps; \
+             outlines were {:.3} % apart and are {:.3} %",
+            shape.steps,
+            100.0 * shape.gap[0],
+            100.0 * shape.gap[1]
+        ));
+    }
+    if let Some(depth) = &report.depth {
+        if let Some([before, after]) = depth.misplaced.map(|shares| shares.map(|share| 100.0 * share)) {
+            console.say(&format!(
+                "cutout: {before:.1} % of the pixels near outlines were wrong, {after:.1} % are"
+            ));
+        }
+        let [before, after] = depth.strayed.map(|share| 100.0 * share);
+        let anew = match depth.begun_anew {
+            0 => "",
+            _ => ", begun anew for a finer texture, as all it had mended was a coarse one's blur",
+        };
+        console.say(&format!(
+            "parallax: {} steps{anew}; {before:.3} % of the pixels strayed into another chart, {after:.3} % do",
+            depth.steps
+        ));
+    }
+}

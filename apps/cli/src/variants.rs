@@ -1,0 +1,55 @@
+//! `parbake variants`.
+
+use crate::arguments::VariantsCommand;
+use crate::bake::{check_not_input, check_place, print, read_pair, write_json};
+use crate::failure::{Ending, Failure};
+use crate::progress::Console;
+use parbake::{with_threads, write_file};
+use parbake_reproduce::variants::{VariantsReport, compare_variants, variants_html};
+
+/// Runs the command.
+pub fn run(command: &VariantsCommand) -> Result<Ending, Failure> {
+    let options = &command.variants;
+    options.check()?;
+    let json = command.json.as_deref();
+    let (file, to_stdout) = match json {
+        Some(path) if path.as_os_str() == "-" => (None, true),
+        other => (other, false),
+    };
+    if file == Some(&command.output) {
+        return Err(Failure::Usage(format!("{}: two outputs have this name", command.output.display())));
+    }
+    for path in file.into_iter().chain([command.output.as_path()]) {
+        check_place(path)?;
+        check_not_input(path, &[&command.high, &command.low])?;
+    }
+    // Stopped, it shows the variants that it has.
+    let console = Console::for_bake(command.talk, None);
+    with_threads(options.threads, || {
+        let pair = read_pair(&command.high, &command.low, &console)?;
+        let compared = compare_variants(&pair.high, &pair.low, options, &console)?;
+        write_file(&command.output, variants_html(&pair.high, &compared)?.as_bytes())?;
+        if let Some(path) = json {
+            write_json(path, &compared.report)?;
+        }
+        console.finish();
+        if !to_stdout && !command.talk.quiet {
+            print(&table(&compared.report))?;
+        }
+        console.say(&format!("look at {}, {:.1} s", command.output.display(), console.seconds()));
+        Ok(if compared.report.stopped_early { Ending::Interrupted } else { Ending::Finished })
+    })?
+}
+
+fn table(report: &VariantsReport) -> String {
+    let mut text =
+        String::from("variant              PSNR dB   MS-SSIM   places   fetches     bytes   seconds");
+    for v in &report.variants {
+        let ms_ssim = v.ms_ssim.map_or("-".to_string(), |x| format!("{x:.4}"));
+        text += &format!(
+            "\n{:20} {:7.3}   {ms_ssim:>7}   {:6}   {:7}   {:7}   {:7.1}",
+            v.name, v.psnr, v.places, v.fetches, v.bytes, v.seconds
+        );
+    }
+    text
+}

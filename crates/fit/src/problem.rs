@@ -1,0 +1,105 @@
+//! What the samples of all views ask of the maps: the comparison of a sample's light with what the
+//! high-poly shows in its place.
+//!
+//! A sample shows `e = curve(gain · light)` with the light of a [`Brdf`] at the bilinear blend of four
+//! texels of each map. Clipping at 1: a texel that is too bright is pulled down although the clipped
+//! picture no longer moves with it; where both saturate nothing is asked.
+
+use crate::outliers::{Cauchy, Loss};
+use parbake_image::MapSet;
+use parbake_image::display_table::DisplayTable;
+use parbake_model::glam::Vec4;
+use parbake_render::shade::Brdf;
+use parbake_solve::grid::{block, weights};
+use parbake_views::chart_labels::Atlas;
+use parbake_views::samples::{Sample, SampleSet};
+use rayon::prelude::*;
+
+/// What all steps of a texture solve share.
+pub struct Problem<'a, B> {
+    /// The samples of the training views.
+    pub samples: &'a SampleSet,
+    /// Chart labels.
+    pub atlas: &'a Atlas,
+    /// Gain and curve of the comparison.
+    pub display: &'a DisplayTable,
+    /// How maps become light.
+    pub brdf: &'a B,
+    /// The robust loss.
+    pub outliers: Cauchy,
+}
+
+impl<B: Brdf> Problem<'_, B> {
+    /// Compares the light at a sample with what it wants: the answer, how much each channel of it
+    /// counts in a step of least squares, and its part of the loss.
+    #[inline]
+    pub fn respond(&self, light: Vec4, sample: &Sample) -> (Response, Vec4, Loss) {
+        let response = respond(self.display, light, sample.target());
+        let ((judged, weights), weight) = (self.outliers.judge(response.residual), sample.weight());
+        let loss = Loss {
+            minimised: f64::from(judged * weight),
+            square: f64::from(response.residual.length_squared() * weight),
+        };
+        (response, weights * weight, loss)
+    }
+
+    /// The loss of all samples, three channels each.
+    pub fn loss(&self, maps: &MapSet) -> Loss {
+        let size = self.samples.size;
+        let of_band = |band: &Vec<Sample>| -> Loss {
+            band.iter()
+                .map(|s| {
+                    let (texels, w) = footprint(s, size);
+                    let light = self.brdf.light(&s.light(), &maps.blend(texels, w));
+                    self.respond(light.extend(0.0), s).2
+                })
+                .sum()
+        };
+        let bands: Vec<Loss> = self.samples.bands.par_iter().map(of_band).collect();
+        bands.into_iter().sum()
+    }
+}
+
+/// Residual and slope of each channel's display value.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Response {
+    /// Shown minus wanted, both clipped at 1.
+    pub residual: Vec4,
+    /// Change of the shown value with linear light; 0 where nothing is asked.
+    pub slope: Vec4,
+}
+
+/// Below this much light the curve's slope is taken as here: the true one, up to
+/// 13 times the gain, would let a few dark samples outweigh all others.
+const DARK: f32 = 0.01;
+
+/// Compares what linear `light` shows with what was wanted.
+#[inline]
+pub(crate) fn respond(display: &DisplayTable, light: Vec4, target: Vec4) -> Response {
+    let mut out = Response::default();
+    for lane in 0..3 {
+        let (mut shown, slope) = display.encode_with_derivative(light[lane].max(DARK));
+        if light[lane] < DARK {
+            shown = display.encode_with_derivative(light[lane]).0;
+        }
+        if shown < 1.0 || target[lane] < 1.0 {
+            out.residual[lane] = shown.min(1.0) - target[lane];
+            out.slope[lane] = slope;
+        }
+    }
+    out
+}
+
+/// A sample's four texels and their bilinear weights.
+#[inline]
+pub fn footprint(sample: &Sample, size: usize) -> ([usize; 4], [f32; 4]) {
+    let (fx, fy) = sample.fractions();
+    (block(sample.texel as usize, size), weights(fx, fy))
+}
+
+/// The four places of a sample in a band's local rows (see [`parbake_solve::grid::gather`]).
+#[inline]
+pub fn local_places(texels: [usize; 4], first: usize, size: usize) -> [usize; 4] {
+    let (a, b) = (texels[0] - first, texels[1] - first);
+    [a, b, a + size, b + size]
+}

@@ -1,0 +1,261 @@
+//! One Gauss–Newton step of one map, all others held: the same for every kind of map.
+//!
+//! With J the BRDF's Jacobian of a sample's light by the map ([`Brdf::jacobian`]), s the slope of the
+//! display curve and ω the weights of the robust loss, a sample adds the block `Jᵀ s ω s J` to each
+//! pair of its four texels and `−Jᵀ s ω r` to their right-hand sides (r: shown minus wanted). The
+//! matrix has nine points a texel (`parbake_solve::stencil`) and is solved by conjugate gradients.
+//!
+//! What differs between kinds is their domain: values in a box go through an active set
+//! (`parbake_solve::boxed`); unit normals take a damped step (Levenberg–Marquardt) of limited length
+//! and are put back onto their hemisphere.
+
+use crate::membrane::{Membrane, add_membrane, mean_pull};
+use crate::outliers::Loss;
+use crate::problem::{Problem, Response, footprint, local_places};
+use parbake_image::{Domain, FloatImage, MapKind, MapSet};
+use parbake_model::glam::Vec4;
+use parbake_render::shade::{Brdf, Jacobian};
+use parbake_solve::boxed::solve_in_box;
+use parbake_solve::conjugate_gradient::{Effort, Outcome, solve};
+use parbake_solve::grid::gather;
+use parbake_solve::stencil::{Block, Diagonal, Row, Stencil, Symmetric, add_diagonal, add_symmetric};
+use rayon::prelude::*;
+
+/// The longest change of a normal in one step: beyond it the linear model of the
+/// cosine says little.
+const LONGEST: f32 = 0.3;
+
+/// How a step is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepOptions {
+    /// What holds texels that few views see.
+    pub membrane: Membrane,
+    /// Limits of the linear solver.
+    pub effort: Effort,
+    /// Damping of normals, a share of the samples' mean pull on a texel.
+    pub damping: f32,
+}
+
+/// Room for the matrices of steps, from one to the next.
+#[derive(Default)]
+pub struct Workspace {
+    diagonal: Vec<Row<Diagonal>>,
+    symmetric: Vec<Row<Symmetric>>,
+}
+
+/// One step of the map of this kind, which must be in `maps`. `start` is what unseen texels are held
+/// to. Returns the loss before the step and what the linear solver did.
+pub fn fit_step<B: Brdf>(
+    kind: MapKind,
+    problem: &Problem<B>,
+    options: &StepOptions,
+    maps: &mut MapSet,
+    start: &FloatImage<Vec4>,
+    workspace: &mut Workspace,
+) -> (Loss, Outcome) {
+    let size = problem.samples.size;
+    match kind.spec().domain {
+        Domain::Box => {
+            let rows = &mut workspace.diagonal;
+            let loss = assemble(kind, problem, maps, rows);
+            let Some(map) = maps.get_mut(kind) else { return (loss, Outcome::default()) };
+            add_membrane(rows, problem.atlas, map, start, &options.membrane);
+            let matrix = Stencil { size, rows: std::mem::take(rows) };
+            let outcome = solve_in_box(&matrix, &mut map.texels, &options.effort);
+            *rows = matrix.rows;
+            (loss, outcome)
+        }
+        Domain::Hemisphere => {
+            let rows = &mut workspace.symmetric;
+            let loss = assemble(kind, problem, maps, rows);
+            let Some(map) = maps.get_mut(kind) else { return (loss, Outcome::default()) };
+            let extra = options.damping * mean_pull(rows);
+            add_membrane(rows, problem.atlas, map, start, &options.membrane);
+            rows.par_iter_mut()
+                .filter(|r| r.centre.trace() > 0.0)
+                .for_each(|r| r.centre.add(&Symmetric::identity(extra)));
+            let matrix = Stencil { size, rows: std::mem::take(rows) };
+            let (step, outcome) = solve(&matrix, &matrix.right(), None, &options.effort);
+            map.texels.par_iter_mut().zip(&step).for_each(|(m, step)| {
+                let limit = (LONGEST / step.length().max(1e-9)).min(1.0);
+                *m = Domain::Hemisphere.clamp(*m + *step * limit);
+            });
+            *rows = matrix.rows;
+            (loss, outcome)
+        }
+    }
+}
+
+/// The normal equations of one map over all samples; returns the loss.
+fn assemble<B: Brdf, S: SampleBlock>(
+    kind: MapKind,
+    problem: &Problem<B>,
+    maps: &MapSet,
+    rows: &mut Vec<Row<S>>,
+) -> Loss {
+    let size = problem.samples.size;
+    let losses = gather(
+        size,
+        rows,
+        |band, first, local| {
+            let mut loss = Loss::default();
+            for s in &problem.samples.bands[band] {
+                let (texels, w) = footprint(s, size);
+                let (light, jacobian) = problem.brdf.jacobian(kind, &s.light(), &maps.blend(texels, w));
+                let (response, weights, share) = problem.respond(light, s);
+                loss += share;
+                if let Some((block, right)) = S::of(&jacobian, &response, weights) {
+                    S::add_sample(local, local_places(texels, first, size), w, &block, right);
+                }
+            }
+            loss
+        },
+        Row::add,
+    );
+    losses.into_iter().sum()
+}
+
+/// A matrix block that samples add to.
+trait SampleBlock: Block {
+    /// `Jᵀ s ω s J` and `−Jᵀ s ω r`; none where nothing is asked.
+    fn of(jacobian: &Jacobian, response: &Response, weights: Vec4) -> Option<(Self, Vec4)>;
+
+    /// Adds them, times the products of the bilinear weights, at the four places.
+    fn add_sample(rows: &mut [Row<Self>], places: [usize; 4], w: [f32; 4], block: &Self, right: Vec4);
+}
+
+impl SampleBlock for Diagonal {
+    #[inline(always)]
+    fn of(jacobian: &Jacobian, response: &Response, weights: Vec4) -> Option<(Self, Vec4)> {
+        match *jacobian {
+            Jacobian::Diagonal(slopes) => {
+                let j = response.slope * slopes;
+                Some((Self(j * j * weights), j * response.residual * -weights))
+            }
+            // Couplings between channels are left to the next steps.
+            Jacobian::RankOne { value, .. } => {
+                let (curvature, pull) = along(jacobian, response, weights)?;
+                Some((Self((value * value * curvature).extend(0.0)), (value * pull).extend(0.0)))
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn add_sample(rows: &mut [Row<Self>], places: [usize; 4], w: [f32; 4], block: &Self, right: Vec4) {
+        add_diagonal(rows, places, w, block.0, right);
+    }
+}
+
+impl SampleBlock for Symmetric {
+    #[inline(always)]
+    fn of(jacobian: &Jacobian, response: &Response, weights: Vec4) -> Option<(Self, Vec4)> {
+        match *jacobian {
+            Jacobian::Diagonal(slopes) => {
+                let j = response.slope * slopes;
+                let [xx, yy, zz, _] = (j * j * weights).to_array();
+                Some((Self([xx, yy, zz, 0.0, 0.0, 0.0]), j * response.residual * -weights))
+            }
+            Jacobian::RankOne { value, .. } => {
+                let (curvature, pull) = along(jacobian, response, weights)?;
+                Some((Self::outer(value, curvature), (value * pull).extend(0.0)))
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn add_sample(rows: &mut [Row<Self>], places: [usize; 4], w: [f32; 4], block: &Self, right: Vec4) {
+        add_symmetric(rows, places, w, block, right);
+    }
+}
+
+/// Curvature and pull of the loss along the one number that light depends on.
+#[inline(always)]
+fn along(jacobian: &Jacobian, response: &Response, weights: Vec4) -> Option<(f32, f32)> {
+    let Jacobian::RankOne { light, only_brighter, .. } = *jacobian else { return None };
+    let j = response.slope * light;
+    let curvature = j.dot(j * weights);
+    let pull = -j.dot(response.residual * weights);
+    // Turned away from the light: only asked to turn back where the reference is brighter.
+    (!only_brighter || pull > 0.0).then_some((curvature, pull))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::outliers::Cauchy;
+    use parbake_image::display::{Curve, Display};
+    use parbake_image::display_table::DisplayTable;
+    use parbake_render::shade::Lambert;
+    use parbake_views::chart_labels::Atlas;
+    use parbake_views::samples::{Sample, SampleSet};
+
+    const SIZE: usize = 8;
+    const OPTIONS: StepOptions = StepOptions {
+        membrane: Membrane { stiffness: 1e-6, tether: 1e-6 },
+        effort: Effort { steps: 50, tolerance: 1e-6 },
+        damping: 0.1,
+    };
+
+    fn atlas() -> Atlas {
+        Atlas { size: SIZE, label: vec![0; SIZE * SIZE], covered: vec![true; SIZE * SIZE] }
+    }
+
+    fn samples(first_band: Vec<Sample>) -> SampleSet {
+        SampleSet { size: SIZE, bands: vec![first_band] }
+    }
+
+    fn linear() -> DisplayTable {
+        DisplayTable::new(&Display { gain: 1.0, curve: Curve::Linear })
+    }
+
+    /// Protects clean surfaces: where one view of ten shows something else, squares settle on the
+    /// mean, and Cauchy's loss on what nine of them show.
+    #[test]
+    fn a_stray_pixel_hardly_counts() {
+        let mut band = vec![Sample::facing(0, 0.8); 9];
+        band.push(Sample::facing(0, 0.0));
+        let (samples, atlas, display) = (samples(band), atlas(), linear());
+        let start = FloatImage::solid(SIZE, Vec4::splat(0.5));
+        for (scale, wanted) in [(f32::INFINITY, 0.72), (0.1, 0.8)] {
+            let problem = Problem {
+                samples: &samples,
+                atlas: &atlas,
+                display: &display,
+                brdf: &Lambert,
+                outliers: Cauchy::new(scale),
+            };
+            let mut maps = MapSet::of(start.clone(), FloatImage::solid(SIZE, Vec4::Z));
+            let mut workspace = Workspace::default();
+            let before = problem.loss(&maps);
+            for _ in 0..20 {
+                fit_step(MapKind::BaseColor, &problem, &OPTIONS, &mut maps, &start, &mut workspace);
+            }
+            let found = maps.get(MapKind::BaseColor).expect("it was put there").texels[0].x;
+            assert!((found - wanted).abs() < 3e-3, "{scale}: {found}");
+            assert!(problem.loss(&maps).minimised < before.minimised);
+        }
+    }
+
+    /// Protects the normal's step: a grey surface that shows half of its light is asked to tilt until
+    /// the cosine at the headlight is a half.
+    #[test]
+    fn a_normal_tilts_until_the_cosine_fits() {
+        let (samples, atlas, display) = (samples(vec![Sample::facing(0, 0.5); 4]), atlas(), linear());
+        let problem = Problem {
+            samples: &samples,
+            atlas: &atlas,
+            display: &display,
+            brdf: &Lambert,
+            outliers: Cauchy::new(f32::INFINITY),
+        };
+        let tilted = Domain::Hemisphere.clamp(Vec4::new(0.3, 0.0, 1.0, 0.0));
+        let start = FloatImage::solid(SIZE, tilted);
+        let mut maps = MapSet::of(FloatImage::solid(SIZE, Vec4::ONE), start.clone());
+        let mut workspace = Workspace::default();
+        for _ in 0..40 {
+            fit_step(MapKind::Normal, &problem, &OPTIONS, &mut maps, &start, &mut workspace);
+        }
+        let found = maps.get(MapKind::Normal).expect("it was put there").texels[0];
+        assert!((found.z - 0.5).abs() < 0.01 && (found.length() - 1.0).abs() < 1e-5, "{found}");
+    }
+}

@@ -1,0 +1,125 @@
+//! What a user can ask of `parbake image`.
+
+use crate::error::BakeError;
+use crate::options::{Method, check_content_aware};
+use parbake_uv::paper::PaperOptions;
+use parbake_uv::picture::PictureOptions;
+use serde::{Deserialize, Serialize};
+
+/// What becomes of a plane's texture coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum PictureUv {
+    /// They stay: an ordinary, smaller texture, on two triangles unless a grid was asked for.
+    Keep,
+    /// They move to where they show most.
+    #[default]
+    Optimize,
+}
+
+/// Options of [`crate::bake_image`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ImageOptions {
+    /// Side of the square texture in texels, 16 to 4096
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 256))]
+    pub texture_size: usize,
+
+    /// Cells along a side of the plane, 4 to 400: more follow the picture better and make the
+    /// model larger, by some 18 bytes a cell (up to 40 where no number from 2 to 16 divides them) [default: 200, 240 from 128
+    /// texels on, 400 from 256 on, with --method paper 50 as there, 1 where coordinates stay]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
+    pub grid: Option<usize>,
+
+    /// What becomes of texture coordinates
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = PictureUv::Optimize))]
+    pub uv: PictureUv,
+
+    /// How they are moved; the texture itself is the least-squares one with either
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Method::Fit))]
+    pub method: Method,
+
+    /// Leave out the paper's content-aware term; only with --method paper
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub no_content_aware: bool,
+
+    /// Steps that texture coordinates take at most on each of the grids, coarse to fine, or with
+    /// --method paper on the one it has, 0 to 10000 [default: 80, 60 from 128 texels on, 40
+    /// from 256 on, whose steps take longer, with --method paper 800]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
+    pub steps: Option<usize>,
+
+    /// Threads to work with, 0 to 256, 0 for one a core
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 0))]
+    pub threads: usize,
+}
+
+impl Default for ImageOptions {
+    fn default() -> Self {
+        Self {
+            texture_size: 256,
+            grid: None,
+            uv: PictureUv::Optimize,
+            method: Method::Fit,
+            no_content_aware: false,
+            steps: None,
+            threads: 0,
+        }
+    }
+}
+
+impl ImageOptions {
+    /// Cells as asked, or those of what is done.
+    pub fn settled_grid(&self) -> usize {
+        self.grid.unwrap_or(match (self.uv, self.method) {
+            (PictureUv::Optimize, Method::Fit) => match self.texture_size {
+                0..128 => 200,
+                128..256 => 240,
+                _ => 400,
+            },
+            (PictureUv::Optimize, Method::Paper) => 50,
+            // A plane that nothing bends.
+            _ => 1,
+        })
+    }
+
+    /// Steps as asked, or those of the method.
+    pub fn settled_steps(&self) -> usize {
+        self.steps.unwrap_or(match self.method {
+            Method::Fit => match self.texture_size {
+                0..128 => 80,
+                128..256 => 60,
+                _ => 40,
+            },
+            Method::Paper => PaperOptions::default().rounds,
+        })
+    }
+
+    /// What is asked of the picture's texture coordinates.
+    pub(crate) fn for_picture(&self) -> PictureOptions {
+        PictureOptions {
+            texture_size: self.texture_size,
+            grid: self.settled_grid(),
+            steps: self.settled_steps(),
+            guide: Method::guide(self.no_content_aware),
+        }
+    }
+
+    /// Checks every range; the error names the option and what it may be.
+    pub fn check(&self) -> Result<(), BakeError> {
+        let within = |option: &'static str, value: usize, low: usize, high: usize| {
+            if (low..=high).contains(&value) {
+                Ok(())
+            } else {
+                Err(BakeError::Option { option, value: value.to_string(), range: format!("{low} to {high}") })
+            }
+        };
+        within("texture-size", self.texture_size, 16, 4096)?;
+        within("grid", self.grid.unwrap_or(4), 4, 400)?;
+        within("steps", self.steps.unwrap_or(0), 0, 10_000)?;
+        within("threads", self.threads, 0, crate::threads::MOST_THREADS)?;
+        check_content_aware(self.method, self.no_content_aware)
+    }
+}

@@ -1,0 +1,72 @@
+//! Parallax maps and cutouts through whole bakes of the built-in pair.
+
+use parbake::{BakeOptions, Parallax, Preset};
+use parbake::{Baked, EvaluateOptions, bake, demo_pair, evaluate, with_threads};
+use parbake_model::Model;
+
+fn quick(parallax: Parallax) -> BakeOptions {
+    BakeOptions {
+        texture_size: 32,
+        preset: Preset::Fast,
+        parallax,
+        parallax_size: 16,
+        cutout_size: 32,
+        views: Some(48),
+        view_size: Some(64),
+        rounds: Some(1),
+        ..BakeOptions::default()
+    }
+}
+
+/// With enough to see that what maps gain does not hang on the seed: 0.3 dB and more.
+fn baked(high: &Model, low: &Model, parallax: Parallax, threads: usize) -> Baked {
+    let options = BakeOptions { texture_size: 64, views: Some(96), ..quick(parallax) };
+    with_threads(threads, || bake(high, low, &options, &())).unwrap().unwrap()
+}
+
+/// Protects what maps are for: on any background the model looks better with them; and
+/// the bytes, which must not depend on the number of threads.
+#[test]
+fn maps_improve_the_look_whatever_the_number_of_threads() {
+    let (high, low) = demo_pair();
+    let with = baked(&high, &low, Parallax::Sh, 1);
+    assert!(with.model == baked(&high, &low, Parallax::Sh, 3).model, "threads change the result");
+    let without = baked(&high, &low, Parallax::None, 2);
+    assert!(without.model.materials[0].parallax.is_none());
+    for background in ["white", "0.9,0.1,0.2"] {
+        let options = EvaluateOptions {
+            views: 6,
+            resolution: 96,
+            background: background.into(),
+            no_flip: true,
+            decode_srgb: true,
+            gain: 1.0,
+            ..EvaluateOptions::default()
+        };
+        let psnr = |low: &Model| evaluate(&high, low, &options, &()).unwrap().mean.psnr;
+        let (better, worse) = (psnr(&with.model), psnr(&without.model));
+        assert!(better > worse, "{background}: {better} {worse}");
+    }
+    let report = with.report.depth.unwrap();
+    let [before, after] = report.misplaced.unwrap();
+    assert!(after < before && report.strayed[1] <= report.strayed[0]);
+    assert!(report.mean_square.iter().all(|[first, last]| last < first));
+    let [exact, rounded] = report.rounding;
+    assert!(exact > 0.0 && rounded < 1.1 * exact, "8 bits do: {exact} {rounded}");
+}
+
+/// Protects textures from maps that only mend a coarse one's blur: where high-poly and low-poly
+/// are the same there is no depth to show, and the finer pass begins anew; where they are not,
+/// what the coarse pass found is kept.
+#[test]
+fn a_map_without_depth_to_show_begins_anew() {
+    let (high, low) = demo_pair();
+    // More than the first pass's 128 texels, so that there is a finer texture.
+    let options = BakeOptions { texture_size: 256, ..quick(Parallax::Sh) };
+    let begun_anew = |high: &Model, low: &Model| {
+        let baked = bake(high, low, &options, &()).unwrap();
+        baked.report.depth.unwrap().begun_anew
+    };
+    assert_eq!(begun_anew(&high, &low), 0);
+    assert_eq!(begun_anew(&low, &low), 1);
+}

@@ -1,0 +1,47 @@
+//! Messages of a run for whoever draws them, and the question whether to stop. The library
+//! never prints.
+
+use crate::stage::Stage;
+
+/// One message.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Message {
+    /// `done` of `total` steps of a stage are finished.
+    Progress {
+        /// Which stage.
+        stage: Stage,
+        /// Steps finished.
+        done: usize,
+        /// Steps in all.
+        total: usize,
+    },
+    /// Something that the user should know and that stops nothing.
+    Warning(String),
+}
+
+/// Receives messages and may stop a run; called from several threads at once.
+pub trait Watcher: Sync {
+    /// Takes a message.
+    fn message(&self, message: Message) {
+        let _ = message;
+    }
+
+    /// Reports that `done` of `total` steps of a stage are finished.
+    fn progress(&self, stage: Stage, done: usize, total: usize) {
+        self.message(Message::Progress { stage, done, total });
+    }
+
+    /// True once the run shall end with the best state so far.
+    fn stopped(&self) -> bool {
+        false
+    }
+
+    /// Seconds until [`Watcher::stopped`] will be true, where that is known: long
+    /// stages then leave time to those after them.
+    fn seconds_left(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// Nobody watches.
+impl Watcher for () {}

@@ -1,0 +1,51 @@
+//! A run's or a stage's share of the time: passes messages on to the caller's watcher, and tells the
+//! stage to stop when the watcher says so or when its time is spent.
+
+use crate::message::{Message, Watcher};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Passes the stages' messages on, and their question whether to stop.
+pub struct ProgressScope<'a, W> {
+    watcher: &'a W,
+    /// When a budget is spent, besides what the watcher says.
+    until: Option<Instant>,
+    /// Set once a stage was told to stop; one for all stages.
+    told: Arc<AtomicBool>,
+}
+
+impl<'a, W: Watcher> ProgressScope<'a, W> {
+    /// For a run that may take so many seconds from `begin` on.
+    pub fn new(watcher: &'a W, begin: Instant, budget: Option<f64>) -> Self {
+        let until = budget.map(|seconds| begin + Duration::from_secs_f64(seconds.min(1e9)));
+        Self { watcher, until, told: Arc::default() }
+    }
+
+    /// Whether a stage was told to stop.
+    pub fn stopped_a_stage(&self) -> bool {
+        self.told.load(Ordering::Relaxed)
+    }
+
+    /// The same for a stage that may take this share of the time that is left.
+    pub fn share(&self, share: f64) -> Self {
+        let own = self.until.map(|until| until.saturating_duration_since(Instant::now()).as_secs_f64());
+        let left = own.into_iter().chain(self.watcher.seconds_left()).reduce(f64::min);
+        let until = left.map(|left| Instant::now() + Duration::from_secs_f64((left * share).clamp(0.0, 1e9)));
+        Self { watcher: self.watcher, until, told: self.told.clone() }
+    }
+}
+
+impl<W: Watcher> Watcher for ProgressScope<'_, W> {
+    fn message(&self, message: Message) {
+        self.watcher.message(message);
+    }
+
+    fn stopped(&self) -> bool {
+        let stop = self.watcher.stopped() || self.until.is_some_and(|until| Instant::now() >= until);
+        if stop {
+            self.told.store(true, Ordering::Relaxed);
+        }
+        stop
+    }
+}

@@ -1,0 +1,56 @@
+//! The HTML report of a bake: one page that needs no other file and no network.
+//!
+//! ```text
+//! models ─ scenes ─┬─ figures ── tables, view_chart ─┐
+//!                  └─ pictures ─ gallery ────────────┤
+//! report ─ loss_curve, tables, settings ─────────────┼─ page
+//! textures ─ uv_layout, textures, uv_check, uv_moves ─┘
+//! ```
+//!
+//! `variants.rs` is a page of its own, about a comparison of parallax variants.
+//!
+//! Contract: the page does not depend on the number of threads; all that comes from
+//! models and options is escaped; no "NaN" stands on it. `Watcher::stopped` is not
+//! asked: whoever stopped a bake wants to see what came of it, the more so, and
+//! drawing takes a bounded time, which depends on the models' sizes only.
+
+mod figures;
+mod gallery;
+mod loss_curve;
+mod page;
+mod pictures;
+mod scenes;
+mod settings;
+mod tables;
+#[cfg(test)]
+mod tests;
+mod textures;
+mod uv_check;
+mod uv_moves;
+mod view_chart;
+
+pub use settings::flags;
+
+use parbake::BakeError;
+use parbake::Baked;
+use parbake::{Message, Stage, Watcher};
+use parbake_model::Model;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Draws a self-contained page about a bake of `high`: pictures of four sides,
+/// figures before and after, textures, times and settings.
+///
+/// Runs on rayon's current thread pool, for some seconds; the watcher is told of
+/// progress as [`Stage::Evaluate`] and cannot stop it.
+pub fn html_report(high: &Model, baked: &Baked, watcher: &impl Watcher) -> Result<String, BakeError> {
+    let (done, total) = (AtomicUsize::new(0), figures::VIEWS + pictures::SIDES);
+    let tick = || {
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        watcher.message(Message::Progress { stage: Stage::Evaluate, done, total });
+    };
+    let scenes = scenes::Scenes::new(high, baked)?;
+    let evaluated = figures::evaluated(&scenes, baked.report.options.convention, tick);
+    let sides = pictures::sides(&scenes, tick);
+    drop(scenes);
+    page::page(high, baked, &evaluated, &sides)
+}

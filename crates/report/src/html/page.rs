@@ -1,0 +1,173 @@
+//! The page: its head, what is most important, its sections in order.
+
+use super::figures::{BACKGROUNDS, Evaluated};
+use super::gallery::gallery;
+use super::loss_curve::loss_curve;
+use super::pictures::{AMPLIFIED, Side};
+use super::settings::settings;
+use super::tables;
+use super::textures::textures;
+use super::uv_check::uv_check;
+use super::uv_moves::uv_moves;
+use super::view_chart::view_chart;
+use crate::page::text::{bytes, change, count, decimal, duration, escape, verdict};
+use crate::page::{document, section};
+use parbake::BakeError;
+use parbake::BakeReport;
+use parbake::Baked;
+use parbake_model::Model;
+use std::fmt::Write;
+
+/// Puts everything together.
+pub fn page(high: &Model, baked: &Baked, evaluated: &Evaluated, sides: &[Side]) -> Result<String, BakeError> {
+    let report = &baked.report;
+    let name = match baked.model.name.trim() {
+        "" => "a model without a name".into(),
+        name => escape(name),
+    };
+    let mut out = header(&name, high, report, evaluated);
+    out += &notes(report, evaluated);
+    section(
+        &mut out,
+        "looks",
+        "Before and after",
+        &format!(
+            "Projected is {}, baked is the result. Point at a picture, or tap it, to see \
+             the high-poly in its place. Differences are those of the values on screen, {AMPLIFIED} times as strong. \
+             The decibels are PSNR of these very pictures, on dark grey.",
+            report.start()
+        ),
+        &gallery(sides)?,
+    );
+    section(
+        &mut out,
+        "figures",
+        "Figures",
+        "",
+        &format!(
+            r#"<div class="pair"><div>{}</div><div><h3>Each view, on {}</h3>{}</div></div>"#,
+            tables::figures(evaluated),
+            BACKGROUNDS[0].0,
+            view_chart(evaluated)
+        ),
+    );
+    section(
+        &mut out,
+        "textures",
+        "Textures",
+        "",
+        &format!(
+            r#"{}<div class="pair"><div><h3>Texture layout</h3>{}</div><div><h3>Texels</h3>{}{}</div></div>"#,
+            textures(&baked.model)?,
+            uv_check(&report.uv),
+            tables::texels(report),
+            uv_moves(baked.uv_moves.as_ref())?
+        ),
+    );
+    section(
+        &mut out,
+        "run",
+        "The run",
+        "",
+        &format!(
+            concat!(
+                r#"<div class="pair"><div><h3>Agreement with the training views</h3>{}</div>"#,
+                r#"<div><h3>Times</h3>{}</div></div><h3>Settings</h3>{}"#
+            ),
+            loss_curve(&report.losses),
+            tables::stages(report),
+            settings(&report.options, report.work)
+        ),
+    );
+    Ok(document(&name, &out))
+}
+
+/// Name, headline figures and facts.
+fn header(name: &str, high: &Model, report: &BakeReport, evaluated: &Evaluated) -> String {
+    let mut out =
+        format!(r#"<header><p class="kicker">Parbake report</p><h1>{name}</h1><div class="headline">"#);
+    for (k, (background, _)) in BACKGROUNDS.iter().enumerate() {
+        let (before, after) = (evaluated.mean.projected[k].psnr, evaluated.mean.baked[k].psnr);
+        let _ = write!(
+            out,
+            concat!(
+                r#"<div><p class="where"><i class="{background}"></i>PSNR on {background}</p>"#,
+                r#"<p class="numbers"><span class="before">{before}</span> → <span class="after">{after}</span> dB</p>"#,
+                r#"<p class="gain"><span class="{verdict}">{gain} dB</span> <small>projected → baked</small></p></div>"#
+            ),
+            background = background,
+            before = decimal(before, 2),
+            after = decimal(after, 2),
+            verdict = verdict(after - before, 2, true),
+            gain = change(after - before, 2)
+        );
+    }
+    out += r#"</div><dl class="facts">"#;
+    let high_name = match high.name.trim() {
+        "" => String::new(),
+        name => format!(" <small>({})</small>", escape(name)),
+    };
+    let size = report.options.texture_size;
+    let mut facts = vec![
+        ("high-poly", format!("{} triangles{high_name}", count(report.high_triangles))),
+        ("low-poly", format!("{} triangles", count(report.low_triangles))),
+        ("textures", format!("{size} × {size}")),
+        ("training", format!("{} views, {} samples", count(report.views), count(report.samples))),
+        ("baked in", duration(tables::total_seconds(report))),
+    ];
+    if let Some(shape) = report.shape.as_ref().filter(|shape| shape.moved[1] > 0.0) {
+        let [mean, most] = shape.moved.map(|share| 100.0 * f64::from(share));
+        facts.push(("vertices", format!("moved {mean:.2} % of the length, {most:.2} % at most")));
+    }
+    if let Some([before, after]) = report.depth.as_ref().and_then(|depth| depth.misplaced) {
+        let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+        facts.push(("outline", format!("{} → {} of its pixels wrong", percent(before), percent(after))));
+    }
+    if report.depth.is_some() {
+        let options = &report.options;
+        facts.push(("parallax", format!("order {}, {}²", options.parallax_order, options.parallax_size)));
+    }
+    if let Some(peak) = report.peak_memory {
+        facts.push(("peak memory", bytes(peak)));
+    }
+    for (term, fact) in facts {
+        let _ = write!(out, "<div><dt>{term}</dt><dd>{fact}</dd></div>");
+    }
+    out + "</dl></header>"
+}
+
+/// What a reader must not miss.
+fn notes(report: &BakeReport, evaluated: &Evaluated) -> String {
+    let mut notes: Vec<String> = report.warnings.iter().map(|w| escape(w)).collect();
+    if report.stopped_early {
+        notes.push("The run was stopped early; this is the best state it had reached.".into());
+    }
+    let worse: Vec<&str> =
+        (BACKGROUNDS.iter().zip(evaluated.mean.projected.iter().zip(&evaluated.mean.baked)))
+            .filter(|(_, (projected, baked))| verdict(baked.psnr - projected.psnr, 2, true) == "worse")
+            .map(|((name, _), _)| *name)
+            .collect();
+    if worse.len() == BACKGROUNDS.len() {
+        notes.push(
+            "The baked textures measure below the projected ones. That happens where training views are too few for \
+             the textures' size: try more <code>--views</code>, a slower <code>--preset</code> or a smaller \
+             <code>--texture-size</code>."
+                .into(),
+        );
+    } else if !worse.is_empty() {
+        let advice = if report.options.silhouette_weight() > 0.0 {
+            " Where the low-poly reaches beyond the high-poly's outline it was fitted to another background; a lower \
+             <code>--silhouette</code> treats all backgrounds more alike."
+        } else {
+            ""
+        };
+        notes.push(format!(
+            "On {} the baked textures measure below the projected ones.{advice}",
+            worse.join(" and ")
+        ));
+    }
+    if notes.is_empty() {
+        return String::new();
+    }
+    format!(r#"<ul class="notes"><li>{}</li></ul>"#, notes.join("</li><li>"))
+}

@@ -1,0 +1,123 @@
+//! The settings on the page, read from the options' own serialisation, so that no
+//! option can be forgotten.
+
+use crate::page::text::escape;
+use parbake::BakeOptions;
+use parbake::Work;
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// Options by name. Through text and back: a number becomes what a person would
+/// have typed, 0.05 and not 0.05000000074505806.
+fn fields(options: &impl Serialize) -> BTreeMap<String, Value> {
+    serde_json::to_string(options).and_then(|text| serde_json::from_str(&text)).unwrap_or_default()
+}
+
+fn plain(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Null => "none".into(),
+        Value::Bool(on) => if *on { "yes" } else { "no" }.into(),
+        Value::Number(n) => match n.as_f64() {
+            // "1", not "1.0".
+            Some(x) if n.is_f64() && x == x.trunc() && x.abs() < 1e9 => format!("{x:.0}"),
+            _ => n.to_string(),
+        },
+        other => other.to_string(),
+    }
+}
+
+/// What to type after a command to get these options, escaped.
+pub fn flags<T: Serialize>(options: &T, default: &T) -> String {
+    let default = fields(default);
+    let mut out = String::new();
+    for (name, value) in fields(options) {
+        if default.get(&name) != Some(&value) {
+            let _ = write!(out, " --{}", name.replace('_', "-"));
+            if !value.is_boolean() {
+                let _ = write!(out, " {}", plain(&value));
+            }
+        }
+    }
+    escape(&out)
+}
+
+/// The table of all options, and the command that takes them.
+pub fn settings(options: &BakeOptions, work: Work) -> String {
+    let (plan, default) = (options.plan(), fields(&BakeOptions::default()));
+    let mut out = String::from(r#"<table class="settings"><tbody>"#);
+    for (name, value) in fields(options) {
+        let settled = match name.as_str() {
+            "views" => Some(plan.views.to_string()),
+            "view_size" => Some(plan.reference.size.to_string()),
+            "rounds" => Some(plan.schedule.rounds.to_string()),
+            "gutter" => Some(format!("{} texels", options.gutter_texels())),
+            "silhouette" => Some(options.silhouette_weight().to_string()),
+            "outlier" => Some(plan.schedule.outlier.to_string()),
+            "more_triangles" => Some(options.more_triangles().to_string()),
+            "uv_steps" => Some(options.settled_uv_steps(work).to_string()),
+            "threads" if options.threads == 0 => Some("one a core".into()),
+            _ => None,
+        };
+        let changed = default.get(&name).filter(|d| **d != value);
+        let note = match changed {
+            Some(Value::Null) if settled.is_some() => " <small>by default as the preset says</small>".into(),
+            Some(d) => format!(" <small>by default {}</small>", escape(&plain(d))),
+            None => String::new(),
+        };
+        let text = match (&value, settled) {
+            (Value::Null, Some(settled)) => format!("{} <small>by default</small>", escape(&settled)),
+            (_, Some(settled)) => escape(&settled),
+            (value, None) => escape(&plain(value)),
+        };
+        let _ = write!(
+            out,
+            "<tr{}><th scope=\"row\">{}</th><td>{text}{note}</td></tr>",
+            if changed.is_some() { r#" class="changed""# } else { "" },
+            escape(&name.replace('_', " "))
+        );
+    }
+    let _ = write!(
+        out,
+        "</tbody></table><p class=\"note\">To bake like this again: <code>parbake {}{}</code></p>",
+        work.command(),
+        flags(options, &BakeOptions::default())
+    );
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parbake::Preset;
+
+    /// Protects the command line that the page offers.
+    #[test]
+    fn flags_are_what_was_asked() {
+        let options = BakeOptions {
+            preset: Preset::Fast,
+            keep_normals: true,
+            reach: 0.1,
+            time_budget: Some(2.0),
+            ..BakeOptions::default()
+        };
+        let default = BakeOptions::default();
+        assert_eq!(flags(&options, &default), " --keep-normals --preset fast --reach 0.1 --time-budget 2");
+        assert_eq!(flags(&default, &default), "");
+    }
+
+    /// Protects the promise that every option is on the page.
+    #[test]
+    fn no_option_is_missing() {
+        let html = settings(&BakeOptions::default(), Work::Bake);
+        let views = BakeOptions::default().plan().views;
+        assert!(fields(&BakeOptions::default()).len() > 10);
+        assert_eq!(html.matches("<tr").count(), fields(&BakeOptions::default()).len());
+        assert!(
+            html.contains(&format!("{views} <small>by default")) && html.contains("<td>0.05</td>"),
+            "{html}"
+        );
+    }
+}

@@ -1,0 +1,132 @@
+//! The tables of the page: figures, texels, and what each stage took.
+
+use super::figures::{BACKGROUNDS, Evaluated};
+use super::settings::flags;
+use crate::page::text::{NOTHING, change, count, decimal, duration, share, verdict};
+use parbake::BakeReport;
+use parbake::evaluate::ViewFigures;
+use parbake::evaluate::options::EvaluateOptions;
+use std::fmt::Write;
+
+/// A figure: its name, decimals, whether more is better, and where it stands.
+type Metric = (&'static str, usize, bool, fn(&ViewFigures) -> Option<f64>);
+
+const METRICS: [Metric; 3] = [
+    ("PSNR\u{a0}↑", 2, true, |f| Some(f.psnr)),
+    ("MS-SSIM\u{a0}↑", 4, true, |f| f.ms_ssim),
+    ("FLIP\u{a0}↓", 4, false, |f| f.flip),
+];
+
+/// Mean figures before and after, on each background.
+pub fn figures(evaluated: &Evaluated) -> String {
+    let mut out = String::from(concat!(
+        r#"<table class="figures"><thead><tr><th scope="col">on</th><th scope="col">figure</th>"#,
+        r#"<th scope="col">projected</th><th scope="col">baked</th><th scope="col">change</th></tr></thead>"#
+    ));
+    for (k, (background, _)) in BACKGROUNDS.iter().enumerate() {
+        let (projected, baked) = (&evaluated.mean.projected[k], &evaluated.mean.baked[k]);
+        out += "<tbody>";
+        for (i, (name, decimals, more_is_better, of)) in METRICS.iter().enumerate() {
+            let (before, after) = (of(projected), of(baked));
+            let text = |x: Option<f64>| x.map_or(NOTHING.into(), |x| decimal(x, *decimals));
+            let gain = before.zip(after).map(|(before, after)| after - before);
+            let verdict = gain.map_or("", |gain| verdict(gain, *decimals, *more_is_better));
+            let head = match i {
+                0 => {
+                    format!(
+                        r#"<th scope="rowgroup" rowspan="{}"><i class="{background}"></i>{background}</th>"#,
+                        METRICS.len()
+                    )
+                }
+                _ => String::new(),
+            };
+            let _ = write!(
+                out,
+                r#"<tr>{head}<th scope="row">{name}</th><td>{}</td><td>{}</td><td class="{verdict}">{}</td></tr>"#,
+                text(before),
+                text(after),
+                gain.map_or(NOTHING.into(), |gain| change(gain, *decimals))
+            );
+        }
+        out += "</tbody>";
+    }
+    let _ = write!(
+        out,
+        concat!(
+            r#"</table><p class="note">Means over {} views around the model, {} pixels wide; PSNR in decibels; ↑ more is better, ↓ less. "#,
+            "The same figures by <code>parbake eval HIGH BAKED{}</code>, and with <code>--background grey</code> or ",
+            "<code>white</code>.</p>"
+        ),
+        evaluated.views.len(),
+        evaluated.options.resolution,
+        flags(&evaluated.options, &EvaluateOptions::default())
+    );
+    out
+}
+
+/// Texel counts, with what they mean.
+pub fn texels(report: &BakeReport) -> String {
+    let all = report.options.texture_size.saturating_mul(report.options.texture_size);
+    let covered = report.covered_texels;
+    let rows = [
+        ("covered", covered, all, "lie on the surface; the share is that of the texture"),
+        (
+            "unseen",
+            report.unseen_texels,
+            covered,
+            "of those no training view saw, filled from their neighbours",
+        ),
+        (
+            "missed",
+            report.missed_texels,
+            covered,
+            "of those projection found no high-poly for within its reach",
+        ),
+        (
+            "overlapping",
+            report.overlapping_texels,
+            covered,
+            "are shared by several triangles and show a compromise",
+        ),
+    ];
+    let mut out = String::from(r#"<table class="texels"><tbody>"#);
+    for (name, number, whole, meaning) in rows {
+        let _ = write!(
+            out,
+            r#"<tr><th scope="row">{name}</th><td>{}</td><td>{}</td><td class="meaning">{meaning}</td></tr>"#,
+            count(number),
+            share(number, whole)
+        );
+    }
+    out + "</tbody></table>"
+}
+
+/// Seconds of all stages together.
+pub fn total_seconds(report: &BakeReport) -> f64 {
+    report.stages.iter().map(|s| s.seconds).sum()
+}
+
+/// What each stage took, with bars.
+pub fn stages(report: &BakeReport) -> String {
+    let total = total_seconds(report);
+    let mut out = String::from(r#"<table class="stages"><tbody>"#);
+    for stage in &report.stages {
+        let percent = (100.0 * stage.seconds / total).clamp(0.0, 100.0);
+        let _ = write!(
+            out,
+            r#"<tr><th scope="row">{}</th><td>{}</td><td class="bar"><i style="width:{:.1}%"></i></td></tr>"#,
+            stage.stage.label(),
+            duration(stage.seconds),
+            if percent.is_finite() { percent } else { 0.0 }
+        );
+    }
+    let _ = write!(
+        out,
+        concat!(
+            r#"<tr class="total"><th scope="row">together</th><td>{}</td><td></td></tr></tbody></table>"#,
+            r#"<p class="note">Without writing this report.</p>"#
+        ),
+        duration(total)
+    );
+    out
+}

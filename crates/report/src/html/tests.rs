@@ -1,0 +1,86 @@
+//! A test of the page as a whole, on two small tents.
+
+use super::html_report;
+use parbake::{BakeOptions, EvaluateOptions, Watcher, bake, evaluate};
+use parbake_model::glam::{Vec2, Vec3};
+use parbake_model::{Material, Mesh, Model};
+
+/// A tent of four triangles, `height` high, with texture coordinates.
+fn tent(name: &str, height: f32) -> Model {
+    let corners =
+        [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, height]];
+    let mesh = Mesh {
+        positions: corners.map(Vec3::from).to_vec(),
+        uvs: corners.map(|c| Vec2::new(c[0] + 1.0, 1.0 - c[1]) * 0.5).to_vec(),
+        triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
+        triangle_materials: vec![0; 4],
+        ..Mesh::default()
+    };
+    Model { name: name.into(), mesh, materials: vec![Material::default()], images: Vec::new() }
+}
+
+fn options() -> BakeOptions {
+    BakeOptions {
+        texture_size: 32,
+        views: Some(6),
+        view_size: Some(32),
+        rounds: Some(1),
+        ..BakeOptions::default()
+    }
+}
+
+/// Somebody who has long stopped.
+struct Impatient;
+impl Watcher for Impatient {
+    fn stopped(&self) -> bool {
+        true
+    }
+}
+
+/// Where elements are left open, every browser guesses something else.
+fn assert_elements_are_closed(page: &str) {
+    let mut open = Vec::new();
+    for tag in page.split('<').skip(1) {
+        let name: String = tag.chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '/').collect();
+        match name.as_str() {
+            "" | "meta" | "img" | "input" => {}
+            closing if closing.starts_with('/') => assert_eq!(open.pop(), Some(closing[1..].to_string())),
+            _ if tag.split('>').next().is_some_and(|t| t.ends_with('/')) => {}
+            _ => open.push(name),
+        }
+    }
+    assert!(open.is_empty(), "{open:?}");
+}
+
+/// Protects what the page promises: nothing is fetched or run, names cannot break
+/// out, the figures are those of `evaluate`, and a stopped run is reported too.
+#[test]
+fn the_page_is_whole() {
+    let (high, low) = (tent("high <b>", 0.5), tent("low & <script>", 0.4));
+    let baked = bake(&high, &low, &options(), &Impatient).unwrap();
+    let page = html_report(&high, &baked, &Impatient).unwrap();
+    for broken in ["<script", "<b>\"", "http:", "https:", "url(", "NaN", ">inf", "src=\"\""] {
+        assert!(!page.contains(broken), "{broken}");
+    }
+    assert!(page.contains("<h1>low &amp; &lt;script&gt;</h1>") && page.contains("(high &lt;b&gt;)"));
+    assert!(page.contains("stopped early"));
+    // Four sides of five pictures, two textures.
+    assert_eq!(page.matches("data:image/png;base64,").count(), 4 * 5 + 2);
+
+    assert_elements_are_closed(&page);
+
+    for (model, background) in [(&baked.model, "black"), (&baked.projected, "grey")] {
+        let options = EvaluateOptions {
+            views: super::figures::VIEWS,
+            gain: 1.0,
+            decode_srgb: true,
+            background: background.into(),
+            no_flip: true,
+            ..EvaluateOptions::default()
+        };
+        let mean = evaluate(&high, model, &options, &()).unwrap().mean;
+        for figure in [format!("{:.2}", mean.psnr), format!("{:.4}", mean.ms_ssim.unwrap())] {
+            assert!(page.contains(&format!("<td>{figure}</td>")), "{background} {figure}");
+        }
+    }
+}

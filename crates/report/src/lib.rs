@@ -1,0 +1,17 @@
+//! What people look at: reports as HTML pages, and films of models and UV layouts.
+//!
+//! ```text
+//! page           what pages are drawn with: charts, pictures, text
+//! html           the report of a bake
+//! turntable      a film of two models that turn beside each other
+//! uv_animation   a film of a texture layout on its way
+//! ```
+
+mod html;
+pub mod page;
+mod turntable;
+mod uv_animation;
+
+pub use html::{flags, html_report};
+pub use turntable::{FilmFormat, TurntableOptions, turntable, write_turntable};
+pub use uv_animation::{UvAnimationOptions, uv_animation};

@@ -1,0 +1,155 @@
+//! A low-poly's vertices before the bake: kept, or moved until its silhouettes and pictures
+//! agree with the high-poly's.
+//!
+//! ```text
+//! mended low-poly ─┬ provisional texture (projected) ─┬ fit ─ positions, turned normals
+//! high-poly ───────┴ small smooth views ──────────────┘
+//! ```
+//!
+//! Contract: what is not moved keeps its position and its normal to the bit; triangles stay in their
+//! order, and so do their corners' texture coordinates. Vertices are split where a normal would end up on its
+//! face's back.
+
+use crate::joint::{ShapeOptions, fit_shape};
+use crate::normals::turned_normals;
+use crate::provisional::Provisional;
+use crate::views::Outline;
+use glam::{Mat3, Vec3, Vec4};
+use parbake_image::{FloatImage, MapKind, MapSet};
+use parbake_mesh::{TexelMap, face_outwards};
+use parbake_model::{Material, Mesh, Model, Placement};
+use parbake_progress::Watcher;
+use parbake_render::interpolate::interpolate;
+use parbake_views::PrepareError;
+use parbake_views::high_poly::{HighPoly, ViewSet};
+use parbake_views::low_poly::LowPoly;
+use parbake_views::projection::project;
+use parbake_views::reference::{Reference, Sampling};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapePlan {
+    /// Views that vertices are fitted to.
+    pub views: usize,
+    /// Side of these views in pixels.
+    pub view_size: usize,
+    /// Side of the provisional texture in texels.
+    pub texture_size: usize,
+    /// Samples along a side of each pixel of the high-poly's views.
+    pub samples: usize,
+    /// The fit's own.
+    pub fit: ShapeOptions,
+}
+
+/// What was done.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ShapeReport {
+    /// Steps that vertices took.
+    pub steps: usize,
+    /// Mean and longest way of a vertex, as shares of the high-poly's longest side.
+    pub moved: [f32; 2],
+    /// How far outlines were apart in the mean before and after, as shares of the high-poly's
+    /// longest side; zeros by the paper's method, which does not look.
+    pub gap: [f32; 2],
+    /// Shares of a picture's area that only the low-poly covers, and only the high-poly, before.
+    pub before: [f64; 2],
+    /// The same after.
+    pub after: [f64; 2],
+}
+
+/// Moves the vertices of a low-poly that `frame` places.
+///
+/// # Errors
+/// Where its texture coordinates are absent or have no area.
+pub fn shape(
+    name: &str,
+    mesh: &mut Mesh,
+    high: &HighPoly,
+    plan: &ShapePlan,
+    seed: u64,
+    watcher: &impl Watcher,
+) -> Result<ShapeReport, PrepareError> {
+    let model = Model {
+        name: name.into(),
+        mesh: mesh.clone(),
+        materials: vec![Material::default()],
+        images: Vec::new(),
+    };
+    let low = LowPoly::new(&model, &high.frame, plan.texture_size)?;
+    let start = project(&low, high);
+    let LowPoly { placed, map, .. } = low;
+    let start = provisional(start.maps, &placed, &map);
+    let references = smooth_references(high, plan.views, plan.view_size, plan.samples, seed, watcher);
+    let options = ShapeOptions { seed, ..plan.fit };
+    let shaped =
+        fit_shape(&placed, start, &references, plan.view_size, high.conventions.display, &options, watcher);
+
+    move_vertices(mesh, &placed, &shaped.positions, &high.frame);
+    let outlines = |o: &Outline| [o.overhang, o.underhang];
+    Ok(ShapeReport {
+        steps: shaped.losses.len(),
+        moved: shaped.moved.map(|way| 0.5 * way),
+        gap: shaped.gap.map(|gap| 0.5 * gap),
+        before: outlines(&shaped.outline[0]),
+        after: outlines(&shaped.outline[1]),
+    })
+}
+
+/// Views of the high-poly for gradients through silhouettes: edges are told from each other by
+/// how much of a pixel they cover, so whole pixels are averaged, and none is shifted.
+pub(crate) fn smooth_references(
+    high: &HighPoly,
+    views: usize,
+    size: usize,
+    samples: usize,
+    seed: u64,
+    watcher: &impl Watcher,
+) -> Arc<Vec<Reference>> {
+    let sampling = Sampling { size, filter: 1.0, samples };
+    high.references(&ViewSet { count: views, seed, jitter: false, sampling }, watcher)
+}
+
+/// Moves a mesh as its copy in the common frame has moved, its normals with it; vertices are split
+/// where a normal would end up on its face's back.
+pub(crate) fn move_vertices(mesh: &mut Mesh, placed: &Mesh, positions: &[Vec3], frame: &Placement) {
+    for ((written, before), after) in mesh.positions.iter_mut().zip(&placed.positions).zip(positions) {
+        *written += (*after - *before) / frame.scale;
+    }
+    mesh.normals = turned_normals(&placed.positions, positions, &mesh.normals, &mesh.triangles);
+    face_outwards(mesh);
+}
+
+/// The projected maps as a provisional texture: normals in world space, and what shines by itself as
+/// a part of the colour.
+fn provisional(mut maps: MapSet, placed: &Mesh, map: &TexelMap) -> Provisional {
+    let mut take = |kind: MapKind| maps.get_mut(kind).map(std::mem::take).unwrap_or_default();
+    let mut color = take(MapKind::BaseColor);
+    let emissive = take(MapKind::Emissive);
+    for (color, emissive) in color.texels.iter_mut().zip(&emissive.texels) {
+        *color = (*color + *emissive).min(Vec4::ONE);
+    }
+    Provisional { color, normal: in_world(placed, map, &take(MapKind::Normal)) }
+}
+
+/// Tangent-space normals turned into world space, texel by texel.
+fn in_world(mesh: &Mesh, map: &TexelMap, normals: &FloatImage<Vec4>) -> FloatImage<Vec4> {
+    let texels = (normals.texels.par_iter().enumerate())
+        .map(|(texel, m)| {
+            let Some(triangle) = mesh.triangles.get(map.triangle[texel] as usize) else {
+                return Vec3::Z.extend(0.0);
+            };
+            let corners = triangle.map(|i| i as usize);
+            let [second, third] = map.barycentric[texel];
+            let weights = [1.0 - second - third, second, third];
+            let normal = interpolate(corners.map(|i| mesh.normals[i]), weights);
+            let tangent = interpolate(corners.map(|i| mesh.tangents[i].truncate()), weights);
+            let bitangent = normal.cross(tangent) * mesh.tangents[corners[0]].w;
+            let world = Mat3::from_cols(tangent, bitangent, normal) * m.truncate();
+            world.normalize_or(Vec3::Z).extend(0.0)
+        })
+        .collect();
+    FloatImage::square(normals.width, texels)
+}

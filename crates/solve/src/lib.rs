@@ -1,0 +1,18 @@
+//! The numerical solvers of the fits, on plain slices.
+//!
+//! ```text
+//! grid                 a square of texels, summed by bands of rows in a fixed order
+//! stencil              the nine-point normal matrix of a bilinear texture
+//! conjugate_gradient   its solver, boxed: its solver within [0, 1]
+//! thin_plate           resistance to bending, by its gradient
+//! adam                 first-order descent
+//! random               numbers from counters
+//! ```
+
+pub mod adam;
+pub mod boxed;
+pub mod conjugate_gradient;
+pub mod grid;
+pub mod random;
+pub mod stencil;
+pub mod thin_plate;

@@ -1,0 +1,334 @@
+//! A low-poly's texture coordinates before the bake: kept, mended, made anew, or moved to
+//! where they show most ([`UvMode`]).
+//!
+//! ```text
+//! as delivered ─ repair ─┬ the default method (moved.rs) ─┬ Mesh
+//!        signal ─────────┴ the paper's (paper.rs) ────────┘
+//! ```
+//!
+//! Contract: whatever comes out of any mode but `keep` is bijective, with the
+//! gutter asked for between charts. Coordinates that the default method moved are only taken
+//! if they show the surface better than the ones they began with; those of the paper's method
+//! are the best of its rounds at two sizes, the start included.
+
+mod finer;
+mod judge;
+mod moved;
+mod paper;
+mod refined;
+mod surface_signal;
+mod surface_texture;
+
+pub use surface_signal::Source;
+pub use surface_texture::{SurfaceSignal, SurfaceTexture};
+
+use crate::best_texture::{Mapped, Solve, best_texture_in_box};
+use crate::contact::{Border, ContactOptions};
+use crate::convergence::Convergence;
+use crate::mode::{Method, UvMode};
+use crate::moves::UvMoves;
+use crate::optimise::Problem;
+use crate::paper::Guide;
+use crate::runs::Runs;
+use crate::shown::shown_errors;
+use crate::signal::Signal;
+use parbake_atlas::{
+    AtlasError, Layout, PackOptions, RepairOptions, TutteOptions, UnwrapOptions, check, repair, tutte, unwrap,
+};
+use parbake_image::FloatImage;
+use parbake_mesh::{Bisected, Piece, ensure_normals, material_uvs};
+use parbake_model::glam::{DVec2, Vec2, Vec4};
+use parbake_model::{Material, Mesh, Model, Placement};
+use parbake_progress::Watcher;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use surface_signal::{FULL_AND_HALF, showings};
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct UnfoldOptions {
+    /// What becomes of the coordinates.
+    pub mode: UvMode,
+    /// How they are moved.
+    pub method: Method,
+    /// What moves them in the paper's method.
+    pub guide: Guide,
+    /// Texels along a side.
+    pub texture_size: usize,
+    /// Least distance between charts in texels.
+    pub gutter: f64,
+    /// Whether it must be that gutter, as where the user asked for it: otherwise a sound layout with
+    /// a smaller one is not packed again for it.
+    pub gutter_required: bool,
+    /// Texels along a side of the parallax map that is to come, if one is.
+    pub parallax_size: Option<usize>,
+    /// Steps of the refinement, or rounds of the paper's method at most.
+    pub steps: usize,
+    /// Triangles that a model's own surface may have more.
+    pub more_triangles: usize,
+}
+
+/// What was done.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct UnfoldReport {
+    /// What was mended, a sentence each.
+    pub mended: Vec<String>,
+    /// Share of the square that was covered before and after.
+    pub utilisation: [f64; 2],
+    /// Steps that texture coordinates took.
+    pub steps: usize,
+    /// Estimated squared error of the surface's colours relative to that with the
+    /// coordinates before, full size and half; 1 where nothing moved.
+    pub relative_error: Vec<f64>,
+    /// True where charts were packed anew before they moved.
+    pub packed: bool,
+    /// How the paper's method went, where it was asked for.
+    #[serde(default)]
+    pub convergence: Option<Convergence>,
+}
+
+/// A low-poly with new coordinates.
+#[derive(Clone)]
+pub struct Unfolded {
+    /// Its mesh alone: what its materials said of coordinates is applied.
+    pub model: Model,
+    /// How its coordinates moved.
+    pub moves: Option<UvMoves>,
+    /// Where its triangles lie on those before; empty where they are the same.
+    pub pieces: Vec<Piece>,
+    /// What was done.
+    pub report: UnfoldReport,
+}
+
+/// Samples of a low-poly's surface at most while coordinates move…
+const MOST_SAMPLES: usize = 400_000;
+/// …and of a model's own: with fewer, small textures of plainly coloured parts follow the samples (mask,
+/// 128²: 1 dB more than with 131,000).
+const OWN_SAMPLES: usize = 800_000;
+
+/// Prepares the texture coordinates of a mended low-poly that `frame` places.
+pub fn unfold(
+    low: Mended,
+    frame: &Placement,
+    source: &Source,
+    options: &UnfoldOptions,
+    watcher: &impl Watcher,
+) -> Unfolded {
+    let Mended { name, mut mesh, mended } = low;
+    let start = Layout::new(&mesh);
+    let before = check(&start, options.texture_size).utilisation;
+    let mut report =
+        UnfoldReport { mended, utilisation: [before; 2], relative_error: vec![1.0; 2], ..Default::default() };
+    let (mut moves, mut pieces) = (None, Vec::new());
+    if options.mode == UvMode::Optimize && options.steps > 0 {
+        let mut placed = mesh.clone();
+        frame.apply(&mut placed);
+        let found = match options.method {
+            Method::Fit => moved::moved(&placed, source, options, &mut report, watcher),
+            Method::Paper => paper::moved(&placed, source, options, &mut report, watcher),
+        };
+        if let Some(Moved { layout, frames, bisected }) = found {
+            report.utilisation[1] = check(&layout, options.texture_size).utilisation;
+            if let Some(bisected) = bisected {
+                mesh = bisected.of(&mesh);
+                pieces = bisected.pieces;
+            }
+            mesh.uvs = layout.uvs();
+            moves = Some(UvMoves { frames, triangles: layout.triangles, charts: layout.charts });
+        }
+    }
+    mesh.triangle_materials.fill(0);
+    let model = Model { name, mesh, materials: vec![Material::default()], images: Vec::new() };
+    Unfolded { model, moves, pieces, report }
+}
+
+/// A low-poly whose coordinates are sound, or as they were where they are to be kept.
+#[derive(Clone)]
+pub struct Mended {
+    /// The model's name.
+    pub name: String,
+    /// Its mesh with unit normals; what its materials said of coordinates is applied.
+    pub mesh: Mesh,
+    /// What was done, a sentence each.
+    pub mended: Vec<String>,
+}
+
+/// Makes a low-poly's coordinates sound, as the mode asks.
+///
+/// # Errors
+/// Where charts do not fit into the texture with the gutter asked for.
+pub fn mend(low: &Model, options: &UnfoldOptions) -> Result<Mended, AtlasError> {
+    let mut mesh = low.mesh.clone();
+    mesh.uvs = material_uvs(&low.mesh, &low.materials);
+    mesh.tangents.clear();
+    let repaired = ensure_normals(&mut mesh);
+    let pack = packing(options);
+    let sound = || check(&Layout::new(&mesh), options.texture_size).is_bijective();
+    let (mesh, mut mended) = match options.mode {
+        UvMode::Keep => (mesh, Vec::new()),
+        UvMode::Repair | UvMode::Optimize if !options.gutter_required && !mesh.uvs.is_empty() && sound() => {
+            (mesh, Vec::new())
+        }
+        UvMode::Unwrap => (unwrap(&mesh, &UnwrapOptions { pack, ..Default::default() })?.mesh, Vec::new()),
+        UvMode::Tutte => (
+            tutte(&mesh, &TutteOptions { in_the_middle: true, pack, ..Default::default() })?.mesh,
+            Vec::new(),
+        ),
+        UvMode::Repair | UvMode::Optimize => repair(&mesh, &RepairOptions { pack, ..Default::default() })?,
+    };
+    if repaired > 0 && !low.mesh.normals.is_empty() {
+        mended.push(format!("{repaired} unusable normals were replaced."));
+    }
+    Ok(Mended { name: low.name.clone(), mesh, mended })
+}
+
+/// Gutter that a parallax map wants, in its texels: as far as what is fetched at a chart's border
+/// blends in, from either side.
+const PARALLAX_GUTTER: f64 = 2.0;
+/// Share of the square that such gutters may take, with charts that are squares of one size.
+const PARALLAX_ROOM: f64 = 0.25;
+
+impl UnfoldOptions {
+    /// The same with a parallax map's gutter; None where none is to come, where the layout or the
+    /// gutter is the user's, or where charts are too many for it.
+    fn with_room(&self, mesh: &Mesh) -> Option<Self> {
+        let made_here = matches!(self.mode, UvMode::Optimize | UvMode::Unwrap);
+        let size = self
+            .parallax_size
+            .filter(|_| made_here && !self.gutter_required && self.method == Method::Fit)?;
+        let charts = Layout::new(mesh).charts.iter().max().map_or(0, |last| last + 1);
+        let wide = PARALLAX_GUTTER / size as f64;
+        let gutter = wide * self.texture_size as f64;
+        let fits = 2.0 * f64::from(charts).sqrt() * wide <= PARALLAX_ROOM;
+        (fits && gutter > self.gutter).then_some(Self { gutter, gutter_required: true, ..*self })
+    }
+}
+
+/// [`mend`], with room for a parallax map where charts are few: near another chart's a fetch blends in that
+/// one's coefficients, which costs 0.1 to 0.4 dB. The gutter becomes that of `options`.
+///
+/// # Errors
+/// As of [`mend`].
+pub fn mend_with_room(low: &Model, options: &mut UnfoldOptions) -> Result<Mended, AtlasError> {
+    let mended = mend(low, options)?;
+    let Some(wide) = options.with_room(&mended.mesh) else { return Ok(mended) };
+    // What does not fit so goes without it.
+    let Ok(roomy) = mend(low, &wide) else { return Ok(mended) };
+    *options = wide;
+    Ok(roomy)
+}
+
+fn packing(options: &UnfoldOptions) -> PackOptions {
+    PackOptions {
+        texture_size: options.texture_size,
+        gutter_texels: options.gutter,
+        ..PackOptions::default()
+    }
+}
+
+/// A layout whose points moved, and its way there.
+struct Moved {
+    layout: Layout,
+    frames: Vec<Vec<Vec2>>,
+    /// The layout's triangles where the mesh's are too few.
+    bisected: Option<Bisected>,
+}
+
+/// What the surface shows at its sizes; None where nothing of it is seen.
+fn signal(mesh: &Mesh, start: &Layout, source: &Source, size: usize) -> Option<Vec<Signal>> {
+    let most = match source.surface {
+        Some(_) => MOST_SAMPLES.min((8 * size * size).max(1 << 16)),
+        None => OWN_SAMPLES,
+    };
+    let showings = showings(mesh, &start.rest, source, &FULL_AND_HALF, most);
+    (!showings[0].samples.is_empty()).then_some(showings)
+}
+
+/// How near charts may come, with a barrier of this width in texels.
+fn contact(asked: &UnfoldOptions, activation_texels: f64) -> ContactOptions {
+    ContactOptions {
+        texture_size: asked.texture_size as u32,
+        gutter_texels: asked.gutter,
+        activation_texels,
+        border: Border::Margin { margin_texels: (0.5 * asked.gutter).max(0.5) },
+        ..ContactOptions::default()
+    }
+}
+
+/// What 8-bit texels leave of each showing, with a texture that is about the one that will be
+/// solved for: for all sizes at once where `all_sizes` says so, else for the full one.
+fn errors(problem: &Problem, layout: &Layout, all_sizes: bool) -> Vec<f64> {
+    let solved = if all_sizes { problem.showings } else { &problem.showings[..1] };
+    let start = FloatImage::solid(problem.texture_size, Vec4::splat(0.5));
+    let rough = Solve { steps: 40, ..Solve::ROUGH };
+    let mut texture = best_texture_in_box(&mapped(layout, solved, &runs(layout, solved)), start, &rough);
+    texture.texels.par_iter_mut().for_each(|t| *t = (*t * 255.0).round() / 255.0);
+    shown_errors(&mapped(layout, problem.showings, &runs(layout, problem.showings)), &texture)
+}
+
+fn runs(layout: &Layout, showings: &[Signal]) -> Runs {
+    Runs::new(&layout.points, &layout.triangles, &showings[0])
+}
+
+fn mapped<'a>(layout: &'a Layout, showings: &'a [Signal], runs: &'a Runs) -> Mapped<'a> {
+    Mapped { points: &layout.points, triangles: &layout.triangles, showings, runs }
+}
+
+fn as_f32(points: &[DVec2]) -> Vec<Vec2> {
+    points.iter().map(|p| p.as_vec2()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parbake_model::glam::vec2;
+
+    fn with_parallax(gutter: Option<f64>) -> UnfoldOptions {
+        UnfoldOptions {
+            mode: UvMode::Optimize,
+            method: Method::Fit,
+            guide: Guide::ContentAware,
+            texture_size: 256,
+            gutter: gutter.unwrap_or(1.0),
+            gutter_required: gutter.is_some(),
+            parallax_size: Some(64),
+            steps: 30,
+            more_triangles: 0,
+        }
+    }
+
+    /// Right triangles in rows of four, each a chart, seven and a half texels of 256 apart.
+    fn sheet(charts: u32) -> Model {
+        let corner = |i: u32| vec2((i % 3 % 2) as f32, (i % 3 / 2) as f32);
+        let place = |i: u32| vec2((i / 3 % 4) as f32, (i / 12) as f32);
+        let mesh = Mesh {
+            positions: (0..3 * charts).map(|i| (place(i) * 2.0 + corner(i)).extend(0.0)).collect(),
+            uvs: (0..3 * charts).map(|i| place(i) * 0.2 + corner(i) * 0.17 + 0.01).collect(),
+            triangles: (0..charts).map(|c| [3 * c, 3 * c + 1, 3 * c + 2]).collect(),
+            triangle_materials: vec![0; charts as usize],
+            ..Mesh::default()
+        };
+        Model { name: "sheet".into(), mesh, materials: vec![Material::default()], images: Vec::new() }
+    }
+
+    /// Protects parallax maps from their neighbours: two of the map's texels lie between charts,
+    /// unless a gutter was asked for.
+    #[test]
+    fn few_charts_get_room_for_a_parallax_map() {
+        for (asked, wanted) in [(None, 8.0), (Some(3.0), 3.0)] {
+            let mut options = with_parallax(asked);
+            let mended = mend_with_room(&sheet(4), &mut options).expect("four charts fit");
+            assert_eq!(options.gutter, wanted);
+            let gutter = check(&Layout::new(&mended.mesh), 256).gutter.expect("several charts").texels;
+            assert!(gutter >= wanted, "{gutter} of {wanted}");
+        }
+    }
+
+    /// Protects texels: gutters of many charts would leave none.
+    #[test]
+    fn many_charts_stay_close() {
+        let options = with_parallax(None);
+        let with_room = |charts| options.with_room(&sheet(charts).mesh);
+        assert!(with_room(16).is_some() && with_room(17).is_none());
+    }
+}

@@ -1,0 +1,158 @@
+//! The default method on a low-poly's texture coordinates (`crate::optimise`).
+//!
+//! ```text
+//! as it is ───────────────┬ the better one (judge.rs) ─ shape ─ refine (refined.rs)
+//! packed, charts scaled ──┘
+//! ```
+//!
+//! Contract: a moved layout is as sound as the one before, and shows the surface better.
+
+use super::judge::Judge;
+use super::refined::refined;
+use super::surface_signal::Source;
+use super::{Moved, UnfoldOptions, UnfoldReport, as_f32, contact, packing, signal};
+use crate::metric::chart_scales;
+use crate::optimise::{Problem, RefineBy, UvOptions, shape, tensors};
+use parbake_atlas::{ChartScale, Layout, PackOptions, pack};
+use parbake_model::Mesh;
+use parbake_model::glam::{DMat2, DVec2, Vec2};
+use parbake_progress::{Message, Stage, Watcher};
+
+/// Charts are drawn at most so many times larger or smaller than their area says.
+const MOST_SCALE: f64 = 3.0;
+/// Packing leaves so many texels more than the gutter: charts that touch cannot turn.
+const ROOM: f64 = 0.25;
+/// Steps of the start times triangles at most, a second or so: charts by the dozen need a hundred
+/// steps to fill their square, and a step is Newton's, 4 µs a triangle…
+const SHAPE_WORK: usize = 250_000;
+/// …but so many steps at least, for meshes of any size, and never more than so many.
+const LEAST_SHAPE_STEPS: usize = 20;
+const MOST_SHAPE_STEPS: usize = 200;
+/// What a triangle without signal weighs in the start: what surfaces of all kinds like, and what suits
+/// plainly coloured parts with small textures (toy figure, 128²: +0.5 dB).
+const FLAT: [f64; 2] = [0.1, 1e-3];
+/// Width of the barrier between charts: the paper's 5 texels would keep packed charts from
+/// moving at all, and half a texel is enough to not run into them.
+const ACTIVATION_TEXELS: f64 = 0.5;
+
+/// None where no better one was found.
+pub fn moved(
+    mesh: &Mesh,
+    source: &Source,
+    asked: &UnfoldOptions,
+    report: &mut UnfoldReport,
+    watcher: &impl Watcher,
+) -> Option<Moved> {
+    let start = &Layout::new(mesh);
+    let showings = signal(mesh, start, source, asked.texture_size)?;
+    let contact = contact(asked, ACTIVATION_TEXELS);
+    let problem = &Problem {
+        rest: &start.rest,
+        showings: &showings,
+        texture_size: told_apart(asked.texture_size, showings[0].samples.len()),
+        contact: &contact,
+    };
+    let most_steps = (SHAPE_WORK / mesh.triangles.len().max(1)).clamp(LEAST_SHAPE_STEPS, MOST_SHAPE_STEPS);
+    let shape_steps = most_steps.min(10 * asked.steps);
+    let own = source.surface.is_none();
+    let refine_by = if own { RefineBy::Stiffness } else { RefineBy::Laplacian };
+    let options = &UvOptions { refine_steps: asked.steps, shape_steps, refine_by, ..UvOptions::default() };
+    let judge = &Judge::new(mesh, start, problem, own, asked.gutter_required.then_some(asked.gutter));
+    let tensors = &tensors(problem, start);
+    let unmoved = judge.kept.len() as f64;
+    let packed = packed(problem, start, &packing(asked), tensors)
+        .map(|packed| (judge.total(&packed), packed))
+        .filter(|(left, _)| *left < unmoved);
+    let is_packed = packed.is_some();
+    let (left, mut layout) = packed.unwrap_or_else(|| (unmoved, start.clone()));
+    let mut frames = vec![as_f32(&start.points), as_f32(&layout.points)];
+    let most = options.refine_steps + FLAT.len() * options.shape_steps;
+    let steps = &mut Steps { done: 0, most, watcher };
+    frames.extend(shaped(judge, &mut layout, left, tensors, options, steps));
+    let more_triangles = if own { asked.more_triangles } else { 0 };
+    let (moved, relative) = refined(judge, layout, options, more_triangles, frames, steps)?;
+    report.packed |= is_packed;
+    report.steps = moved.frames.len() - 2;
+    report.relative_error = relative;
+    Some(moved)
+}
+
+/// Texels along a side of the texture that layouts are judged by: halved until every other of its texels
+/// has a sample, for finer ones could show so few samples in any layout; never fewer than four.
+fn told_apart(texture_size: usize, samples: usize) -> usize {
+    let mut size = texture_size;
+    while 2 * samples < size * size && size.is_multiple_of(2) && size >= 8 {
+        size /= 2;
+    }
+    size
+}
+
+/// How far along the way is.
+pub struct Steps<'a, W> {
+    done: usize,
+    most: usize,
+    /// Who is told, and may stop it.
+    pub watcher: &'a W,
+}
+
+impl<W: Watcher> Steps<'_, W> {
+    /// Notes a step; false to stop.
+    pub fn step(&mut self, way: &mut Vec<Vec<Vec2>>, points: &[DVec2]) -> bool {
+        way.push(as_f32(points));
+        self.done = self.most.min(self.done + 1);
+        self.watcher.message(Message::Progress { stage: Stage::Unfold, done: self.done, total: self.most });
+        !self.watcher.stopped()
+    }
+}
+
+/// Moves the layout, which leaves this error in total, to the better one of the signal-specialised
+/// starts, and returns the way there. The start is a guess: how plain the plain is depends on the
+/// texture's size, and where both guesses are bad, none is better.
+fn shaped<W: Watcher>(
+    judge: &Judge,
+    layout: &mut Layout,
+    mut least: f64,
+    tensors: &[DMat2],
+    options: &UvOptions,
+    steps: &mut Steps<W>,
+) -> Vec<Vec<Vec2>> {
+    let (before, mut shaped) = (layout.clone(), Vec::new());
+    for flat in FLAT {
+        let (mut guess, mut way) = (before.clone(), Vec::new());
+        let own = UvOptions { flat, ..*options };
+        shape(judge.problem, &mut guess, tensors, &own, |points, _| steps.step(&mut way, points));
+        let left = judge.total(&guess);
+        if left < least && judge.is_sound(&guess) {
+            (*layout, least, shaped) = (guess, left, way);
+        }
+        if steps.watcher.stopped() {
+            break;
+        }
+    }
+    shaped
+}
+
+/// Charts packed anew, each as large as its signal asks for.
+fn packed(problem: &Problem, start: &Layout, packing: &PackOptions, tensors: &[DMat2]) -> Option<Layout> {
+    let scales = chart_scales(tensors, problem.rest, &start.charts, MOST_SCALE);
+    let even = even_scales(start);
+    let given = scales.iter().zip(even).map(|(a, b)| a * b).collect();
+    let packing = PackOptions {
+        gutter_texels: packing.gutter_texels + ROOM,
+        chart_scale: ChartScale::Given(given),
+        ..packing.clone()
+    };
+    // Without room for that, the layout as it is does.
+    pack(start, &packing).ok()
+}
+
+/// Factors that give all charts the same texels per unit of surface.
+fn even_scales(layout: &Layout) -> Vec<f64> {
+    let count = layout.charts.iter().max().map_or(0, |c| *c as usize + 1);
+    let (mut drawn, mut area) = (vec![0.0; count], vec![0.0; count]);
+    for (t, chart) in layout.charts.iter().enumerate() {
+        drawn[*chart as usize] += 0.5 * layout.doubled_area(t);
+        area[*chart as usize] += layout.rest_area(t);
+    }
+    drawn.iter().zip(&area).map(|(d, a)| if *d > 0.0 && *a > 0.0 { (a / d).sqrt() } else { 1.0 }).collect()
+}

@@ -1,0 +1,34 @@
+//! Makes two models comparable: what each needs for shading, and the one frame that
+//! both are moved into (the high-poly's bounding box becomes [−1, 1]³ along its
+//! longest side; normalising each by its own box would misalign them).
+
+use crate::error::PrepareError;
+use parbake_mesh::{compute_tangents, ensure_normals};
+use parbake_model::{Bounds, Mesh, Model, Placement};
+use parbake_render::interpretation::Interpretation;
+use parbake_render::scene::Scene;
+
+/// The common frame of a pair.
+pub fn common_frame(high: &Model) -> Result<Placement, PrepareError> {
+    Bounds::of(&high.mesh)
+        .and_then(|bounds| Placement::unit_box(&bounds))
+        .ok_or_else(|| PrepareError::NoExtent { model: high.name.clone() })
+}
+
+/// A copy of the model's mesh in the common frame, with all that its materials need
+/// for shading: unit normals, and tangents where there is a normal map.
+pub fn placed(model: &Model, frame: &Placement) -> Mesh {
+    let mut mesh = model.mesh.clone();
+    let repaired = ensure_normals(&mut mesh);
+    let mapped = model.materials.iter().any(|m| m.has_normal_map());
+    if mapped && (repaired > 0 || mesh.tangents.is_empty()) {
+        compute_tangents(&mut mesh);
+    }
+    frame.apply(&mut mesh);
+    mesh
+}
+
+/// The model in the common frame, ready for rendering.
+pub fn scene(model: &Model, frame: &Placement, interpretation: Interpretation) -> Scene {
+    Scene::new(placed(model, frame), &model.materials, &model.images, interpretation)
+}

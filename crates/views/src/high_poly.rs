@@ -1,0 +1,135 @@
+//! The high-poly, prepared once: its frame, its scene, its surface and its rendered views serve any
+//! number of low-polys, levels of detail and passes.
+//!
+//! ```text
+//! model ─ frame ─┬ scene (what cameras see) ─ references(view set) ─ kept, if asked for
+//!                └ surface (what rays hit)
+//! ```
+//!
+//! Contract: everything depends on the model and the [`Conventions`] alone, not on the low-poly.
+//! Reference views depend on their [`ViewSet`] and not on the number of threads.
+
+use crate::error::PrepareError;
+use crate::frame::{common_frame, placed};
+use crate::pool::{Rig, View, view_pool};
+use crate::reference::{Reference, Sampling, render_references};
+use parbake_image::MapKind;
+use parbake_image::display::Display;
+use parbake_mesh::HighSurface;
+use parbake_model::{Model, Placement};
+use parbake_progress::Watcher;
+use parbake_render::interpretation::Interpretation;
+use parbake_render::scene::Scene;
+use parbake_render::shade::{Brdf, Lambert};
+use std::sync::{Arc, Mutex};
+
+/// How a bake sees its models.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conventions {
+    /// How textures are read.
+    pub interpretation: Interpretation,
+    /// Light strength and display curve of the comparison.
+    pub display: Display,
+    /// Where cameras stand.
+    pub rig: Rig,
+    /// How far to either side of the low-poly projection looks for the high-poly, in the common
+    /// frame, in which the high-poly's longest side is 2.
+    pub max_distance: f32,
+}
+
+impl Conventions {
+    /// Whether base colour is decoded from sRGB before shading, and stored as sRGB.
+    pub fn srgb(&self) -> bool {
+        self.interpretation.decode_srgb
+    }
+}
+
+/// A set of training views.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewSet {
+    /// How many views.
+    pub count: usize,
+    /// Random seed of the directions and of the shifts of the pixel grids.
+    pub seed: u64,
+    /// Whether each view's pixel grid is shifted by its own fraction of a pixel.
+    pub jitter: bool,
+    /// How pixels are sampled.
+    pub sampling: Sampling,
+}
+
+impl ViewSet {
+    /// The views themselves.
+    pub fn views(&self, rig: &Rig) -> Vec<View> {
+        let mut views = view_pool(self.count, rig, self.seed);
+        if !self.jitter {
+            views.iter_mut().for_each(|view| view.jitter = [0.0; 2]);
+        }
+        views
+    }
+}
+
+/// A high-poly ready for bakes.
+pub struct HighPoly {
+    /// The model's name.
+    pub name: String,
+    /// Its triangles.
+    pub triangles: usize,
+    /// The common frame: the high-poly's box lies in [−1, 1]³.
+    pub frame: Placement,
+    /// How it is seen.
+    pub conventions: Conventions,
+    /// What cameras see.
+    pub scene: Scene,
+    /// What rays hit.
+    pub surface: HighSurface,
+    /// Rendered view sets that are kept; none where they are not to be.
+    kept: Option<Mutex<Vec<(ViewSet, Arc<Vec<Reference>>)>>>,
+}
+
+impl HighPoly {
+    /// Prepares a model for one bake: rendered views are freed when the last user drops them.
+    ///
+    /// # Errors
+    /// Where the model has no extent.
+    pub fn new(model: &Model, conventions: Conventions) -> Result<Self, PrepareError> {
+        let frame = common_frame(model)?;
+        let mesh = placed(model, &frame);
+        let (scene, surface) = rayon::join(
+            || Scene::new(mesh.clone(), &model.materials, &model.images, conventions.interpretation),
+            || HighSurface::new(&mesh),
+        );
+        let (name, triangles) = (model.name.clone(), model.mesh.triangles.len());
+        Ok(Self { name, triangles, frame, conventions, scene, surface, kept: None })
+    }
+
+    /// The same for several bakes: each set of views is rendered once and kept, 8 bytes a pixel.
+    pub fn keeping_views(self) -> Self {
+        Self { kept: Some(Mutex::default()), ..self }
+    }
+
+    /// The kinds of maps that a bake fits: base colour and normals, and those others that the
+    /// high-poly's materials have and its BRDF reads.
+    pub fn kinds(&self) -> impl Iterator<Item = MapKind> + '_ {
+        let always = [MapKind::BaseColor, MapKind::Normal];
+        MapKind::ALL
+            .into_iter()
+            .filter(move |kind| Lambert.reads(*kind) && (always.contains(kind) || self.scene.has(*kind)))
+    }
+
+    /// The high-poly from each view of a set. Stops early, with fewer views, when asked to, but never
+    /// before the first one is done.
+    pub fn references(&self, set: &ViewSet, watcher: &impl Watcher) -> Arc<Vec<Reference>> {
+        let kept = || self.kept.as_ref().and_then(|kept| kept.lock().ok());
+        let found = kept().and_then(|kept| kept.iter().find(|(own, _)| own == set).map(|(_, r)| r.clone()));
+        if let Some(found) = found {
+            return found;
+        }
+        let views = set.views(&self.conventions.rig);
+        let rendered = Arc::new(render_references(&self.scene, &Lambert, &views, &set.sampling, 1, watcher));
+        // What was stopped early is not the whole set.
+        if let Some(mut kept) = kept().filter(|_| rendered.len() == set.count) {
+            kept.push((*set, rendered.clone()));
+        }
+        rendered
+    }
+}

@@ -1,0 +1,25 @@
+//! The two models of a bake made ready, and what the high-poly shows from all around.
+//!
+//! ```text
+//! high-poly ─ frame ─ high_poly ─┬─ projection ─────────── projected maps
+//!                                └─ pool ─ reference ─┐
+//! low-poly ─ low_poly ─ chart_labels                  ├─ view_walk ─ sighted ─ samples
+//!               └─────────────────────────────────────┘
+//! ```
+//!
+//! Everything here is made once and read by the fits of vertices, texture coordinates and maps.
+
+pub mod chart_labels;
+mod error;
+pub mod frame;
+pub mod gutter;
+pub mod high_poly;
+pub mod low_poly;
+pub mod pool;
+pub mod projection;
+pub mod reference;
+pub mod samples;
+pub mod sighted;
+pub mod view_walk;
+
+pub use error::PrepareError;

@@ -1,0 +1,137 @@
+//! The pictures to be matched: the high-poly from every training view, rendered
+//! once and kept compactly, so that no later step depends on its size.
+//!
+//! Each pixel is the mean of a few samples spread over a box narrower than the
+//! pixel: with the views' shifted grids the pool then shows the sharpness of much
+//! larger pictures. Kept as four half floats a pixel: linear, premultiplied.
+
+use crate::pool::View;
+use half::f16;
+use half::slice::HalfFloatSliceExt;
+use parbake_progress::{Stage, Watcher};
+use parbake_render::raster::{NOTHING, Visibility, rasterise};
+use parbake_render::scene::Scene;
+use parbake_render::shade::Brdf;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// How reference pictures are sampled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling {
+    /// Pixels along a side of a view.
+    pub size: usize,
+    /// Width of a pixel's box filter in pixels, 0 … 1.
+    pub filter: f32,
+    /// Samples along a side of that box, ≥ 1.
+    pub samples: usize,
+}
+
+/// One rendered training view.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// From where.
+    pub view: View,
+    /// size² pixels of premultiplied linear light and coverage.
+    pub pixels: Vec<[f16; 4]>,
+}
+
+impl Reference {
+    /// The pixels as single floats: many at once, where a CPU converts one as slowly as eight.
+    pub fn linear(&self) -> Vec<[f32; 4]> {
+        let mut pixels = vec![[0.0; 4]; self.pixels.len()];
+        self.pixels.as_flattened().convert_to_f32_slice(pixels.as_flattened_mut());
+        pixels
+    }
+
+    /// The same picture with half as many pixels along a side: each is the mean of four. For views
+    /// without jitter and of even sizes; odd ones lose their last row and column, and with them a part
+    /// of the field.
+    pub fn halved(&self) -> Self {
+        let (size, pixels) = (self.pixels.len().isqrt(), self.linear());
+        let half = size / 2;
+        let mean = |pixel: usize| -> [f16; 4] {
+            let corner = 2 * (pixel / half) * size + 2 * (pixel % half);
+            let four = [corner, corner + 1, corner + size, corner + size + 1].map(|i| pixels[i]);
+            std::array::from_fn(|k| f16::from_f32(0.25 * four.iter().map(|p| p[k]).sum::<f32>()))
+        };
+        Self { view: self.view, pixels: (0..half * half).map(mean).collect() }
+    }
+}
+
+/// Renders the pool. Stops early, with fewer views, when asked to, but never
+/// before `at_least` views are done.
+pub fn render_references(
+    high: &Scene,
+    brdf: &impl Brdf,
+    pool: &[View],
+    sampling: &Sampling,
+    at_least: usize,
+    watch: &impl Watcher,
+) -> Vec<Reference> {
+    let done = AtomicUsize::new(0);
+    // Small groups in order, so that an early stop keeps a well-spread prefix.
+    let group = rayon::current_num_threads().max(1) * 2;
+    let mut out = Vec::with_capacity(pool.len());
+    for (index, views) in pool.chunks(group).enumerate() {
+        if index * group >= at_least && watch.stopped() {
+            break;
+        }
+        out.par_extend(views.par_iter().map(|view| {
+            let picture = render(high, brdf, view, sampling);
+            watch.progress(Stage::Reference, done.fetch_add(1, Ordering::Relaxed) + 1, pool.len());
+            picture
+        }));
+    }
+    out
+}
+
+fn render(high: &Scene, brdf: &impl Brdf, view: &View, sampling: &Sampling) -> Reference {
+    let Sampling { size, filter, samples } = *sampling;
+    let screen = high.on_screen(&view.camera, size);
+    let mut seen = Visibility::default();
+    let mut sum = vec![[0.0f32; 4]; size * size];
+    let share = 1.0 / (samples * samples) as f32;
+    let footprint = (filter / samples as f32).max(1.0 / 16.0);
+    for sample in 0..samples * samples {
+        let shift =
+            [sample % samples, sample / samples].map(|i| filter * ((i as f32 + 0.5) / samples as f32 - 0.5));
+        let offset = (view.jitter[0] + shift[0], view.jitter[1] + shift[1]);
+        rasterise(&screen, size, offset, &mut seen);
+        for (index, (&triangle, pixel)) in seen.triangle.iter().zip(&mut sum).enumerate() {
+            if triangle == NOTHING {
+                continue;
+            }
+            let at = (
+                (index % size) as f64 + 0.5 + f64::from(offset.0),
+                (index / size) as f64 + 0.5 + f64::from(offset.1),
+            );
+            let light = high.shade(brdf, &view.camera, &screen, triangle as usize, at, footprint);
+            for k in 0..3 {
+                pixel[k] += light[k] * share;
+            }
+            pixel[3] += share;
+        }
+    }
+    let mut pixels = vec![[f16::ZERO; 4]; sum.len()];
+    pixels.as_flattened_mut().convert_from_f32_slice(sum.as_flattened());
+    Reference { view: *view, pixels }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parbake_model::glam::Vec3;
+    use parbake_render::camera::{Camera, Projection};
+
+    /// Protects coarse views: each pixel is the mean of its own four, also where a side is odd.
+    #[test]
+    fn half_as_many_pixels_are_means_of_four() {
+        let camera = Camera::towards_origin(Vec3::Z, 3.5, Projection::Perspective(0.4));
+        let view = View { camera, jitter: [0.0; 2] };
+        let pixels = (0..25u8).map(|i| [f16::from(i), f16::ZERO, f16::ZERO, f16::ONE]).collect();
+        let halved = Reference { view, pixels }.halved();
+        let red: Vec<f32> = halved.linear().iter().map(|p| p[0]).collect();
+        assert_eq!(red, [3.0, 5.0, 13.0, 15.0]);
+        assert!(halved.linear().iter().all(|p| p[3] == 1.0));
+    }
+}

@@ -1,0 +1,249 @@
+//! Where each pixel of the training views falls on the low-poly's texture, how the
+//! light meets it there, and what the high-poly shows in its place.
+//!
+//! Forward: a walk over the views' pixels (`view_walk.rs`), or those of an earlier walk and the
+//! shift of the coordinate where there is a parallax map (`sighted.rs`); what is left for the solvers
+//! is a bilinear fetch and the shading. Samples are binned by texture tile (a stable counting sort a
+//! view, then views in order within a tile), so that bands of the texture can be summed by many
+//! threads without atomics and always in the same order, and each band's texels stay in cache.
+//!
+//! Contract: the low-poly has normals, tangents and texture coordinates (wrapped by
+//! repetition); fetches are bilinear on the finest level.
+
+use crate::reference::Reference;
+use crate::sighted::Sighted;
+use crate::view_walk::Walker;
+use parbake_model::glam::{Vec2, Vec3, Vec4};
+use parbake_progress::{Stage, Watcher};
+use parbake_render::frame::TangentLight;
+use parbake_render::parallax_variants::shift_map::{ShiftMap, Vantage};
+use parbake_solve::grid::{BAND, bands};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// One pixel of a training view, as the texture sees it: 36 bytes, since a fit reads
+/// millions of them in every step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Upper left texel of the bilinear fetch.
+    pub texel: u32,
+    /// Fractions towards the right and lower texels, in 65536ths.
+    pub fraction: [u16; 2],
+    /// How the light meets the surface: the light's three numbers and the Gram
+    /// matrix's six, in 32767ths of 1, which none of them exceeds.
+    light: [i16; 9],
+    /// Wanted display value of red, green and blue, in 65535ths of 1.
+    pub target: [u16; 3],
+    /// How much this sample counts, in 65535ths.
+    pub weight: u16,
+}
+
+/// All samples, by band of the texture.
+#[derive(Clone, Debug, Default)]
+pub struct SampleSet {
+    /// Texels along a side of the texture.
+    pub size: usize,
+    /// Samples whose fetch begins in this band, in a fixed order.
+    pub bands: Vec<Vec<Sample>>,
+}
+
+impl Sample {
+    /// A pixel that is fetched at this coordinate; the rest as it is kept.
+    #[inline]
+    fn at(uv: Vec2, size: usize, light: [i16; 9], target: [u16; 3], weight: u16) -> Self {
+        let (texel, fraction) = place(uv, size);
+        Self { texel, fraction, light, target, weight }
+    }
+
+    /// Fractions as numbers in [0, 1).
+    #[inline]
+    pub fn fractions(&self) -> (f32, f32) {
+        (f32::from(self.fraction[0]) * (1.0 / 65536.0), f32::from(self.fraction[1]) * (1.0 / 65536.0))
+    }
+
+    /// How the light meets the surface.
+    #[inline]
+    pub fn light(&self) -> TangentLight {
+        unpacked(self.light)
+    }
+
+    /// Wanted display value.
+    #[inline]
+    pub fn target(&self) -> Vec4 {
+        let [r, g, b] = self.target.map(|t| f32::from(t) * (1.0 / 65535.0));
+        Vec4::new(r, g, b, 0.0)
+    }
+
+    /// Weight, 0 … 1.
+    #[inline]
+    pub fn weight(&self) -> f32 {
+        f32::from(self.weight) * (1.0 / 65535.0)
+    }
+}
+
+impl Sample {
+    /// A pixel that sees one texel from straight above, for hand-made scenes.
+    pub fn facing(texel: u32, target: f32) -> Self {
+        let straight = TangentLight { light: Vec3::Z, gram: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0] };
+        let target = [(target * 65535.0) as u16; 3];
+        Self { texel, fraction: [0; 2], light: packed(&straight), target, weight: u16::MAX }
+    }
+}
+
+impl SampleSet {
+    /// How many samples there are.
+    pub fn len(&self) -> usize {
+        self.bands.iter().map(Vec::len).sum()
+    }
+
+    /// True when no view saw anything.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// Texels along a tile's width; its height is [`BAND`].
+const TILE: usize = 32;
+
+struct Layout {
+    size: usize,
+    tiles_across: usize,
+}
+
+impl Layout {
+    fn tiles(&self) -> usize {
+        self.tiles_across * bands(self.size)
+    }
+
+    fn tile(&self, texel: usize) -> usize {
+        (texel / self.size / BAND) * self.tiles_across + texel % self.size / TILE
+    }
+}
+
+/// One view's samples in tile order, and where each tile's begin.
+struct Sorted {
+    samples: Vec<Sample>,
+    begin: Vec<u32>,
+}
+
+/// Collects the samples of all references on a texture of `texture_size`².
+pub fn collect_samples(
+    walker: &Walker,
+    references: &[Reference],
+    texture_size: usize,
+    watch: &impl Watcher,
+) -> SampleSet {
+    collect(references.par_iter(), texture_size, watch, |reference, out| {
+        walker.walk(reference, |seen| {
+            out.push(Sample::at(seen.uv, texture_size, packed(&seen.light), seen.target, seen.weight));
+        });
+    })
+}
+
+/// The same of views that were walked before, their coordinates shifted by a map. Views that are
+/// handed over rather than lent are gone as soon as they were read.
+pub fn shifted_samples<V: AsRef<[Sighted]>>(
+    views: impl IntoParallelIterator<Item = V, Iter: IndexedParallelIterator>,
+    texture_size: usize,
+    map: &impl ShiftMap,
+    watch: &impl Watcher,
+) -> SampleSet {
+    collect(views.into_par_iter(), texture_size, watch, |view, out| {
+        out.extend(view.as_ref().iter().map(|seen| {
+            let from = Vantage::under_headlight(seen.sight(), &seen.light());
+            let uv = seen.uv + map.shift(seen.uv, &from);
+            Sample::at(uv, texture_size, seen.light, seen.target, seen.weight)
+        }));
+    })
+}
+
+fn collect<V>(
+    views: impl IndexedParallelIterator<Item = V>,
+    texture_size: usize,
+    watch: &impl Watcher,
+    of_view: impl Fn(V, &mut Vec<Sample>) + Sync,
+) -> SampleSet {
+    let layout = Layout { size: texture_size, tiles_across: texture_size.div_ceil(TILE) };
+    let (done, all) = (AtomicUsize::new(0), views.len());
+    let views: Vec<Sorted> = views
+        .map(|view| {
+            let mut samples = Vec::new();
+            of_view(view, &mut samples);
+            watch.progress(Stage::Sampling, done.fetch_add(1, Ordering::Relaxed) + 1, all);
+            sort(samples, &layout)
+        })
+        .collect();
+    let bands = (0..bands(texture_size))
+        .into_par_iter()
+        .map(|band| {
+            let tiles = band * layout.tiles_across..(band + 1) * layout.tiles_across;
+            let of = |v: &Sorted, tile: usize| v.begin[tile] as usize..v.begin[tile + 1] as usize;
+            let count =
+                views.iter().map(|v| of(v, tiles.end - 1).end - of(v, tiles.start).start).sum::<usize>();
+            let mut out = Vec::with_capacity(count);
+            for tile in tiles {
+                for view in &views {
+                    out.extend_from_slice(&view.samples[of(view, tile)]);
+                }
+            }
+            out
+        })
+        .collect();
+    SampleSet { size: texture_size, bands }
+}
+
+fn sort(samples: Vec<Sample>, layout: &Layout) -> Sorted {
+    let mut begin = vec![0u32; layout.tiles() + 1];
+    for s in &samples {
+        begin[layout.tile(s.texel as usize) + 1] += 1;
+    }
+    for i in 1..begin.len() {
+        begin[i] += begin[i - 1];
+    }
+    let mut next = begin.clone();
+    let mut sorted = vec![Sample::default(); samples.len()];
+    for s in samples {
+        let place = &mut next[layout.tile(s.texel as usize)];
+        sorted[*place as usize] = s;
+        *place += 1;
+    }
+    Sorted { samples: sorted, begin }
+}
+
+/// Inverse of [`packed`].
+#[inline]
+pub(crate) fn unpacked(light: [i16; 9]) -> TangentLight {
+    let [x, y, z, tt, bb, nn, tb, tn, bn] = light.map(|v| f32::from(v) * (1.0 / 32767.0));
+    TangentLight { light: Vec3::new(x, y, z), gram: [tt, bb, nn, tb, tn, bn] }
+}
+
+/// See [`Sample::light`].
+pub(crate) fn packed(light: &TangentLight) -> [i16; 9] {
+    let [x, y, z] = light.light.to_array();
+    let [tt, bb, nn, tb, tn, bn] = light.gram;
+    [x, y, z, tt, bb, nn, tb, tn, bn].map(|v| (v.clamp(-1.0, 1.0) * 32767.0).round_ties_even() as i16)
+}
+
+/// The upper left texel of a coordinate's fetch, and the fractions.
+fn place(uv: Vec2, size: usize) -> (u32, [u16; 2]) {
+    let along = |t: f32| {
+        let x = t * size as f32 - 0.5;
+        let first = x.floor();
+        ((first as i64).rem_euclid(size as i64) as u32, ((x - first) * 65536.0).min(65535.0) as u16)
+    };
+    let ((x, fx), (y, fy)) = (along(uv.x), along(uv.y));
+    (y * size as u32 + x, [fx, fy])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects the wrap of fetches that straddle the texture's border.
+    #[test]
+    fn places_wrap_around() {
+        assert_eq!(place(Vec2::new(0.0, 0.0), 4), (15, [32768, 32768]));
+        assert_eq!(place(Vec2::new(0.375, 0.125), 4), (1, [0, 0]));
+        assert_eq!(place(Vec2::new(-0.875, 1.125), 4), (0, [0, 0]));
+    }
+}
