@@ -35,10 +35,10 @@ pub(crate) fn check(path: &Path, model: &Model) -> Result<(), FileError> {
     if mesh.triangle_materials.iter().any(|&m| m as usize >= model.materials.len()) {
         return refuse("a triangle names a material that is not there".into());
     }
-    if model.materials.iter().flat_map(Material::texture_slots).any(|s| s.image >= model.images.len()) {
+    let used = model.materials.iter().flat_map(Material::all_texture_slots);
+    if used.clone().any(|s| s.image >= model.images.len()) {
         return refuse("a material names an image that is not there".into());
     }
-    let used = model.materials.iter().flat_map(Material::texture_slots);
     let transforms = used.clone().map(|s| s.transform);
     if transforms
         .into_iter()
@@ -86,7 +86,7 @@ mod tests {
         let materials = vec![Material { base_color_texture: turned(1.0), ..Material::default() }];
         let images = vec![Image::solid("a", 2, 2, [1; 4])];
         let good = Model { mesh, materials, images, ..Model::default() };
-        let breakages: [fn(&mut Model); 11] = [
+        let breakages: [fn(&mut Model); 12] = [
             |m| m.mesh.triangles[0][1] = 3,
             |m| m.mesh.triangle_materials[0] = 1,
             |m| m.mesh.triangle_materials.clear(),
@@ -97,6 +97,7 @@ mod tests {
             |m| m.images[0].width = 3,
             |m| m.images[0].pixels.clear(),
             |m| m.materials[0].base_color_texture = turned(f32::NAN),
+            |m| m.materials[0].emissive_texture = turned(f32::NAN),
             |m| m.materials[0].parallax = Some(ShParallaxMap::default()),
         ];
         let path = Path::new("out.glb");

@@ -59,6 +59,20 @@ fn texture_transforms() {
     let (index, material) = named(&model, "NormalTest1Mat");
     let uvs = fetched(&model, index, &material.normal_texture.unwrap());
     assert!(uvs.iter().all(|uv| uv.x > 0.76 && uv.y < 0.24), "{uvs:?}");
+    assert!(named(&model, "UnlitTest0Mat").1.unlit && !material.unlit);
+    type Slot = fn(&Material) -> Option<TextureSlot>;
+    let slots: [(&str, Slot); 3] = [
+        ("EmissionTest", |m| m.emissive_texture),
+        ("MetalRoughTest", |m| m.metallic_roughness_texture),
+        ("OcclusionTest", |m| m.occlusion_texture),
+    ];
+    for ((name, slot), set) in slots.into_iter().flat_map(|slot| [(slot, 0), (slot, 1)]) {
+        let (index, material) = named(&model, &format!("{name}{set}Mat"));
+        let slot = slot(material).expect(name);
+        assert_eq!(slot.uv_set, set, "{name}");
+        let uvs = fetched(&model, index, &slot);
+        assert!(uvs.iter().all(|uv| uv.x > 0.76 && uv.x < 1.0 && uv.y > 0.0 && uv.y < 0.24), "{uvs:?}");
+    }
 }
 
 /// Protects the direction of v, for which this model has one quad at each corner.
@@ -153,7 +167,7 @@ fn primitive_modes() {
     assert_eq!(loaded.warnings, ["points and lines were left out"]);
 }
 
-/// Protects alpha modes, and pictures whose URIs have encoded blanks.
+/// Protects alpha modes and cutoffs, sides, and pictures whose URIs have encoded blanks.
 #[test]
 fn alpha_modes_and_encoded_names() {
     let Some(data) = data_folder() else { return };
@@ -163,9 +177,15 @@ fn alpha_modes_and_encoded_names() {
     {
         assert_eq!(named(&model, name).1.alpha_mode, mode, "{name}");
     }
+    for (name, cutoff) in [("MatCutoff25", 0.25), ("MatCutoff75", 0.75), ("MatCutoffDefault", 0.5)] {
+        let material = named(&model, name).1;
+        assert_eq!((material.alpha_cutoff, material.metallic, material.roughness), (cutoff, 0.0, 0.8));
+        assert!(material.double_sided);
+    }
+    let (_, bed) = named(&model, "MatBed");
+    assert!(!bed.double_sided && bed.all_texture_slots().count() == 4 && bed.metallic == 1.0);
     let model = load(&data, "feature/Box With Spaces/Box With Spaces.gltf");
-    assert_eq!(model.images.len(), 2);
-    assert!(model.materials[0].base_color_texture.is_some() && model.materials[0].normal_texture.is_some());
+    assert_eq!((model.images.len(), model.materials[0].all_texture_slots().count()), (3, 3));
 }
 
 /// Protects quantised coordinates, which mean nothing without their transform, and

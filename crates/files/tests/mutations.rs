@@ -140,6 +140,7 @@ const OBJ: &str = "mtllib a.mtl\no first\nv 0 0 0 1 0 0\nv 1 0 0 0.5 0.5 0.5\nv 
     f -1//-1 -2//1 -3//-2\nusemtl b c\nf 1 2 \\\n 4\nf 5 4 3 2 1\nl 1 2\np 3\nf 1/1 2/2 3/3\n";
 
 const MTL: &str = "newmtl a\nKd 0.5 0.25 1\nd 0.5\nmap_Kd -s 2 2 -o 0.5 0 -clamp on a.png\nmap_Bump -bm 0.5 a.png\n\
+    Ke 0 2 0.5\nmap_Ke a.png\nPr 0.5\nPm 1\nmap_Pr -imfchan g a.png\nmap_Pm -imfchan b a.png\n\
     newmtl b c\nKd 1 1 1\nnorm a.png\n";
 
 const GLTF: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[
@@ -178,7 +179,20 @@ fn glb() -> Vec<u8> {
     let map = ShParallaxMap { images: vec![0], cutout, ..ShParallaxMap::default() };
     let parallax =
         Some(ShParallaxMap { scale: vec![0.5; 2], offset: vec![-0.1; 2], base_color_texture, ..map });
-    let materials = vec![Material { base_color_texture, parallax, ..Material::default() }];
+    let material = Material {
+        base_color_texture,
+        metallic: 0.5,
+        metallic_roughness_texture: base_color_texture,
+        occlusion_texture: base_color_texture,
+        occlusion_strength: 0.5,
+        emissive: [0.5, 1.0, 0.0],
+        emissive_texture: base_color_texture,
+        emissive_strength: 2.5,
+        unlit: true,
+        parallax,
+        ..Material::default()
+    };
+    let materials = vec![material];
     glb_bytes(&Model { name: "m".into(), mesh, materials, images: vec![picture()] }).expect("a whole model")
 }
 

@@ -4,13 +4,16 @@
 //! Where `$PARBAKE_GLB_OUT` names a folder, the GLB files stay there, for the
 //! Khronos validator to look at (`tools/validate_gltf`).
 
+mod common;
+
+use common::keep;
 use parbake_files::{Limits, read_model, write_glb, write_obj};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{
     AlphaMode, CutoutMap, DepthMap, Image, Material, Mesh, Model, ShParallaxMap, TextureSlot, UvTransform,
     Wrap,
 };
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A grid of `side`² vertices with every attribute and two textures.
 fn grid(side: u32) -> Model {
@@ -80,15 +83,6 @@ fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<_> = entries.map(|e| e.file_name().to_string_lossy().into_owned()).collect();
     names.sort();
     names
-}
-
-/// Leaves a file for the validator.
-fn keep(path: &Path, name: &str) -> std::io::Result<()> {
-    if let Some(folder) = std::env::var_os("PARBAKE_GLB_OUT").map(PathBuf::from) {
-        std::fs::create_dir_all(&folder)?;
-        std::fs::copy(path, folder.join(name))?;
-    }
-    Ok(())
 }
 
 /// Protects every bit of a model in a GLB file, around the size where indices grow,

@@ -5,7 +5,7 @@ use super::json::Document;
 use crate::FileError;
 use crate::context::Context;
 
-/// Read, or without effect on the shape, the base colour and the normals.
+/// Read, or without effect on the shape and the material.
 const KNOWN: [&str; 10] = [
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
@@ -22,7 +22,7 @@ const KNOWN: [&str; 10] = [
 /// Refuses a document that requires what is not supported.
 pub(super) fn check(document: &Document, context: &Context<'_>) -> Result<(), FileError> {
     for (i, name) in document.extensions_required.iter().enumerate() {
-        // Material extensions add to the look, but leave base colour and normals alone.
+        // Material extensions add to the look; what is read of a material stays as it is without them.
         if !KNOWN.contains(&name.as_str()) && !name.starts_with("KHR_materials_") {
             return Err(unsupported(context, &format!("/extensionsRequired/{i}"), name));
         }

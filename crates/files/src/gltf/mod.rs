@@ -1,6 +1,6 @@
 //! glTF 2.0 and GLB, in and out.
 //!
-//! Only what Parbake bakes from and to is understood: triangles, base colour, normals,
+//! Understood are triangles, the metallic-roughness material with all its textures, and
 //! parallax maps.
 //! Skins, morph targets and animations are passed over with a warning: the mesh
 //! is taken as its nodes place it.
@@ -12,6 +12,7 @@ mod container;
 mod extensions;
 mod integer;
 mod json;
+mod json_material;
 mod locate;
 mod materials;
 mod merge;
@@ -71,7 +72,7 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
     drop(merge);
     drop(buffers);
     for material in &materials {
-        for slot in material.texture_slots() {
+        for slot in material.all_texture_slots() {
             let uvs = if slot.uv_set == 0 { &mesh.uvs } else { &mesh.uvs1 };
             if uvs.is_empty() {
                 let (name, set) = (&material.name, slot.uv_set);

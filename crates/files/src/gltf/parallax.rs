@@ -6,7 +6,7 @@
 //! wrong types and pictures that cannot be decoded are errors, as everywhere in a document.
 
 use super::buffers::pointer;
-use super::json::{CutoutSh, ParallaxSh, TextureInfo};
+use super::json_material::{CutoutSh, ParallaxSh, TextureInfo};
 use super::textures::TextureReader;
 use crate::FileError;
 use crate::context::{Context, Textures};

@@ -5,7 +5,8 @@
 //! best explained by the first reference in it that leads nowhere.
 
 use super::buffers::Buffers;
-use super::json::{Material, Primitive};
+use super::json::Primitive;
+use super::json_material::{Material, TextureInfo};
 use crate::FileError;
 
 /// Refuses a document with a reference to what is not there.
@@ -110,10 +111,17 @@ fn accessors(primitive: &Primitive) -> [(Option<usize>, &'static str); 7] {
     ]
 }
 
-fn textures(material: &Material) -> [(Option<usize>, &'static str); 2] {
-    let base = material.pbr_metallic_roughness.as_ref().and_then(|p| p.base_color_texture.as_ref());
+fn textures(material: &Material) -> [(Option<usize>, &'static str); 5] {
+    let pbr = material.pbr_metallic_roughness.as_ref();
+    let index = |info: Option<&TextureInfo>| info.map(|t| t.index);
     [
-        (base.map(|t| t.index), "pbrMetallicRoughness/baseColorTexture"),
-        (material.normal_texture.as_ref().map(|t| t.index), "normalTexture"),
+        (index(pbr.and_then(|p| p.base_color_texture.as_ref())), "pbrMetallicRoughness/baseColorTexture"),
+        (index(material.normal_texture.as_ref()), "normalTexture"),
+        (
+            index(pbr.and_then(|p| p.metallic_roughness_texture.as_ref())),
+            "pbrMetallicRoughness/metallicRoughnessTexture",
+        ),
+        (index(material.occlusion_texture.as_ref()), "occlusionTexture"),
+        (index(material.emissive_texture.as_ref()), "emissiveTexture"),
     ]
 }

@@ -4,7 +4,8 @@
 //! is a warning; one that cannot be decoded is an error.
 
 use super::buffers::{Buffers, pointer};
-use super::json::{self, TextureInfo};
+use super::json;
+use super::json_material::{TextureInfo, TextureTransform};
 use super::uri::{Uri, parse};
 use crate::FileError;
 use crate::context::{NamedBytes, Textures};
@@ -155,7 +156,7 @@ fn wrap(code: Option<usize>) -> Wrap {
     }
 }
 
-fn uv_transform(json: &json::TextureTransform) -> Option<UvTransform> {
+fn uv_transform(json: &TextureTransform) -> Option<UvTransform> {
     let (offset, scale) = (json.offset.unwrap_or([0.0; 2]), json.scale.unwrap_or([1.0; 2]));
     let (offset, scale) = (Vec2::from_array(offset), Vec2::from_array(scale));
     let finite = offset.is_finite() && scale.is_finite() && json.rotation.is_finite();

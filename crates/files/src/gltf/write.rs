@@ -4,7 +4,7 @@
 //! the same bytes.
 
 use super::binary::Binary;
-use super::write_material::Materials;
+use super::write_material::{EMISSIVE_STRENGTH, Materials, UNLIT};
 use super::write_mesh::primitives;
 use crate::image_out::pack_png;
 use crate::{FileError, Place, write_atomically};
@@ -63,6 +63,8 @@ fn to_bytes(path: &Path, model: &Model) -> Result<Vec<u8>, FileError> {
         }
     }
     let extensions = [
+        (EMISSIVE_STRENGTH, materials.uses_emissive_strength),
+        (UNLIT, materials.uses_unlit),
         ("KHR_texture_transform", materials.uses_transforms),
         (super::parallax::NAME, materials.uses_parallax),
     ];

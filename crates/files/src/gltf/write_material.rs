@@ -1,8 +1,15 @@
-//! Materials for a GLB file: fully rough and not metallic, seen from both sides,
-//! for a baked look has its shading from nowhere else.
+//! Materials for a GLB file (glTF 2.0, 3.9), with KHR_materials_emissive_strength,
+//! KHR_materials_unlit and KHR_texture_transform.
+//!
+//! What is glTF's default is left out; metallic and roughness factor are both written or both left
+//! out. Factors out of range are clamped. What has no effect is not kept: an alpha cutoff without
+//! [`AlphaMode::Mask`], the strength of emission that is black or of an unlit material.
 
 use parbake_model::{AlphaMode, Material, Model, TextureSlot, UvTransform, Wrap};
 use serde_json::{Value, json};
+
+pub(super) const EMISSIVE_STRENGTH: &str = "KHR_materials_emissive_strength";
+pub(super) const UNLIT: &str = "KHR_materials_unlit";
 
 /// The document's material part. Indices into it are those of its own lists.
 #[derive(Default)]
@@ -17,6 +24,8 @@ pub(super) struct Materials {
     pub samplers: Vec<Value>,
     pub uses_transforms: bool,
     pub uses_parallax: bool,
+    pub uses_emissive_strength: bool,
+    pub uses_unlit: bool,
     texture_keys: Vec<(usize, [Wrap; 2], Filter)>,
     sampler_keys: Vec<([Wrap; 2], Filter)>,
 }
@@ -46,15 +55,14 @@ impl Materials {
     }
 
     fn material(&mut self, material: &Material) -> Value {
-        let factor = material.base_color.map(|x| f64::from(if x.is_nan() { 1.0 } else { x.clamp(0.0, 1.0) }));
-        let mut pbr = json!({ "metallicFactor": 0, "roughnessFactor": 1 });
-        if factor != [1.0; 4] {
-            pbr["baseColorFactor"] = json!(factor);
+        let pbr = self.metallic_roughness(material);
+        let mut json = json!({ "name": material.name });
+        if pbr != json!({}) {
+            json["pbrMetallicRoughness"] = pbr;
         }
-        if let Some(slot) = &material.base_color_texture {
-            pbr["baseColorTexture"] = self.texture_info(slot);
+        if material.double_sided {
+            json["doubleSided"] = true.into();
         }
-        let mut json = json!({ "name": material.name, "pbrMetallicRoughness": pbr, "doubleSided": true });
         if let Some(slot) = &material.normal_texture {
             let mut info = self.texture_info(slot);
             if material.normal_scale != 1.0 && material.normal_scale.is_finite() {
@@ -62,13 +70,67 @@ impl Materials {
             }
             json["normalTexture"] = info;
         }
+        if let Some(slot) = &material.occlusion_texture {
+            let mut info = self.texture_info(slot);
+            let strength = in_range(material.occlusion_strength, 1.0);
+            if strength != 1.0 {
+                info["strength"] = strength.into();
+            }
+            json["occlusionTexture"] = info;
+        }
+        self.add_emission(material, &mut json);
         match material.alpha_mode {
             AlphaMode::Opaque => {}
-            AlphaMode::Mask => json["alphaMode"] = "MASK".into(),
+            AlphaMode::Mask => {
+                json["alphaMode"] = "MASK".into();
+                if let Some(cutoff) = from_zero(material.alpha_cutoff, 0.5) {
+                    json["alphaCutoff"] = cutoff.into();
+                }
+            }
             AlphaMode::Blend => json["alphaMode"] = "BLEND".into(),
+        }
+        if material.unlit {
+            json["extensions"][UNLIT] = json!({});
+            self.uses_unlit = true;
         }
         self.add_parallax(material, &mut json);
         json
+    }
+
+    fn metallic_roughness(&mut self, material: &Material) -> Value {
+        let mut pbr = json!({});
+        let factor = material.base_color.map(|x| in_range(x, 1.0));
+        if factor != [1.0; 4] {
+            pbr["baseColorFactor"] = json!(factor);
+        }
+        if let Some(slot) = &material.base_color_texture {
+            pbr["baseColorTexture"] = self.texture_info(slot);
+        }
+        let (metallic, roughness) = (in_range(material.metallic, 1.0), in_range(material.roughness, 1.0));
+        if (metallic, roughness) != (1.0, 1.0) {
+            pbr["metallicFactor"] = short(metallic);
+            pbr["roughnessFactor"] = short(roughness);
+        }
+        if let Some(slot) = &material.metallic_roughness_texture {
+            pbr["metallicRoughnessTexture"] = self.texture_info(slot);
+        }
+        pbr
+    }
+
+    fn add_emission(&mut self, material: &Material, json: &mut Value) {
+        if let Some(slot) = &material.emissive_texture {
+            json["emissiveTexture"] = self.texture_info(slot);
+        }
+        let factor = material.emissive.map(|x| in_range(x, 0.0));
+        if factor == [0.0; 3] {
+            return;
+        }
+        json["emissiveFactor"] = json!(factor);
+        // The validator warns of unlit materials with another extension; nothing of them is emitted.
+        if let Some(strength) = from_zero(material.emissive_strength, 1.0).filter(|_| !material.unlit) {
+            json["extensions"][EMISSIVE_STRENGTH] = json!({ "emissiveStrength": strength });
+            self.uses_emissive_strength = true;
+        }
     }
 
     pub fn texture_info(&mut self, slot: &TextureSlot) -> Value {
@@ -105,6 +167,21 @@ impl Materials {
         }
         index
     }
+}
+
+/// From 0 to 1; `otherwise` where it is no number.
+fn in_range(x: f32, otherwise: f64) -> f64 {
+    if x.is_nan() { otherwise } else { f64::from(x).clamp(0.0, 1.0) }
+}
+
+/// A number without an upper limit; `None` where it is the default, or not finite.
+fn from_zero(x: f32, default: f32) -> Option<f64> {
+    (x.is_finite() && x != default).then(|| f64::from(x.max(0.0)))
+}
+
+/// 0 and 1 without a decimal point.
+fn short(x: f64) -> Value {
+    if x == 0.0 || x == 1.0 { json!(x as u8) } else { x.into() }
 }
 
 /// Where `value` is in `values`; at the end, if it was not there before.

@@ -59,7 +59,8 @@ fn mended(model: &Model) -> Mesh {
     mesh.tangents.truncate(mesh.normals.len());
     mesh.tangents.iter_mut().zip(&mesh.normals).for_each(|(t, &n)| *t = unit_tangent(*t, n));
     let zeros = vec![Vec2::ZERO; mesh.positions.len()];
-    let needed = |set: u8| model.materials.iter().flat_map(|m| m.texture_slots()).any(|s| s.uv_set >= set);
+    let needed =
+        |set: u8| model.materials.iter().flat_map(|m| m.all_texture_slots()).any(|s| s.uv_set >= set);
     if mesh.uvs1.is_empty() && needed(1) {
         mesh.uvs1.clone_from(&zeros);
     }

@@ -12,7 +12,7 @@ impl Materials {
     pub fn add_parallax(&mut self, material: &Material, json: &mut Value) {
         if let Some(map) = &material.parallax {
             let extension = self.parallax(map);
-            json["extensions"] = json!({ super::parallax::NAME: extension });
+            json["extensions"][super::parallax::NAME] = extension;
             self.uses_parallax = true;
         }
     }

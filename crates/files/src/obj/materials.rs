@@ -6,6 +6,7 @@
 //! * `norm` is a tangent-space normal map, +Y up. `map_Bump` should be a height
 //!   map, but many exporters write normal maps there: a picture whose mean colour
 //!   is that of a normal map (blue) is taken as one, any other is left out.
+//! * Metal, roughness and emission: `pbr.rs`.
 //! * What is missing (a library, a section, a picture) is a warning.
 
 use super::lex::text;
@@ -140,6 +141,7 @@ fn fill<'f>(
     } else if material.base_color[3] < 1.0 {
         material.alpha_mode = AlphaMode::Blend;
     }
+    super::pbr::fill(material, found, pictures)?;
     let normals = section.normal_map.as_ref();
     if let Some(map) = normals.or(section.bump_map.as_ref()) {
         material.normal_texture = pictures.slot(map, folder)?;
@@ -165,8 +167,8 @@ fn looks_like_normals(image: &Image) -> bool {
 }
 
 /// Pictures found so far, each once, to be decoded together.
-struct Pictures<'a, 'c> {
-    context: &'a Context<'c>,
+pub(super) struct Pictures<'a, 'c> {
+    pub context: &'a Context<'c>,
     found: Vec<NamedBytes<'static>>,
     /// By path as tried. `None`: not found.
     seen: HashMap<String, Option<usize>>,
@@ -174,7 +176,7 @@ struct Pictures<'a, 'c> {
 
 impl Pictures<'_, '_> {
     /// A use of the picture, if it can be found.
-    fn slot(&mut self, map: &Map, folder: &str) -> Result<Option<TextureSlot>, FileError> {
+    pub fn slot(&mut self, map: &Map, folder: &str) -> Result<Option<TextureSlot>, FileError> {
         if self.context.textures == Textures::Skip {
             return Ok(None);
         }

@@ -5,10 +5,12 @@ mod corner;
 mod lex;
 mod materials;
 mod mtl;
+mod pbr;
 mod polygon;
 mod srgb;
 mod statements;
 mod write;
+mod write_mtl;
 
 pub use write::write_obj;
 
@@ -76,7 +78,7 @@ fn used_materials(mut mesh: Mesh, names: Vec<String>) -> (Mesh, Vec<String>) {
 }
 
 fn check_coordinates(mesh: &Mesh, materials: &[Material], context: &Context<'_>) {
-    let textured = |m: &Material| m.base_color_texture.is_some() || m.normal_texture.is_some();
+    let textured = |m: &Material| m.all_texture_slots().next().is_some();
     if mesh.uvs.is_empty() && materials.iter().any(textured) {
         context.warn("materials have pictures, but no face has texture coordinates");
     }

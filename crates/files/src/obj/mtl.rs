@@ -1,7 +1,8 @@
-//! Material libraries (.mtl): `newmtl`, `Kd`, `d`, `map_Kd`, `norm`, `map_Bump`.
+//! Material libraries (.mtl): `newmtl`, `Kd`, `d`, `Ke`, `Pr`, `Pm` and their maps, `norm`,
+//! `map_Bump`.
 //!
-//! Follows the Wavefront "Material Library File" appendix, and `norm` from the
-//! PBR extension to it. Keywords are taken in any case, as exporters write
+//! Follows the Wavefront "Material Library File" appendix, and `norm`, `Ke`, `Pr` and `Pm` from
+//! the PBR extension to it. Keywords are taken in any case, as exporters write
 //! `map_kd` and `map_Kd`; options may stand before or after the file name, and
 //! the name may contain blanks. Nothing in a library is an error: a line that
 //! makes no sense is passed over, as most programs do.
@@ -21,6 +22,15 @@ pub(super) struct Map {
     pub clamp: bool,
     /// `-bm`: how strong bumps are.
     pub strength: f32,
+    /// `-imfchan`: the channel that a number is read from, as a small letter.
+    pub channel: Option<u8>,
+}
+
+impl Default for Map {
+    fn default() -> Self {
+        let file = String::new();
+        Self { file, scale: [1.0; 2], offset: [0.0; 2], clamp: false, strength: 1.0, channel: None }
+    }
 }
 
 /// One `newmtl` section.
@@ -33,6 +43,12 @@ pub(super) struct Section {
     pub normal_map: Option<Map>,
     pub bump_map: Option<Map>,
     pub has_opacity_map: bool,
+    pub emission: Option<[f64; 3]>,
+    pub emission_map: Option<Map>,
+    pub roughness: Option<f32>,
+    pub roughness_map: Option<Map>,
+    pub metallic: Option<f32>,
+    pub metallic_map: Option<Map>,
 }
 
 /// All sections, in order.
@@ -49,26 +65,33 @@ pub(super) fn read(bytes: &[u8]) -> Vec<Section> {
         }
         let Some(section) = sections.last_mut() else { continue };
         match keyword.as_slice() {
-            b"kd" => section.diffuse = color(words).or(section.diffuse),
+            b"kd" => section.diffuse = color(words, 1.0, 1.0).or(section.diffuse),
             // Not `Tr`: some programs write opacity there and some its opposite.
             b"d" => section.opacity = words.find_map(number).or(section.opacity),
             b"map_kd" => section.diffuse_map = map(words.remainder()),
             b"norm" | b"map_norm" => section.normal_map = map(words.remainder()),
             b"bump" | b"map_bump" => section.bump_map = map(words.remainder()),
             b"map_d" => section.has_opacity_map = true,
+            b"ke" => section.emission = color(words, f64::MAX, 0.0).or(section.emission),
+            b"map_ke" => section.emission_map = map(words.remainder()),
+            b"pr" => section.roughness = words.find_map(number).or(section.roughness),
+            b"map_pr" => section.roughness_map = map(words.remainder()),
+            b"pm" => section.metallic = words.find_map(number).or(section.metallic),
+            b"map_pm" => section.metallic_map = map(words.remainder()),
             _ => {}
         }
     }
     sections
 }
 
-/// `Kd r g b`, or `Kd grey`; not `Kd spectral …` nor `Kd xyz …`.
-fn color(words: Words<'_>) -> Option<[f64; 3]> {
+/// `Kd r g b`, or `Kd grey`; not `Kd spectral …` nor `Kd xyz …`. From 0 to `most`; `otherwise`
+/// where a number is not finite.
+fn color(words: Words<'_>, most: f64, otherwise: f64) -> Option<[f64; 3]> {
     let mut values = words.map(number::<f64>);
     let r = values.next()??;
     let g = values.next().unwrap_or(Some(r))?;
     let b = values.next().unwrap_or(Some(r))?;
-    Some([r, g, b].map(|x| if x.is_finite() { x.clamp(0.0, 1.0) } else { 1.0 }))
+    Some([r, g, b].map(|x| if x.is_finite() { x.clamp(0.0, most) } else { otherwise }))
 }
 
 /// Options, and how many words follow them at least and at most.
@@ -92,7 +115,7 @@ const OPTIONS: [(&[u8], usize, usize); 15] = [
 
 /// Options and file name. `None` when there is no name.
 fn map(rest: &[u8]) -> Option<Map> {
-    let mut map = Map { file: String::new(), scale: [1.0; 2], offset: [0.0; 2], clamp: false, strength: 1.0 };
+    let mut map = Map::default();
     // The name is what no option takes, from its first to its last word: the
     // blanks between them are part of it.
     let mut name: Option<(usize, usize)> = None;
@@ -118,6 +141,7 @@ fn map(rest: &[u8]) -> Option<Map> {
             (b"-s", [Some(u), v, _]) => map.scale = [u, v.unwrap_or(1.0)],
             (b"-o", [Some(u), v, _]) => map.offset = [u, v.unwrap_or(0.0)],
             (b"-bm", [Some(strength), ..]) => map.strength = strength,
+            (b"-imfchan", _) => map.channel = flag.first().map(u8::to_ascii_lowercase),
             (b"-clamp", _) => map.clamp = flag.eq_ignore_ascii_case(b"on"),
             _ => {}
         }
@@ -149,14 +173,13 @@ mod tests {
     /// Protects options before and after names with blanks.
     #[test]
     fn maps_with_options() {
-        let plain =
-            Map { file: "a b.png".into(), scale: [1.0; 2], offset: [0.0; 2], clamp: false, strength: 1.0 };
+        let plain = Map { file: "a b.png".into(), ..Map::default() };
         assert_eq!(parse("a b.png"), plain);
         assert_eq!(parse("-texres 512 -mm 0 1 -type sphere a b.png"), plain);
         assert_eq!(parse("-s 2 3 4 -o 0.5 -clamp on a b.png").scale, [2.0, 3.0]);
         assert_eq!(parse("-s 2 3 4 -o 0.5 -clamp on a b.png").offset, [0.5, 0.0]);
         let after = parse("-imfchan r a  b.png -bm 1.5");
-        assert_eq!((after.file.as_str(), after.strength), ("a  b.png", 1.5));
+        assert_eq!((after.file.as_str(), after.strength, after.channel), ("a  b.png", 1.5, Some(b'r')));
         assert!(parse("-clamp ON a").clamp && !parse("-clamp off a").clamp);
         assert_eq!(parse("tex\\wood#1.png").file, "tex/wood#1.png");
         assert_eq!(map(b"  -s 1 1 1"), None);

@@ -1,17 +1,17 @@
 //! OBJ out: the mesh, an MTL file and the pictures beside it.
 //!
 //! Numbers are printed so that reading gives the same bits back (colours: nearly). What OBJ cannot
-//! say is refused rather than dropped: turned, mirrored or second-set texture
-//! coordinates, a colour factor on a texture, and parallax maps. Tangents and the alpha of vertex
-//! colours are left out; readers can compute the former.
+//! say is refused rather than dropped (for materials see `write_mtl.rs`). Tangents and the alpha of
+//! vertex colours are left out; readers can compute the former.
 
-use super::{NamedImage, srgb};
+use super::srgb;
+use super::write_mtl::{library, material_names, name_pictures};
+use crate::FileError;
 use crate::atomic::write_together;
 use crate::image_out::pack_png;
 use crate::unit::unit;
-use crate::{FileError, Place};
 use parbake_model::glam::Vec3;
-use parbake_model::{Material, Mesh, Model, TextureSlot, UvTransform, Wrap};
+use parbake_model::{Mesh, Model};
 use rayon::prelude::*;
 use std::fmt::Write;
 use std::path::Path;
@@ -46,106 +46,6 @@ fn plain_stem(path: &Path) -> String {
     let plain = |c: char| if c.is_whitespace() || c.is_control() || "#\\\"".contains(c) { '_' } else { c };
     let stem: String = super::path_stem(path).chars().map(plain).collect();
     if stem.starts_with('-') { format!("_{stem}") } else { stem }
-}
-
-/// For each image a file name, if a material uses it.
-fn name_pictures<'a>(stem: &str, model: &'a Model) -> Vec<Option<NamedImage<'a>>> {
-    let mut names: Vec<Option<NamedImage>> = vec![None; model.images.len()];
-    let mut counts = [0; 2];
-    for material in &model.materials {
-        let slots = [(material.base_color_texture, "base_color"), (material.normal_texture, "normal")];
-        for ((slot, what), count) in slots.into_iter().zip(&mut counts) {
-            let Some(image) = slot.map(|s| s.image).filter(|&i| names[i].is_none()) else { continue };
-            *count += 1;
-            let number = if *count == 1 { String::new() } else { format!("_{count}") };
-            names[image] = Some((format!("{stem}_{what}{number}.png"), &model.images[image]));
-        }
-    }
-    names
-}
-
-/// Names that are told apart by the reader: no blanks at the ends, none twice.
-fn material_names(model: &Model) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    let mut taken = std::collections::HashSet::new();
-    for (i, material) in model.materials.iter().enumerate() {
-        let plain = |c: char| if c.is_control() || c == '\\' { '_' } else { c };
-        let name: String = material.name.trim().chars().map(plain).collect();
-        let mut name = if name.is_empty() { format!("material_{i}") } else { name };
-        while !taken.insert(name.clone()) {
-            name = format!("{name}_{i}");
-        }
-        names.push(name);
-    }
-    names
-}
-
-// Writing into a String cannot fail; `let _` says so where the trait returns a Result.
-
-fn library(path: &Path, model: &Model, pictures: &[Option<NamedImage>]) -> Result<String, FileError> {
-    let mut out = format!("# Parbake {}\n", env!("CARGO_PKG_VERSION"));
-    for (material, name) in model.materials.iter().zip(material_names(model)) {
-        if material.parallax.is_some() {
-            return Err(cannot(path, material, "a parallax map"));
-        }
-        let [r, g, b, a] = material.base_color.map(f64::from);
-        let [r, g, b] = [r, g, b].map(|x| srgb::encode(x.clamp(0.0, 1.0)));
-        let _ = write!(out, "\nnewmtl {name}\nKd {r} {g} {b}\nKs 0 0 0\n");
-        if a < 1.0 {
-            let _ = writeln!(out, "d {a}");
-        }
-        if let Some(slot) = &material.base_color_texture {
-            if material.base_color[..3] != [1.0; 3] {
-                return Err(cannot(path, material, "a colour factor on a texture"));
-            }
-            let _ = writeln!(out, "map_Kd {}", map(path, material, slot, pictures)?);
-        }
-        if let Some(slot) = &material.normal_texture {
-            let map = map(path, material, slot, pictures)?;
-            let strength = material.normal_scale;
-            let strength = if strength == 1.0 { String::new() } else { format!("-bm {strength} ") };
-            // `norm` is what new programs read, `map_Bump` what old ones do.
-            let _ = write!(out, "norm {strength}{map}\nmap_Bump {strength}{map}\n");
-        }
-    }
-    Ok(out)
-}
-
-/// Options and file name of one use.
-fn map(
-    path: &Path,
-    material: &Material,
-    slot: &TextureSlot,
-    pictures: &[Option<NamedImage>],
-) -> Result<String, FileError> {
-    let mut out = String::new();
-    match slot.wrap {
-        [Wrap::Repeat, Wrap::Repeat] => {}
-        [Wrap::Clamp, Wrap::Clamp] => out += "-clamp on ",
-        _ => return Err(cannot(path, material, "mirrored textures, or other edges along u than along v")),
-    }
-    let UvTransform { offset, rotation, scale } = slot.transform;
-    if rotation != 0.0 {
-        return Err(cannot(path, material, "turned textures"));
-    }
-    if slot.uv_set != 0 {
-        return Err(cannot(path, material, "a second set of texture coordinates"));
-    }
-    if slot.transform != UvTransform::default() {
-        let up = 1.0 - f64::from(scale.y) - f64::from(offset.y);
-        let _ = write!(out, "-s {} {} 1 -o {} {up} 0 ", scale.x, scale.y, offset.x);
-    }
-    out += pictures[slot.image].as_ref().map_or("", |(name, _)| name);
-    Ok(out)
-}
-
-fn cannot(path: &Path, material: &Material, feature: &str) -> FileError {
-    FileError::Unsupported {
-        path: path.into(),
-        place: Place::File,
-        feature: format!("{feature} (material {:?}) in OBJ", material.name),
-        advice: "write a .glb file instead".into(),
-    }
 }
 
 fn text(stem: &str, model: &Model) -> String {
@@ -199,8 +99,8 @@ fn vertices(out: &mut String, mesh: &Mesh) {
 mod tests {
     use super::*;
     use crate::{Limits, read_model};
-    use parbake_model::Image;
     use parbake_model::glam::{Vec2, Vec4};
+    use parbake_model::{Image, Material, TextureSlot, Wrap};
 
     fn model() -> Model {
         let mesh = Mesh {

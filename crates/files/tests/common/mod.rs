@@ -42,6 +42,15 @@ pub fn files_below(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
+/// Leaves a GLB file in `$PARBAKE_GLB_OUT`, if it is set, for the validator.
+pub fn keep(path: &Path, name: &str) -> std::io::Result<()> {
+    if let Some(folder) = std::env::var_os("PARBAKE_GLB_OUT").map(PathBuf::from) {
+        std::fs::create_dir_all(&folder)?;
+        std::fs::copy(path, folder.join(name))?;
+    }
+    Ok(())
+}
+
 /// Asserts the contracts of `Model` and `Mesh`.
 pub fn check_model(path: &Path, loaded: &Loaded) {
     let path = path.display();
@@ -61,13 +70,18 @@ pub fn check_model(path: &Path, loaded: &Loaded) {
     assert!(mesh.uvs.iter().chain(&mesh.uvs1).all(|uv| uv.is_finite()), "{path}");
     assert!(mesh.colors.iter().all(|c| c.is_finite()), "{path}");
     for material in &model.materials {
-        for slot in material.texture_slots() {
+        for slot in material.all_texture_slots() {
             assert!(slot.image < model.images.len() && slot.uv_set < 2, "{path}");
         }
         if let Some(map) = &material.parallax {
             assert_eq!(map.check(&model.images), Ok(()), "{path}");
         }
-        assert!(material.base_color.iter().all(|x| (0.0..=1.0).contains(x)), "{path}");
+        let (color, emissive) = (&material.base_color, &material.emissive);
+        let factors = [material.metallic, material.roughness, material.occlusion_strength];
+        let mut factors = color.iter().chain(emissive).chain(&factors);
+        assert!(factors.all(|x| (0.0..=1.0).contains(x)), "{path}");
+        let unbounded = [material.emissive_strength, material.alpha_cutoff];
+        assert!(unbounded.iter().all(|x| *x >= 0.0 && x.is_finite()), "{path}");
     }
     for image in &model.images {
         assert_eq!(image.pixels.len(), image.width * image.height, "{path}");

@@ -89,6 +89,96 @@ fn materials_are_understood() {
     assert_eq!((read.base_color, read.base_color_texture.is_some()), ([0.0, 0.0, 1.0, 1.0], true));
 }
 
+/// Protects the rest of the material: glTF's defaults where it says nothing, and numbers out of
+/// range, which are clamped.
+#[test]
+fn factors_have_defaults_and_ranges() {
+    let mut document = textured();
+    let said = |name: &str| Material { name: name.into(), ..Material::gltf_default() };
+    document["materials"][0] = json!({ "name": "bare" });
+    assert_eq!(material(&document), said("bare"));
+    document["materials"][0] = json!({ "name": "in", "doubleSided": true, "alphaCutoff": 0.25,
+        "pbrMetallicRoughness": { "metallicFactor": 0.25, "roughnessFactor": 0.75 },
+        "emissiveFactor": [0.5, 0.25, 0.125], "occlusionTexture": { "index": 0, "strength": 0.5 },
+        "extensions": { "KHR_materials_unlit": {},
+            "KHR_materials_emissive_strength": { "emissiveStrength": 7.5 } } });
+    let expected = Material {
+        metallic: 0.25,
+        roughness: 0.75,
+        occlusion_texture: Some(TextureSlot::default()),
+        occlusion_strength: 0.5,
+        emissive: [0.5, 0.25, 0.125],
+        emissive_strength: 7.5,
+        alpha_cutoff: 0.25,
+        double_sided: true,
+        unlit: true,
+        ..said("in")
+    };
+    assert_eq!(material(&document), expected);
+    document["materials"][0] = json!({ "name": "out", "alphaCutoff": -1,
+        "pbrMetallicRoughness": { "metallicFactor": -0.5, "roughnessFactor": 1e39 },
+        "emissiveFactor": [-1, 2, 0.5], "occlusionTexture": { "index": 0, "strength": 3 },
+        "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": 1e39 } } });
+    let expected = Material {
+        metallic: 0.0,
+        emissive: [0.0, 1.0, 0.5],
+        occlusion_texture: Some(TextureSlot::default()),
+        alpha_cutoff: 0.0,
+        ..said("out")
+    };
+    assert_eq!(material(&document), expected);
+    document["materials"][0] = json!({ "emissiveFactor": [1, 1] });
+    assert!(read_value(&document).unwrap_err().contains("/materials/0/emissiveFactor"));
+    // The older way to give a material has gloss instead of roughness, and no metal.
+    document["materials"][0] = json!({ "extensions": { "KHR_materials_pbrSpecularGlossiness": {
+        "glossinessFactor": 0.75 } }, "pbrMetallicRoughness": { "roughnessFactor": 0.5 } });
+    let read = material(&document);
+    assert_eq!((read.metallic, read.roughness), (0.0, 0.25));
+}
+
+/// Protects textures that nothing renders yet: their images are read, and what is wrong with them is
+/// told, as with a base colour.
+#[test]
+fn all_textures_are_read_alike() {
+    type Slot = fn(&Material) -> Option<TextureSlot>;
+    let slots: [(&str, Slot); 3] = [
+        ("pbrMetallicRoughness/metallicRoughnessTexture", |m| m.metallic_roughness_texture),
+        ("occlusionTexture", |m| m.occlusion_texture),
+        ("emissiveTexture", |m| m.emissive_texture),
+    ];
+    for (place, slot) in slots {
+        let mut document = textured();
+        let mut read = |info: Value| {
+            document["materials"][0] = match place.split_once('/') {
+                Some((part, name)) => json!({ part: { name: info } }),
+                None => json!({ place: info }),
+            };
+            read_value(&document)
+        };
+        let transform = json!({ "offset": [0.5, -1], "texCoord": 0 });
+        let info = json!({ "index": 0, "texCoord": 1, "extensions": { "KHR_texture_transform": transform } });
+        let model = read(info).unwrap().model;
+        assert_eq!((model.images.len(), model.images[0].pixels[0]), (1, [1, 2, 3, 255]), "{place}");
+        let transform = UvTransform { offset: Vec2::new(0.5, -1.0), ..UvTransform::default() };
+        assert_eq!(slot(&model.materials[0]), Some(TextureSlot { transform, ..TextureSlot::default() }));
+        let error = read(json!({ "index": 9 })).unwrap_err();
+        assert!(error.contains(&format!("/materials/0/{place}/index: texture 9")), "{error}");
+        let error = read(json!({ "index": 0, "texCoord": 2 })).unwrap_err();
+        assert!(error.contains(&format!("/materials/0/{place}")), "{error}");
+        read(json!({ "index": 0 })).unwrap();
+        document["images"] = json!([{ "uri": "gone.png" }]);
+        let loaded = read_value(&document).unwrap();
+        assert_eq!(slot(&loaded.model.materials[0]), None);
+        assert!(loaded.warnings[0].contains("gone.png"), "{:?}", loaded.warnings);
+        document["images"] = json!([{ "uri": "data:image/png;base64,AAAA" }]);
+        assert!(read_value(&document).unwrap_err().contains("image \"image 0\""));
+        document["meshes"] = json!([{ "primitives": [] }]);
+        document["textures"] = json!([]);
+        let error = read_value(&document).unwrap_err();
+        assert!(error.contains(&format!("/materials/0/{place}/index: texture 0")), "{error}");
+    }
+}
+
 /// Protects images in buffers, in base64 and of WebP, and that each is decoded once.
 #[test]
 fn images_of_all_kinds() {

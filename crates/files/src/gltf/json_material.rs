@@ -1,0 +1,122 @@
+//! The parts of a glTF 2.0 material that Parbake reads (section 5.19 and after it), with
+//! extensions, by the names of the specification.
+//!
+//! Contract: that of `json.rs`: nothing is checked but the types.
+
+use super::integer::{integer, optional_integer};
+use super::json::Ignored;
+use serde::Deserialize;
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct Material {
+    pub name: String,
+    pub pbr_metallic_roughness: Option<MetallicRoughness>,
+    pub normal_texture: Option<TextureInfo>,
+    pub occlusion_texture: Option<TextureInfo>,
+    pub emissive_texture: Option<TextureInfo>,
+    pub emissive_factor: Option<[f32; 3]>,
+    pub alpha_mode: Option<String>,
+    pub alpha_cutoff: Option<f32>,
+    pub double_sided: bool,
+    pub extensions: MaterialExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct MetallicRoughness {
+    pub base_color_factor: Option<[f32; 4]>,
+    pub base_color_texture: Option<TextureInfo>,
+    pub metallic_factor: Option<f32>,
+    pub roughness_factor: Option<f32>,
+    pub metallic_roughness_texture: Option<TextureInfo>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct MaterialExtensions {
+    #[serde(rename = "KHR_materials_emissive_strength")]
+    pub emissive_strength: Option<EmissiveStrength>,
+    #[serde(rename = "KHR_materials_unlit")]
+    pub unlit: Option<Ignored>,
+    #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
+    pub specular_glossiness: Option<SpecularGlossiness>,
+    #[serde(rename = "PARBAKE_materials_parallax_sh")]
+    pub parallax_sh: Option<Box<ParallaxSh>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct EmissiveStrength {
+    pub emissive_strength: Option<f32>,
+}
+
+/// Parbake's own: `docs/parallax_format.md`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct ParallaxSh {
+    #[serde(deserialize_with = "optional_integer")]
+    pub order: Option<usize>,
+    pub limit: Option<f32>,
+    pub coefficient_textures: Vec<TextureInfo>,
+    pub scale: Vec<f32>,
+    pub offset: Vec<f32>,
+    pub depth_texture: Option<TextureInfo>,
+    pub depth_scale: Option<f32>,
+    pub depth_offset: Option<f32>,
+    pub cutout: Option<CutoutSh>,
+    pub base_color_texture: Option<TextureInfo>,
+    pub normal_texture: Option<TextureInfo>,
+}
+
+/// The cutout in a parallax map.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct CutoutSh {
+    #[serde(deserialize_with = "optional_integer")]
+    pub order: Option<usize>,
+    pub coefficient_textures: Vec<TextureInfo>,
+    pub scale: Vec<f32>,
+    pub offset: Vec<f32>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct SpecularGlossiness {
+    pub diffuse_factor: Option<[f32; 4]>,
+    pub diffuse_texture: Option<TextureInfo>,
+    pub glossiness_factor: Option<f32>,
+    pub specular_glossiness_texture: Option<Ignored>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct TextureInfo {
+    #[serde(deserialize_with = "integer")]
+    pub index: usize,
+    #[serde(default, deserialize_with = "integer")]
+    pub tex_coord: usize,
+    /// Of normal textures only.
+    pub scale: Option<f32>,
+    /// Of occlusion textures only.
+    pub strength: Option<f32>,
+    #[serde(default)]
+    pub extensions: TextureInfoExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct TextureInfoExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    pub transform: Option<TextureTransform>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct TextureTransform {
+    pub offset: Option<[f32; 2]>,
+    pub rotation: f32,
+    pub scale: Option<[f32; 2]>,
+    #[serde(deserialize_with = "optional_integer")]
+    pub tex_coord: Option<usize>,
+}
