@@ -9,7 +9,9 @@ pub fn texture_slot(material: &Material, kind: MapKind) -> Option<TextureSlot> {
     match kind {
         MapKind::BaseColor => material.base_color_texture,
         MapKind::Normal => material.normal_texture,
-        _ => None,
+        MapKind::MetallicRoughness => material.metallic_roughness_texture,
+        MapKind::Emissive => None,
+        MapKind::Occlusion => material.occlusion_texture,
     }
 }
 
@@ -30,6 +32,7 @@ pub fn factors(material: &Material) -> MapValues {
     // The strength is the material's normal texture's; others have none of their own.
     let strength = material.normal_texture.map_or(1.0, |_| material.normal_scale);
     factors[MapKind::Normal] = Vec4::new(strength, strength, 1.0, 0.0);
+    factors[MapKind::MetallicRoughness] = Vec4::new(0.0, material.roughness, material.metallic, 0.0);
     factors
 }
 
@@ -38,6 +41,11 @@ pub fn set_texture(material: &mut Material, kind: MapKind, slot: TextureSlot) {
     match kind {
         MapKind::BaseColor => material.base_color_texture = Some(slot),
         MapKind::Normal => material.normal_texture = Some(slot),
-        _ => {}
+        MapKind::MetallicRoughness => {
+            (material.roughness, material.metallic) = (1.0, 1.0);
+            material.metallic_roughness_texture = Some(slot);
+        }
+        MapKind::Emissive => {}
+        MapKind::Occlusion => material.occlusion_texture = Some(slot),
     }
 }

@@ -30,7 +30,8 @@ use parbake_render::parallax::{ShParallax, Sight};
 use parbake_render::pipeline::{self, Gradients, View};
 use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 use parbake_render::scatter::{Fetch, Scatter};
-use parbake_render::shade::{Lambert, Shading};
+use parbake_image::MapValues;
+use parbake_render::shade::{Brdf, Lambert};
 use parbake_render::surface::{Surface, Textures};
 use std::hint::black_box;
 
@@ -387,7 +388,7 @@ fn shade_forward(bencher: Bencher) {
     bencher.counter(b.pixels()).bench_local(|| {
         for _ in &b.samples {
             let s = black_box(&SHADED);
-            black_box(Lambert.forward(&s.surface, s.color, s.map_normal));
+            black_box(Lambert.light(&s.surface, &MapValues::of(s.color, s.map_normal)));
         }
     });
 }
@@ -398,7 +399,7 @@ fn shade_adjoint(bencher: Bencher) {
     bencher.counter(b.pixels()).bench_local(|| {
         for _ in &b.samples {
             let s = black_box(&SHADED);
-            black_box(Lambert.adjoint(&s.surface, s.color, s.map_normal, s.gradient));
+            black_box(Lambert.adjoint(&s.surface, &MapValues::of(s.color, s.map_normal), s.gradient));
         }
     });
 }

@@ -65,8 +65,10 @@ impl Scene {
 
     /// Whether a material has more of this map than its neutral value.
     pub fn has(&self, kind: MapKind) -> bool {
-        let neutral = kind.spec().neutral;
-        self.surfaces.iter().any(|s| s.plain[kind as usize].is_some() || s.factors[kind] != neutral)
+        self.surfaces.iter().any(|surface| {
+            let (map, factor) = (&surface.plain[kind as usize], surface.factors[kind]);
+            factor != kind.spec().neutral || (map.is_some() && factor != Vec4::ZERO)
+        })
     }
 
     /// Sets up all triangles for one camera.

@@ -101,8 +101,9 @@ impl<'a> Builder<'a> {
     pub fn surface(&mut self, material: &Material) -> Surface {
         let mut factors = factors(material);
         if !self.interpretation.decode_srgb {
-            let stored = factors[MapKind::BaseColor].to_array().map(encode_srgb);
-            factors[MapKind::BaseColor] = Vec4::from(stored);
+            for kind in MapKind::ALL.into_iter().filter(|kind| kind.spec().encoding == Encoding::Srgb) {
+                factors[kind] = Vec4::from(factors[kind].to_array().map(encode_srgb));
+            }
         }
         let plain = MapKind::ALL.map(|kind| self.map(kind, texture_slot(material, kind)));
         Surface { factors, plain, shifted: self.shifted(material) }
