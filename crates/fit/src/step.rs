@@ -258,4 +258,28 @@ mod tests {
         let found = maps.get(MapKind::Normal).expect("it was put there").texels[0];
         assert!((found.z - 0.5).abs() < 0.01 && (found.length() - 1.0).abs() < 1e-5, "{found}");
     }
+
+    /// Protects emission, and that it needs no solve of its own: what the lit colour leaves of the
+    /// wanted light is emitted.
+    #[test]
+    fn emission_is_what_the_lit_colour_leaves() {
+        let (samples, atlas, display) = (samples(vec![Sample::facing(0, 0.8); 4]), atlas(), linear());
+        let problem = Problem {
+            samples: &samples,
+            atlas: &atlas,
+            display: &display,
+            brdf: &Lambert,
+            outliers: Cauchy::new(f32::INFINITY),
+        };
+        let start = FloatImage::solid(SIZE, Vec4::ZERO);
+        let mut maps =
+            MapSet::of(FloatImage::solid(SIZE, Vec4::splat(0.5)), FloatImage::solid(SIZE, Vec4::Z));
+        maps.insert(MapKind::Emissive, start.clone());
+        let mut workspace = Workspace::default();
+        for _ in 0..5 {
+            fit_step(MapKind::Emissive, &problem, &OPTIONS, &mut maps, &start, &mut workspace);
+        }
+        let found = maps.get(MapKind::Emissive).expect("it was put there").texels[0];
+        assert!((found.truncate() - parbake_model::glam::Vec3::splat(0.3)).length() < 3e-3, "{found}");
+    }
 }

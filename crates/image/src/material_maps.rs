@@ -1,7 +1,7 @@
 //! Where a material keeps each kind of map: its texture and its factor.
 
 use crate::maps::{MapKind, MapValues};
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 use parbake_model::{Material, TextureSlot};
 
 /// The texture of a map, as viewers see it that know no parallax maps.
@@ -10,7 +10,7 @@ pub fn texture_slot(material: &Material, kind: MapKind) -> Option<TextureSlot> {
         MapKind::BaseColor => material.base_color_texture,
         MapKind::Normal => material.normal_texture,
         MapKind::MetallicRoughness => material.metallic_roughness_texture,
-        MapKind::Emissive => None,
+        MapKind::Emissive => material.emissive_texture,
         MapKind::Occlusion => material.occlusion_texture,
     }
 }
@@ -32,6 +32,7 @@ pub fn factors(material: &Material) -> MapValues {
     // The strength is the material's normal texture's; others have none of their own.
     let strength = material.normal_texture.map_or(1.0, |_| material.normal_scale);
     factors[MapKind::Normal] = Vec4::new(strength, strength, 1.0, 0.0);
+    factors[MapKind::Emissive] = Vec3::from(material.emissive).extend(0.0) * material.emissive_strength;
     factors[MapKind::MetallicRoughness] = Vec4::new(0.0, material.roughness, material.metallic, 0.0);
     factors
 }
@@ -45,7 +46,10 @@ pub fn set_texture(material: &mut Material, kind: MapKind, slot: TextureSlot) {
             (material.roughness, material.metallic) = (1.0, 1.0);
             material.metallic_roughness_texture = Some(slot);
         }
-        MapKind::Emissive => {}
+        MapKind::Emissive => {
+            (material.emissive, material.emissive_strength) = ([1.0; 3], 1.0);
+            material.emissive_texture = Some(slot);
+        }
         MapKind::Occlusion => material.occlusion_texture = Some(slot),
     }
 }

@@ -1,9 +1,10 @@
 //! Shading: colour and tangent-space normal to the light that leaves the surface.
 //!
 //! The paper's eq. 2, `shade(d, C, N) = (d·N) C`, a Lambert surface under a
-//! headlight of unit strength: `k = max(0, light·m / √(mᵀ gram m))`, out = k C.
+//! headlight of unit strength, which sends out E besides: `k = max(0, light·m / √(mᵀ gram m))`,
+//! out = k C + E.
 //! [`Brdf`] is the one replaceable piece: glTF's metallic-roughness material will be another.
-//! Adjoint: `dL/dC = k g`; `dL/dk = C·g`, zero where the clamp holds.
+//! Adjoint: `dL/dC = k g`; `dL/dE = g`; `dL/dk = C·g`, zero where the clamp holds.
 //!
 //! Contract: `map_normal` need not be of unit length. Where what it maps to is shorter than
 //! [`SHORTEST`], as between vertex normals that look away from each other, directions say nothing:
@@ -78,7 +79,7 @@ pub trait Brdf: Sync {
     fn jacobian(&self, kind: MapKind, surface: &TangentLight, maps: &MapValues) -> (Vec4, Jacobian);
 }
 
-/// Lambert surface, light at the camera: `max(0, k) C`.
+/// Lambert surface that may shine by itself, light at the camera: `max(0, k) C + E`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lambert;
 
@@ -124,12 +125,13 @@ pub fn cosine_with_derivative(surface: &TangentLight, map_normal: Vec3) -> (f32,
 impl Brdf for Lambert {
     #[inline(always)]
     fn reads(&self, kind: MapKind) -> bool {
-        matches!(kind, MapKind::BaseColor | MapKind::Normal)
+        matches!(kind, MapKind::BaseColor | MapKind::Normal | MapKind::Emissive)
     }
 
     #[inline]
     fn light(&self, surface: &TangentLight, maps: &MapValues) -> Vec3 {
-        maps[MapKind::BaseColor].truncate() * cosine(surface, maps[MapKind::Normal].truncate()).max(0.0)
+        let k = cosine(surface, maps[MapKind::Normal].truncate()).max(0.0);
+        maps[MapKind::BaseColor].truncate() * k + maps[MapKind::Emissive].truncate()
     }
 
     #[inline]
@@ -137,6 +139,7 @@ impl Brdf for Lambert {
         let (color, m) = (maps[MapKind::BaseColor].truncate(), maps[MapKind::Normal].truncate());
         let (k, dk_dm) = cosine_with_derivative(surface, m);
         let mut out = BrdfGradient::default();
+        out.maps[MapKind::Emissive] = gradient.extend(0.0);
         if k <= 0.0 {
             return out;
         }
@@ -157,15 +160,20 @@ impl Brdf for Lambert {
 
     #[inline]
     fn jacobian(&self, kind: MapKind, surface: &TangentLight, maps: &MapValues) -> (Vec4, Jacobian) {
-        let albedo = maps[MapKind::BaseColor];
+        let (albedo, emissive) = (maps[MapKind::BaseColor], maps[MapKind::Emissive]);
         let m = maps[MapKind::Normal].truncate();
         if kind == MapKind::Normal {
             let (k, value) = cosine_with_derivative(surface, m);
             let slope = Jacobian::RankOne { light: albedo, value, only_brighter: k <= 0.0 };
-            return (albedo * k.max(0.0), slope);
+            return (albedo * k.max(0.0) + emissive, slope);
         }
         let k = cosine(surface, m).max(0.0);
-        (albedo * k, Jacobian::Diagonal(if kind == MapKind::BaseColor { Vec4::splat(k) } else { Vec4::ZERO }))
+        let slopes = match kind {
+            MapKind::BaseColor => Vec4::splat(k),
+            MapKind::Emissive => Vec4::ONE,
+            _ => Vec4::ZERO,
+        };
+        (albedo * k + emissive, Jacobian::Diagonal(slopes))
     }
 }
 
@@ -248,9 +256,36 @@ mod tests {
     fn a_surface_turned_away_is_black() {
         let s = TangentLight { light: Vec3::new(0.0, 0.0, -1.0), gram: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0] };
         assert_eq!(Lambert.light(&s, &MapValues::of(Vec3::ONE, Vec3::Z)), Vec3::ZERO);
-        assert_eq!(
-            Lambert.adjoint(&s, &MapValues::of(Vec3::ONE, Vec3::Z), Vec3::ONE),
-            BrdfGradient::default()
-        );
+        let gradient = Lambert.adjoint(&s, &MapValues::of(Vec3::ONE, Vec3::Z), Vec3::ONE);
+        for kind in [MapKind::BaseColor, MapKind::Normal] {
+            assert_eq!(gradient.maps[kind], Vec4::ZERO);
+        }
+        assert_eq!(gradient.surface, TangentLight::default());
+    }
+
+    /// Protects every map's solve: the Jacobian is the light's derivative, channel by channel, and the
+    /// adjoint is its transpose.
+    #[test]
+    fn jacobians_match_central_differences() {
+        let s = TangentLight { light: Vec3::new(0.2, -0.3, 0.8), gram: [0.9, 0.7, 0.8, 0.1, -0.2, 0.05] };
+        let mut values = MapValues::of(Vec3::new(0.3, 0.6, 0.9), Vec3::new(0.2, 0.1, 0.9));
+        values[MapKind::Emissive] = Vec4::new(0.1, 0.4, 0.2, 0.0);
+        let (g, h) = (Vec3::new(1.0, -0.4, 0.7), 1e-2);
+        let adjoint = Lambert.adjoint(&s, &values, g);
+        for kind in MapKind::ALL.into_iter().filter(|kind| Lambert.reads(*kind)) {
+            let (light, jacobian) = Lambert.jacobian(kind, &s, &values);
+            assert_eq!(light.truncate(), Lambert.light(&s, &values));
+            let pulled = jacobian.pull(g.extend(0.0));
+            for axis in 0..3 {
+                let at = |step: f32| {
+                    let mut moved = values;
+                    moved[kind][axis] += step;
+                    Lambert.light(&s, &moved).dot(g)
+                };
+                let difference = (at(h) - at(-h)) / (2.0 * h);
+                assert!((difference - pulled[axis]).abs() < 1e-3, "{kind:?} {axis}: {difference} {pulled}");
+                assert!((pulled[axis] - adjoint.maps[kind][axis]).abs() < 1e-5, "{kind:?} {axis}");
+            }
+        }
     }
 }
