@@ -180,16 +180,17 @@ mod tests {
     /// edge is near.
     #[test]
     fn corners_on_edges_stay_as_they_are() {
-        let around = [dvec2(0.0, 0.0), dvec2(64.0, 0.0), dvec2(0.0, 64.0)];
-        let wider = [dvec2(0.0, 0.0), dvec2(64.0, -64.0), dvec2(0.0, 640.0)];
+        let around = [dvec2(0.0, 0.0), dvec2(4_096.0, 0.0), dvec2(0.0, 4_096.0)];
+        let wider = [dvec2(0.0, 0.0), dvec2(4_096.0, -64.0), dvec2(0.0, 8_192.0)];
         for i in 0..50 {
-            // Numbers whose sums and differences round.
+            // Numbers whose sums and differences round, and slivers, which feel it.
             let [x, y, z] = [0.1, 0.7, 1.3].map(|start| start + f64::from(i) / 7.0);
-            let (on, above, below) = (dvec2(x, 0.0), dvec2(y + 3.0, 1.0), dvec2(z + 4.0, -1.0));
-            let inside = [on, dvec2(z + 9.0, 0.5), above];
+            let (on, far) = (dvec2(x, 0.0), dvec2(y + 1_000.0, 1.0));
+            let inside = [on, on.midpoint(far) - dvec2(0.0, 1e-3), far];
             assert_eq!(intersection(inside, around), intersection(inside, wider), "{inside:?}");
+            let (on, above, below) = (dvec2(y + 1_000.0, 0.0), dvec2(x, 1.0), dvec2(z, -1.0));
             let cut = above + (below - above) * 0.5;
-            let (whole, part) = ([on, below, above], [on, cut, above]);
+            let (whole, part) = ([above, below, on], [above, cut, on]);
             assert_eq!(intersection(whole, around), intersection(part, wider), "{whole:?}");
         }
     }
