@@ -181,16 +181,16 @@ mod tests {
     #[test]
     fn corners_on_edges_stay_as_they_are() {
         let around = [dvec2(0.0, 0.0), dvec2(4_096.0, 0.0), dvec2(0.0, 4_096.0)];
-        let wider = [dvec2(0.0, 0.0), dvec2(4_096.0, -64.0), dvec2(0.0, 8_192.0)];
+        let wider = [dvec2(0.0, 0.0), dvec2(4_096.0, -64.0), dvec2(-64.0, 8_192.0)];
         for i in 0..50 {
             // Numbers whose sums and differences round, and slivers, which feel it.
             let [x, y, z] = [0.1, 0.7, 1.3].map(|start| start + f64::from(i) / 7.0);
             let (on, far) = (dvec2(x, 0.0), dvec2(y + 1_000.0, 1.0));
             let inside = [on, on.midpoint(far) - dvec2(0.0, 1e-3), far];
             assert_eq!(intersection(inside, around), intersection(inside, wider), "{inside:?}");
-            let (on, above, below) = (dvec2(y + 1_000.0, 0.0), dvec2(x, 1.0), dvec2(z, -1.0));
-            let cut = above + (below - above) * 0.5;
-            let (whole, part) = ([above, below, on], [above, cut, on]);
+            let (on, right, left) = (dvec2(0.0, x), dvec2(z, 500.0), dvec2(-y, 1_000.0 + y));
+            let cut = right + (left - right) * (z / (z + y));
+            let (whole, part) = ([right, left, on], [right, cut, on]);
             assert_eq!(intersection(whole, around), intersection(part, wider), "{whole:?}");
         }
     }

@@ -96,7 +96,7 @@ pub fn weighted_quantiles(mut values: Vec<(f64, f64)>) -> Option<Quantiles> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::dvec2;
+    use glam::{Vec2Swizzles as _, dvec2};
 
     /// Protects the closed form, for rotations, mirrors and singular matrices too.
     #[test]
@@ -148,6 +148,9 @@ mod tests {
             assert_eq!(distortion(&layout(&[good, triangle]), 64).as_ref(), Some(&alone), "{triangle:?}");
             assert_eq!(distortion(&layout(&[triangle, good]), 64).as_ref(), Some(&alone), "{triangle:?}");
         }
+        // Scales without a sum: half of the least area that a number can hold.
+        let least = dvec2(2.3e-162, 0.0);
+        assert!(distortion(&layout(&[([DVec2::ZERO, least, least.yx()], DMat2::IDENTITY)]), 64).is_none());
         // A sum beyond all numbers.
         let far = [DVec2::ZERO, dvec2(1e38, 0.0), DVec2::Y];
         assert!(distortion(&layout(&[(far, DMat2::from_diagonal(dvec2(1e-100, 1e300)))]), 64).is_none());
