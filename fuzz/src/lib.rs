@@ -1,5 +1,10 @@
 //! What the fuzz targets share: limits that keep each run small, and the contract
-//! that every model must keep which a reader hands out.
+//! that every model must keep which a reader hands out; models built from any bytes,
+//! and what must hold of them after writing and after repair.
+
+pub mod built;
+pub mod repaired;
+pub mod written;
 
 use parbake_files::{FileError, Limits, Loaded, Resources};
 use std::io;

@@ -155,6 +155,95 @@ mod tests {
         assert!(centroid.distance(DVec2::splat(1.0 / 3.0)) < 1e-15);
     }
 
+    /// Protects every step of clipping: a hexagon far from symmetry (worked out with
+    /// fractions), wherever the corners begin, whichever triangle comes first, and away
+    /// from the origin.
+    #[test]
+    fn a_known_hexagon_is_left() {
+        let a = [dvec2(1.0, 1.0), dvec2(7.0, 1.0), dvec2(4.0, 7.0)];
+        let b = [dvec2(3.0, -1.0), dvec2(8.0, 6.0), dvec2(1.0, 4.0)];
+        let turned = |[a, b, c]: [DVec2; 3], by: usize| [[a, b, c], [b, c, a], [c, a, b]][by];
+        let centre = dvec2(5_748_267_937.0 / 1_522_619_280.0, 63_123_413.0 / 21_751_704.0);
+        for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+            for by in [DVec2::ZERO, dvec2(-100.0, 30.0)] {
+                let (a, b) = (moved(turned(a, i), by), moved(turned(b, j), by));
+                for (area, centroid) in [intersection(a, b).unwrap(), intersection(b, a).unwrap()] {
+                    assert!((area - 231_023.0 / 19_040.0).abs() < 1e-12, "{area}");
+                    assert!(centroid.distance(centre + by) < 1e-12, "{centroid}");
+                }
+            }
+        }
+    }
+
+    /// Protects digits: a corner on an edge is neither clipped nor doubled by a rounded
+    /// copy of itself, so that what is left is, to the last bit, what is left where no
+    /// edge is near.
+    #[test]
+    fn corners_on_edges_stay_as_they_are() {
+        let around = [dvec2(0.0, 0.0), dvec2(4_096.0, 0.0), dvec2(0.0, 4_096.0)];
+        let wider = [dvec2(0.0, 0.0), dvec2(4_096.0, -64.0), dvec2(-64.0, 8_192.0)];
+        for i in 0..50 {
+            // Numbers whose sums and differences round, and slivers, which feel it.
+            let [x, y, z] = [0.1, 0.7, 1.3].map(|start| start + f64::from(i) / 7.0);
+            let (on, far) = (dvec2(x, 0.0), dvec2(y + 1_000.0, 1.0));
+            let inside = [on, on.midpoint(far) - dvec2(0.0, 1e-3), far];
+            assert_eq!(intersection(inside, around), intersection(inside, wider), "{inside:?}");
+            let (on, right, left) = (dvec2(0.0, x), dvec2(z, 500.0), dvec2(-y, 1_000.0 + y));
+            let cut = right + (left - right) * (z / (z + y));
+            let (whole, part) = ([right, left, on], [right, cut, on]);
+            assert_eq!(intersection(whole, around), intersection(part, wider), "{whole:?}");
+        }
+    }
+
+    /// Protects both triangles' part in the search for a line between two: each of the
+    /// six edges may be the only one that separates.
+    #[test]
+    fn every_edge_may_separate() {
+        let turned = |[a, b, c]: [DVec2; 3], by: usize| [[a, b, c], [b, c, a], [c, a, b]][by];
+        let corner = [dvec2(0.5, 0.5), dvec2(2.0, 0.75), dvec2(0.75, 2.0)];
+        let pushed = corner.map(|p| p - f64::EPSILON);
+        for by in 0..3 {
+            let unit = turned(UNIT, by);
+            assert!(!positive_triangles_overlap(unit, corner) && !positive_triangles_overlap(corner, unit));
+            assert!(positive_triangles_overlap(unit, pushed) && positive_triangles_overlap(pushed, unit));
+        }
+    }
+
+    /// Protects touching segments: an end on the other segment, whichever end of which,
+    /// on whichever side; a common end; an end before the other's; and what misses by
+    /// the smallest step of an `f32`.
+    #[test]
+    fn segments_meet_at_any_of_their_ends() {
+        let both_ways = |a: [DVec2; 2], b: [DVec2; 2]| {
+            let turned = |[p, q]: [DVec2; 2]| [[p, q], [q, p]];
+            let all = turned(a).into_iter().flat_map(|a| turned(b).map(|b| (a, b)));
+            let answers: Vec<bool> =
+                all.flat_map(|(a, b)| [segments_meet(a, b), segments_meet(b, a)]).collect();
+            assert!(answers.iter().all(|&x| x == answers[0]), "{a:?} {b:?} {answers:?}");
+            answers[0]
+        };
+        let base = [dvec2(-1.0, -1.0), dvec2(3.0, 1.0)];
+        let on = dvec2(1.0, 0.0);
+        let step = f64::from(f32::EPSILON);
+        for (off, away) in [(dvec2(0.5, 2.0), dvec2(0.0, step)), (dvec2(1.5, -2.0), dvec2(0.0, -step))] {
+            assert!(both_ways(base, [on, off]));
+            assert!(!both_ways(base, [on + away, off]));
+            assert!(both_ways(base, [base[0], off]));
+            assert!(both_ways(base, [base[1], off]));
+        }
+        // On one line: end to end, within, and with a gap.
+        let along = dvec2(4.0, 2.0);
+        assert!(both_ways(base, [base[1], base[1] + along]));
+        assert!(both_ways(base, [base[0] + 0.25 * along, base[0] + 0.75 * along]));
+        assert!(!both_ways(base, [base[1] + step * along, base[1] + along]));
+        // Boxes that meet, with the one or the other segment on one side.
+        assert!(!both_ways(base, [dvec2(-0.5, 0.5), dvec2(1.0, 0.5)]));
+        assert!(!both_ways([DVec2::ZERO, DVec2::ONE], [dvec2(0.625, 0.5), dvec2(4.0, 0.25)]));
+        // A point on a segment, at its end, and beside it.
+        assert!(both_ways(base, [on; 2]) && both_ways(base, [base[0]; 2]));
+        assert!(!both_ways(base, [on + dvec2(0.0, step); 2]));
+    }
+
     /// Protects crossing, touching, collinear and one-point segments.
     #[test]
     fn segments_meet_where_they_touch() {

@@ -248,3 +248,73 @@ fn triangles_without_any_area_have_no_gutter() {
     assert_eq!(report.gutter, clean.gutter);
     assert_close(report.gutter.unwrap().texels, 10.0);
 }
+
+/// Protects the square's border on every side: a coordinate on it is inside, the next
+/// number that a file can hold is outside.
+#[test]
+fn the_border_belongs_to_the_square() {
+    let (low, high) = (DVec2::ZERO, DVec2::ONE);
+    let tiny = f64::from(f32::from_bits(1));
+    let step = f64::from(f32::EPSILON);
+    let outside = |low: DVec2, high: DVec2| {
+        let report = check(&layout(&[&rectangle(low, high - low)]), 64);
+        assert_consistent(&report);
+        report.orientations.outside.count
+    };
+    assert_eq!(outside(low, high), 0);
+    for (x, y) in [(1.0, 0.0), (0.0, 1.0)] {
+        let by = dvec2(x, y);
+        assert_eq!(outside(low - tiny * by, high), 2);
+        assert_eq!(outside(low, high + step * by), 2);
+    }
+}
+
+/// Protects the covered share of layouts that leave the square: it is counted within
+/// the square, though nothing overlaps; and of those that overlap within it.
+#[test]
+fn what_is_outside_or_doubled_covers_once() {
+    let report = check(&layout(&[&rectangle(DVec2::ZERO, dvec2(2.0, 0.5))]), 64);
+    assert_eq!((report.overlaps.pairs, report.orientations.outside.count), (0, 2));
+    assert_eq!(report.utilisation, 0.5);
+    let one = rectangle(DVec2::ZERO, dvec2(0.5, 0.5));
+    let report = check(&layout(&[&one, &one]), 64);
+    assert_eq!((report.overlaps.pairs, report.orientations.outside.count), (2, 0));
+    assert_eq!(report.utilisation, 0.25);
+}
+
+/// Protects the quantile of gutters, by length, and the number of charts.
+#[test]
+fn a_twentieth_of_the_boundary_comes_as_near_as_the_quantile() {
+    // A chart of a boundary 4 long, of which a notch of 1 / 64 is one texel nearer to
+    // the other chart: less than a twentieth.
+    let one = rectangle(dvec2(0.25, 0.25), dvec2(0.25, 0.5));
+    let notch = [dvec2(0.5, 0.75), dvec2(0.5, 0.75 - 1.0 / 64.0), dvec2(0.5 + 1.0 / 64.0, 0.75)];
+    let two = rectangle(dvec2(0.625, 0.0), dvec2(0.25, 1.0));
+    let report = check(&layout(&[&one, &two, &[notch]]), 64);
+    assert_eq!(report.charts, 3);
+    let gutter = report.gutter.unwrap();
+    assert_eq!((gutter.texels, gutter.charts), (0.0, [0, 2]));
+    let apart = check(&layout(&[&one, &two]), 64).gutter.unwrap();
+    assert_eq!((apart.texels, apart.quantile_5, apart.charts), (8.0, 8.0, [0, 1]));
+}
+
+/// Protects the gutter from points that are not finite: their edges say nothing.
+#[test]
+fn broken_points_have_no_gutter() {
+    let two = [rectangle(dvec2(0.1, 0.1), dvec2(0.2, 0.2)), rectangle(dvec2(0.4, 0.1), dvec2(0.2, 0.2))];
+    let clean = check(&layout(&[&two[0], &two[1]]), 100).gutter;
+    for broken in [dvec2(f64::NAN, 0.2), dvec2(f64::INFINITY, 0.2), dvec2(0.35, f64::NEG_INFINITY)] {
+        for turn in 0..3 {
+            // Its other two corners lie between the charts, the edge between them on one.
+            let mut corners = [dvec2(0.55, 0.3), dvec2(0.6, 0.3), broken];
+            corners.rotate_right(turn);
+            let mut with = layout(&[&two[0], &two[1]]);
+            let first = with.points.len() as u32;
+            with.points.extend(corners);
+            with.triangles.push([first, first + 1, first + 2]);
+            with.rest.push(DMat2::IDENTITY);
+            with.charts.push(1);
+            assert_eq!(check(&with, 100).gutter, clean, "{corners:?}");
+        }
+    }
+}

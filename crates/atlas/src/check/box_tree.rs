@@ -200,6 +200,189 @@ mod tests {
     use super::*;
     use glam::dvec2;
 
+    /// Protects boxes: around points, around boxes, what overlaps (not what touches),
+    /// and distances beside and across.
+    #[test]
+    fn boxes_have_insides_and_distances() {
+        let of = |low: [f64; 2], high: [f64; 2]| Bounds { low: low.into(), high: high.into() };
+        let one = Bounds::of(&[dvec2(1.0, 5.0), dvec2(3.0, 2.0), dvec2(2.0, 4.0)]);
+        assert_eq!((one.low, one.high), (dvec2(1.0, 2.0), dvec2(3.0, 5.0)));
+        let both = one.with(of([2.0, -1.0], [7.0, 3.0]));
+        assert_eq!((both.low, both.high), (dvec2(1.0, -1.0), dvec2(7.0, 5.0)));
+        let cases = [
+            (of([2.0, 3.0], [2.5, 3.5]), true, 0.0),
+            (of([0.0, 0.0], [9.0, 9.0]), true, 0.0),
+            (of([2.0, 3.0], [2.0, 3.0]), true, 0.0),
+            (of([3.0, 3.0], [4.0, 4.0]), false, 0.0),
+            (of([0.0, 3.0], [1.0, 4.0]), false, 0.0),
+            (of([2.0, 5.0], [2.5, 6.0]), false, 0.0),
+            (of([2.0, 0.0], [2.5, 2.0]), false, 0.0),
+            (of([5.5, 3.0], [6.0, 4.0]), false, 6.25),
+            (of([-2.0, 3.0], [-1.0, 4.0]), false, 4.0),
+            (of([2.0, 8.0], [2.5, 9.0]), false, 9.0),
+            (of([2.0, -1.0], [2.5, 0.5]), false, 2.25),
+            (of([6.0, 9.0], [7.0, 10.0]), false, 25.0),
+            (of([-4.0, -10.0], [-3.0, -1.0]), false, 25.0),
+        ];
+        for (other, overlaps, squared) in cases {
+            assert_eq!((one.overlaps(&other), other.overlaps(&one)), (overlaps, overlaps), "{other:?}");
+            assert_eq!(one.squared_distance(&other), squared, "{other:?}");
+            assert_eq!(other.squared_distance(&one), squared, "{other:?}");
+        }
+    }
+
+    /// The items of a tree's leaves, in the tree's order.
+    fn leaves(tree: &BoxTree) -> Vec<Vec<u32>> {
+        let holds_items = |n: &&Node| n.count > 0;
+        let items = |n: &Node| {
+            let first = n.next as usize;
+            let mut items: Vec<u32> =
+                tree.items[first..first + n.count as usize].iter().map(|i| i.index).collect();
+            items.sort_unstable();
+            items
+        };
+        tree.nodes.iter().filter(holds_items).map(items).collect()
+    }
+
+    /// Protects the shape of the tree, on which its speed rests: halves at the median of
+    /// the centres along the side on which these reach farther, whatever the boxes'
+    /// sizes and wherever they lie; indices decide among equal ones; leaves of four.
+    #[test]
+    fn items_are_halved_along_the_longer_side() {
+        // Centres -8 to 7, boxes up to 1,800 high and of many widths, far off the axis.
+        let item = |i: u32| {
+            let centre = dvec2(f64::from(i) - 8.0, 1_000.0);
+            let half = dvec2(f64::from(i * 7 % 16) * 3.0, f64::from(i * 5 % 16) * 60.0);
+            Bounds { low: centre - half, high: centre + half }
+        };
+        let turned = |b: Bounds| Bounds { low: dvec2(b.low.y, b.low.x), high: dvec2(b.high.y, b.high.x) };
+        let want: Vec<Vec<u32>> = (0..4).map(|k| (4 * k..4 * k + 4).collect()).collect();
+        // Not in order to begin with, and known by their places.
+        let order = |i: u32| i * 11 % 16;
+        let named = |tree: &BoxTree| -> Vec<Vec<u32>> {
+            let mut named = leaves(tree);
+            for leaf in &mut named {
+                leaf.iter_mut().for_each(|i| *i = order(*i));
+                leaf.sort_unstable();
+            }
+            named
+        };
+        let row = BoxTree::new((0..16).map(|i| (item(order(i)), 0)));
+        let column = BoxTree::new((0..16).map(|i| (turned(item(order(i))), 0)));
+        assert_eq!((named(&row), named(&column)), (want.clone(), want));
+        assert_eq!(row.nodes.len(), 7);
+        // As wide as high: along x.
+        let point = |i: u32| {
+            let p = dvec2(f64::from(i % 3), f64::from(i / 3));
+            (Bounds { low: p, high: p }, 0)
+        };
+        let square = BoxTree::new((0..9).map(point));
+        assert_eq!(leaves(&square)[0], [0, 1, 3, 6]);
+        assert_eq!(leaves(&BoxTree::new((0..5).map(point))), [vec![0, 3], vec![1, 2, 4]]);
+    }
+
+    /// Protects what nodes say of the items below them.
+    #[test]
+    fn nodes_know_boxes_and_groups_below_them() {
+        let tree = BoxTree::new((0..16).map(|i| {
+            let low = dvec2(2.0 * f64::from(i), 0.0);
+            (Bounds { low, high: low + 1.0 }, u32::from(i >= 8) * 5)
+        }));
+        let nodes: Vec<_> = tree.nodes.iter().map(|n| (n.bounds.low.x, n.bounds.high.x, n.group)).collect();
+        assert_eq!(
+            nodes,
+            [
+                (0.0, 31.0, MIXED),
+                (0.0, 15.0, 0),
+                (0.0, 7.0, 0),
+                (8.0, 15.0, 0),
+                (16.0, 31.0, 5),
+                (16.0, 23.0, 5),
+                (24.0, 31.0, 5),
+            ]
+        );
+    }
+
+    /// Protects the end of a search: how many looks it takes, and the lower bound that
+    /// it says where it was cut short. Items are said to be farther than their boxes, so
+    /// that nodes nearer than these have to be looked at.
+    #[test]
+    fn a_search_cut_short_says_how_near_the_rest_may_be() {
+        let tree = row(16);
+        let place = Bounds { low: dvec2(18.0, 0.0), high: dvec2(19.0, 1.0) };
+        let search = |max_looks| {
+            let near = tree.nearest(&place, 9, max_looks, |i| if i < 8 { 29.0 } else { 30.0 }).unwrap();
+            (near.squared, near.item / 4, near.exact)
+        };
+        // The root, the second half and its first leaf: 1 + 1 + 5, not to be cut short as
+        // nothing would be known. Then the leaf beside (25 off), 5 looks more; the first
+        // half (9 off), 1; its second leaf, 5, with what is nearest; its first one is too
+        // far off.
+        for max_looks in [0, 7, 11, 12] {
+            assert_eq!(search(max_looks), (9.0, 2, false), "{max_looks}");
+        }
+        assert_eq!(search(17), (9.0, 2, false));
+        assert_eq!(search(18), (29.0, 1, true));
+        // The nearest node that is left need not be the last one, nor the first one.
+        let near = tree.nearest(&place, 9, 11, |_| 7.0).unwrap();
+        assert_eq!((near.squared, near.exact), (7.0, true));
+        let near = tree.nearest(&place, 9, 11, |_| 26.0).unwrap();
+        assert_eq!((near.squared, near.exact), (9.0, false));
+    }
+
+    /// Protects the order of a search: nodes of the own group cost nothing, nor do those
+    /// that are no nearer than what was found; among equals the first one stays.
+    #[test]
+    fn a_search_skips_what_cannot_be_nearer() {
+        let count = std::cell::Cell::new(0);
+        let search = |tree: &BoxTree, low: f64, group: u32, max_looks: usize, squared: f64| {
+            count.set(0);
+            let place = Bounds { low: dvec2(low, 0.0), high: dvec2(low + 1.0, 1.0) };
+            let near = tree.nearest(&place, group, max_looks, |_| {
+                count.set(count.get() + 1);
+                squared
+            });
+            near.map(|near| (near.item, near.exact))
+        };
+        // Two leaves, each of a group of its own: 1 look at the root, 5 at the second.
+        let two = BoxTree::new((0..8).map(|i| {
+            let low = dvec2(2.0 * f64::from(i), 0.0);
+            (Bounds { low, high: low + 1.0 }, u32::from(i >= 4))
+        }));
+        assert!(search(&two, 0.0, 0, 0, 1e6).is_some_and(|(item, exact)| item >= 4 && exact));
+        assert_eq!(count.get(), 4);
+        // The other leaf is 1 off: no nearer than 1, nearer than 1.5.
+        assert!(search(&two, 6.0, 2, 100, 1.0).is_some_and(|(item, exact)| item < 4 && exact));
+        assert_eq!(count.get(), 4);
+        assert!(search(&two, 6.0, 2, 100, 1.5).is_some_and(|(item, exact)| item < 4 && exact));
+        assert_eq!(count.get(), 8);
+        // As near as each other: the first half first. Nearer: the second half first.
+        assert!(search(&two, 6.5, 2, 100, 1e6).is_some_and(|(item, _)| item < 4));
+        let between = Bounds { low: dvec2(7.25, 0.0), high: dvec2(7.75, 1.0) };
+        let near = two.nearest(&between, 2, 100, |_| 1e6).unwrap();
+        assert!(near.item < 4);
+        let near = two.nearest(&Bounds { low: dvec2(7.5, 0.0), ..between }, 2, 100, |_| 1e6).unwrap();
+        assert!(near.item >= 4);
+        // Within a leaf the first of equals stays, and a nearer one takes its place.
+        let one = BoxTree::new((0..3).map(|i| (Bounds { low: DVec2::ZERO, high: DVec2::ONE }, i)));
+        assert_eq!(search(&one, 0.0, 7, 100, 2.0), Some((0, true)));
+        let near = one.nearest(&between, 7, 100, |i| 3.0 - f64::from(i)).unwrap();
+        assert_eq!(near, Nearest { squared: 1.0, item: 2, exact: true });
+    }
+
+    /// Protects the end of a search that its visitor breaks.
+    #[test]
+    fn visitors_may_end_a_search() {
+        let tree = row(100);
+        let all = Bounds { low: DVec2::ZERO, high: dvec2(1_000.0, 1.0) };
+        let mut seen = 0;
+        tree.overlapping(&all, |_| {
+            seen += 1;
+            if seen == 7 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        assert_eq!(seen, 7);
+    }
+
     /// A row of unit boxes two apart, each its own group.
     fn row(count: u32) -> BoxTree {
         BoxTree::new((0..count).map(|i| {

@@ -82,13 +82,13 @@ pub fn weighted_quantiles(mut values: Vec<(f64, f64)>) -> Option<Quantiles> {
     values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let total: f64 = values.iter().map(|v| v.1).sum();
     let &(last, _) = values.last()?;
-    let (mut below, mut next) = (0.0, 0);
+    let mut below = 0.0;
+    let mut rest = values.iter().peekable();
     let [q1, q5, q50, q95, q99] = [0.01, 0.05, 0.5, 0.95, 0.99].map(|share| {
-        while next < values.len() && below + values[next].1 < share * total {
-            below += values[next].1;
-            next += 1;
+        while let Some((_, weight)) = rest.next_if(|v| below + v.1 < share * total) {
+            below += weight;
         }
-        values.get(next).map_or(last, |v| v.0)
+        rest.peek().map_or(last, |v| v.0)
     });
     Some(Quantiles { q1, q5, q50, q95, q99 })
 }
@@ -96,6 +96,7 @@ pub fn weighted_quantiles(mut values: Vec<(f64, f64)>) -> Option<Quantiles> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::{Vec2Swizzles as _, dvec2};
 
     /// Protects the closed form, for rotations, mirrors and singular matrices too.
     #[test]
@@ -111,6 +112,66 @@ mod tests {
         check(DMat2::from_diagonal(DVec2::new(-3.0, 0.5)) * turn, [3.0, 0.5]);
         check(DMat2::from_cols(DVec2::ONE, DVec2::ONE), [2.0, 0.0]);
         check(DMat2::ZERO, [0.0, 0.0]);
+    }
+
+    /// One triangle of each given pair of corners and rest shape.
+    fn layout(triangles: &[([DVec2; 3], DMat2)]) -> Layout {
+        Layout {
+            points: triangles.iter().flat_map(|t| t.0).collect(),
+            triangles: (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
+            rest: triangles.iter().map(|t| t.1).collect(),
+            ..Layout::default()
+        }
+    }
+
+    const UNIT: [DVec2; 3] = [DVec2::ZERO, DVec2::X, DVec2::Y];
+
+    /// Protects the figures from triangles that do not count: one coordinate that is
+    /// not finite, no area in space, or one beyond all numbers, in any order.
+    #[test]
+    fn what_has_no_figures_does_not_count() {
+        let good = ([0.5 * DVec2::ONE, DVec2::ONE, dvec2(0.25, 1.0)], DMat2::IDENTITY);
+        let alone = distortion(&layout(&[good]), 64).unwrap();
+        assert!((alone.stretch_l2 - alone.stretch_l2.max(1.0)).abs() < 1e-15);
+        let mut odd = vec![(UNIT, DMat2::ZERO), (UNIT, DMat2::from_diagonal(DVec2::splat(1e200)))];
+        for broken in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for corner in 0..3 {
+                let mut corners = UNIT;
+                corners[corner].y = broken;
+                odd.push((corners, DMat2::IDENTITY));
+            }
+        }
+        // Negative: no contract allows it, and no figure should follow from it.
+        odd.push((UNIT, DMat2::from_diagonal(dvec2(-1.0, 1.0))));
+        for triangle in odd {
+            assert!(distortion(&layout(&[triangle]), 64).is_none(), "{triangle:?}");
+            assert_eq!(distortion(&layout(&[good, triangle]), 64).as_ref(), Some(&alone), "{triangle:?}");
+            assert_eq!(distortion(&layout(&[triangle, good]), 64).as_ref(), Some(&alone), "{triangle:?}");
+        }
+        // Scales without a sum: half of the least area that a number can hold.
+        let least = dvec2(2.3e-162, 0.0);
+        assert!(distortion(&layout(&[([DVec2::ZERO, least, least.yx()], DMat2::IDENTITY)]), 64).is_none());
+        // A sum beyond all numbers.
+        let far = [DVec2::ZERO, dvec2(1e38, 0.0), DVec2::Y];
+        assert!(distortion(&layout(&[(far, DMat2::from_diagonal(dvec2(1e-100, 1e300)))]), 64).is_none());
+    }
+
+    /// Protects the figures of a mesh of which one part has no area in the texture:
+    /// it lowers the mean and the area scale, and has no stretch and no anisotropy.
+    #[test]
+    fn triangles_without_texels_have_no_stretch() {
+        let flat = [DVec2::ZERO, DVec2::X, 2.0 * DVec2::X];
+        let one = (UNIT, DMat2::from_diagonal(dvec2(0.5, 0.25)));
+        let none = (flat, DMat2::from_diagonal(dvec2(0.5, 0.75)));
+        // Scales 2 and 4 on a surface of 1/16; nothing on 3/16; a mean of 1/2 to 1/4.
+        let d = distortion(&layout(&[one, none]), 64).unwrap();
+        let close = |value: f64, want: f64| assert!((value - want).abs() < 1e-12, "{value}, not {want}");
+        close(d.texels_per_unit, 64.0 * 2f64.sqrt());
+        close(d.stretch_max, 0.5 * 2f64.sqrt());
+        close(d.stretch_l2, (0.5 * (0.25 + 0.0625) * 2.0f64).sqrt());
+        assert_eq!((d.area_scale.q1, d.area_scale.q50), (0.0, 0.0));
+        close(d.area_scale.q95, 4.0);
+        assert_eq!((d.anisotropy.q1, d.anisotropy.q99), (2.0, 2.0));
     }
 
     /// Protects quantiles of weighted values.

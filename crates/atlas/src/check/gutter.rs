@@ -28,7 +28,7 @@ pub(super) fn gutter(layout: &Layout, texture_size: usize) -> Option<Gutter> {
         .filter(|([a, b], _)| a.is_finite() && b.is_finite())
         .collect();
     let tree = BoxTree::new(edges.iter().map(|(segment, chart)| (Bounds::of(segment), *chart)));
-    let max_looks = (MAX_LOOKS / edges.len().max(1)).clamp(*LOOKS_OF_ONE.start(), *LOOKS_OF_ONE.end());
+    let max_looks = looks_of_one(edges.len());
     let nearest: Vec<Option<Nearest>> = edges
         .par_iter()
         .map(|&(segment, chart)| {
@@ -55,6 +55,11 @@ pub(super) fn gutter(layout: &Layout, texture_size: usize) -> Option<Gutter> {
         charts: [chart.min(other_chart), chart.max(other_chart)],
         place: place_between(segment, other).to_array(),
     })
+}
+
+/// Nodes and edges that one search may look at, of as many as there are edges.
+fn looks_of_one(edges: usize) -> usize {
+    (MAX_LOOKS / edges.max(1)).clamp(*LOOKS_OF_ONE.start(), *LOOKS_OF_ONE.end())
 }
 
 /// Whether a triangle is on the surface or takes a place in the texture.
@@ -105,7 +110,79 @@ fn place_between(a: Segment, b: Segment) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::dvec2;
+    use glam::{DMat2, dvec2};
+
+    /// Protects the bounds of all searches together and of one.
+    #[test]
+    fn looks_are_shared_out() {
+        let looks = [0, 1, 24_414, 25_000, 100_000, 781_250, 1_000_000].map(looks_of_one);
+        assert_eq!(looks, [8_192, 8_192, 8_192, 8_000, 2_000, 256, 256]);
+    }
+
+    /// Protects which triangles have a boundary: all but those without an area in both
+    /// space and texture.
+    #[test]
+    fn triangles_that_show_have_an_area_somewhere() {
+        let points = vec![DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
+        let shows = |corners: [u32; 3], rest: DMat2| {
+            let mut layout = Layout { points: points.clone(), ..Layout::default() };
+            layout.triangles.push(corners);
+            layout.rest.push(rest);
+            shows(&layout, 0)
+        };
+        assert!(shows([0, 1, 2], DMat2::IDENTITY) && shows([0, 2, 1], DMat2::IDENTITY));
+        assert!(shows([0, 1, 2], DMat2::ZERO) && shows([0, 2, 1], DMat2::ZERO));
+        assert!(shows([0, 0, 1], DMat2::IDENTITY));
+        assert!(!shows([0, 0, 1], DMat2::ZERO));
+    }
+
+    /// Protects the border: each side of the square, from within and from without.
+    #[test]
+    fn every_side_of_the_square_is_a_border() {
+        let distance = |low: DVec2, high: DVec2| {
+            let layout = Layout {
+                points: vec![low, dvec2(high.x, low.y), high],
+                triangles: vec![[0, 1, 2]],
+                ..Layout::default()
+            };
+            border(&layout, 16)
+        };
+        let (low, high) = (DVec2::splat(0.375), DVec2::splat(0.625));
+        assert_eq!(distance(low, high), Some(6.0));
+        assert_eq!(distance(dvec2(0.25, 0.375), high), Some(4.0));
+        assert_eq!(distance(dvec2(0.375, 0.125), high), Some(2.0));
+        assert_eq!(distance(low, dvec2(0.75, 0.625)), Some(4.0));
+        assert_eq!(distance(low, dvec2(0.625, 0.875)), Some(2.0));
+        assert_eq!(distance(dvec2(-0.25, 0.375), high), Some(-4.0));
+        assert_eq!(distance(low, dvec2(0.625, 1.5)), Some(-8.0));
+        assert_eq!(distance(dvec2(f64::NAN, 0.25), high), Some(4.0));
+        assert_eq!(border(&Layout::default(), 16), None);
+    }
+
+    /// Protects the nearest point of a segment away from the origin: before it, along
+    /// it, after it, and of a single point.
+    #[test]
+    fn nearest_points_of_segments() {
+        let segment = [dvec2(1.0, 2.0), dvec2(3.0, 4.0)];
+        let nearest = |p: DVec2, s: Segment| {
+            let (same, nearest) = to_segment(p, s);
+            assert_eq!(same, p);
+            nearest
+        };
+        assert_eq!(nearest(dvec2(1.0, 4.0), segment), dvec2(2.0, 3.0));
+        assert_eq!(nearest(dvec2(3.0, 3.0), segment), dvec2(2.5, 3.5));
+        assert_eq!(nearest(dvec2(0.0, 0.0), segment), segment[0]);
+        assert_eq!(nearest(dvec2(5.0, 4.5), segment), segment[1]);
+        assert_eq!(nearest(DVec2::ONE, [segment[0]; 2]), segment[0]);
+        // The smallest of the four, whichever end it is at.
+        let other = [dvec2(2.0, 6.0), dvec2(3.0, 5.0)];
+        for (a, b) in [(segment, other), (other, segment)] {
+            assert_eq!(squared_distance(a, b), 1.0);
+            assert_eq!(squared_distance([a[1], a[0]], b), 1.0);
+            assert_eq!(place_between(a, b), dvec2(3.0, 4.5));
+            assert_eq!(place_between([a[1], a[0]], [b[1], b[0]]), dvec2(3.0, 4.5));
+        }
+    }
 
     /// Protects the distances between segments on which the gutter rests.
     #[test]

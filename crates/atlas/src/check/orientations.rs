@@ -57,3 +57,20 @@ impl Found {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects the indices: the first five and no more, and the number of all.
+    #[test]
+    fn the_first_five_are_named() {
+        let mut found = Found::default();
+        for index in 0..5 {
+            found.add(10 * index);
+        }
+        assert_eq!(found, Found { count: 5, first: vec![0, 10, 20, 30, 40] });
+        found.add(50);
+        assert_eq!(found, Found { count: 6, first: vec![0, 10, 20, 30, 40] });
+    }
+}
