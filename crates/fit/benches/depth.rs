@@ -7,6 +7,7 @@ mod scene;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
+use parbake_fit::backend::Cpu;
 use parbake_fit::cutout::{CutoutOptions, examples, fit_cutout};
 use parbake_fit::parallax::{ParallaxOptions, State, fit_parallax};
 use parbake_image::display_table::DisplayTable;
@@ -51,10 +52,9 @@ fn parallax(bencher: Bencher, order: usize, size: usize) {
         ),
     };
     let display = DisplayTable::new(&DISPLAY);
-    bencher
-        .counter(looked_at(&views, options.views_per_step))
-        .with_inputs(state)
-        .bench_local_values(|mut state| fit_parallax(&views, &mut state, &Lambert, &display, &options, &()));
+    bencher.counter(looked_at(&views, options.views_per_step)).with_inputs(state).bench_local_values(
+        |mut state| fit_parallax(&Cpu, &views, &mut state, &Lambert, &display, &options, &()),
+    );
 }
 
 /// By the texture's size; items are pixels.

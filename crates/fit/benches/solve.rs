@@ -9,6 +9,7 @@ mod scene;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
+use parbake_fit::backend::Cpu;
 use parbake_fit::membrane::Membrane;
 use parbake_fit::outliers::Cauchy;
 use parbake_fit::problem::{Problem, footprint};
@@ -83,7 +84,7 @@ impl Bench {
     /// texel is skipped, as those that nothing pulls at are in a bake.
     fn matrix<B: Block>(&self, add: impl Fn(&mut [Row<B>], [usize; 4], [f32; 4])) -> Stencil<B> {
         let mut rows = vec![Row::default(); TEXTURE_SIZE * TEXTURE_SIZE];
-        for sample in self.samples.bands.iter().flatten() {
+        for sample in self.samples.iter() {
             let (_, weights) = footprint(sample, TEXTURE_SIZE);
             add(&mut rows, block(sample.texel as usize, TEXTURE_SIZE), weights);
         }
@@ -127,10 +128,9 @@ fn step(bencher: Bencher, kind: MapKind, membrane: Membrane, effort: Effort) {
     let (problem, mut workspace) = (b.problem(), Workspace::default());
     let options = StepOptions { membrane, effort, damping: 6.0 };
     let start = b.maps.get(kind).cloned().unwrap_or_default();
-    bencher
-        .counter(b.count())
-        .with_inputs(|| b.maps.clone())
-        .bench_local_values(|mut maps| fit_step(kind, &problem, &options, &mut maps, &start, &mut workspace));
+    bencher.counter(b.count()).with_inputs(|| b.maps.clone()).bench_local_values(|mut maps| {
+        fit_step(&Cpu, kind, &problem, &options, &mut maps, &start, &mut workspace)
+    });
 }
 
 /// A whole step of the colours, solver included.

@@ -17,6 +17,7 @@
 //!
 //! `schedule` walks that way; `watch` is how it reports and is stopped.
 
+pub mod backend;
 pub mod cutout;
 pub mod membrane;
 pub mod outliers;

@@ -16,6 +16,7 @@ mod plate;
 mod texels;
 mod view_gradient;
 
+use crate::backend::Backend;
 use parbake_image::MapSet;
 use parbake_image::display_table::DisplayTable;
 use parbake_model::glam::Vec4;
@@ -27,8 +28,10 @@ use parbake_solve::adam::{Adam, AdamOptions, rate_at};
 use parbake_views::sighted::Sighted;
 use plate::MapPlate;
 use rayon::prelude::*;
-use texels::{BAND, Texels, gather};
-use view_gradient::{Sums, add_view};
+pub use texels::Texels;
+use texels::{BAND, gather};
+pub use view_gradient::Sums;
+pub(crate) use view_gradient::add_view;
 
 /// How the map is fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,26 +108,27 @@ macro_rules! for_each_count {
 }
 
 /// The mean squared difference of these views as they are.
-pub fn mean_square<B: Brdf, M: ShiftMap>(
+pub fn mean_square<B: Brdf, M: ShiftMap, K: Backend>(
+    backend: &K,
     views: &[Vec<Sighted>],
     state: &State<M>,
     brdf: &B,
     display: &DisplayTable,
 ) -> f64 {
-    for_each_count!(state.maps, mean_square_of(views, state, brdf, display, &()))
+    for_each_count!(state.maps, mean_square_of(backend, views, state, brdf, display))
 }
 
-fn mean_square_of<B: Brdf, M: ShiftMap, W: Watcher, const N: usize>(
+fn mean_square_of<B: Brdf, M: ShiftMap, K: Backend, const N: usize>(
+    backend: &K,
     views: &[Vec<Sighted>],
     state: &State<M>,
     brdf: &B,
     display: &DisplayTable,
-    _: &W,
 ) -> f64 {
     let texels = Texels::<N>::new(&state.maps);
     let loss_of = |pixels: &Vec<Sighted>| {
         let mut sums = Sums::zeros(&state.map, &texels);
-        add_view(pixels, &state.map, &texels, brdf, display, &mut sums);
+        backend.view_gradient(pixels, &state.map, &texels, brdf, display, &mut sums);
         sums.loss
     };
     let losses: Vec<f64> = views.par_iter().map(loss_of).collect();
@@ -133,7 +137,8 @@ fn mean_square_of<B: Brdf, M: ShiftMap, W: Watcher, const N: usize>(
 }
 
 /// Moves parallax map and maps; returns the mean squared difference of each step's views.
-pub fn fit_parallax<B: Brdf, M: ShiftMap>(
+pub fn fit_parallax<B: Brdf, M: ShiftMap, K: Backend>(
+    backend: &K,
     views: &[Vec<Sighted>],
     state: &mut State<M>,
     brdf: &B,
@@ -141,16 +146,17 @@ pub fn fit_parallax<B: Brdf, M: ShiftMap>(
     options: &ParallaxOptions,
     watcher: &impl Watcher,
 ) -> Vec<f64> {
-    for_each_count!(state.maps, descend(views, state, brdf, display, options, watcher))
+    for_each_count!(state.maps, descend(backend, views, state, brdf, display, options, watcher))
 }
 
-fn descend<B: Brdf, M: ShiftMap, W: Watcher, const N: usize>(
+fn descend<B: Brdf, M: ShiftMap, K: Backend, const N: usize>(
+    backend: &K,
     views: &[Vec<Sighted>],
     state: &mut State<M>,
     brdf: &B,
     display: &DisplayTable,
     options: &ParallaxOptions,
-    watcher: &W,
+    watcher: &impl Watcher,
 ) -> Vec<f64> {
     let State { map, maps } = state;
     let mut texels = Texels::<N>::new(maps);
@@ -185,7 +191,7 @@ fn descend<B: Brdf, M: ShiftMap, W: Watcher, const N: usize>(
             .collect();
         sums.par_iter_mut().zip(chosen.par_chunks(together)).for_each(|(sums, views)| {
             (sums.loss, sums.map) = (0.0, map.zeros_like());
-            views.iter().for_each(|pixels| add_view(pixels, map, &texels, brdf, display, sums));
+            views.iter().for_each(|pixels| backend.view_gradient(pixels, map, &texels, brdf, display, sums));
         });
         let count: usize = chosen.iter().map(|pixels| pixels.len()).sum();
         losses.push(sums.iter().map(|s| s.loss).sum::<f64>() / (3 * count.max(1)) as f64);

@@ -15,6 +15,7 @@
 //!
 //! Contract: maps are as they come back from 8 bits.
 
+use crate::backend::Cpu;
 use crate::cutout::{CutoutOptions, examples, fit_cutout};
 use crate::parallax::{ParallaxOptions, State, fit_parallax, mean_square};
 use crate::schedule::{Comparison, Schedule, fit_textures};
@@ -166,7 +167,7 @@ pub fn fit_parallax_maps(
     let walker = walker.clone().with_cutout(cutout.as_ref());
 
     let Conventions { display, .. } = high.conventions;
-    let comparison = Comparison { brdf: &Lambert, display, srgb: high.conventions.srgb() };
+    let comparison = Comparison { backend: &Cpu, brdf: &Lambert, display, srgb: high.conventions.srgb() };
     let views = sighted_views(&walker, references);
     let display = DisplayTable::new(&display);
     let mut map = ShParallax::zeros(plan.parallax.order, plan.parallax.size);
@@ -203,7 +204,7 @@ pub fn fit_parallax_maps(
         if coarser.is_some_and(|size| size < pass.texture_size) {
             let anew = solved_with(ShParallax::zeros(plan.parallax.order, plan.parallax.size));
             let [with, without] =
-                [&state, &anew].map(|state| mean_square(&judged, state, &Lambert, &display));
+                [&state, &anew].map(|state| mean_square(&Cpu, &judged, state, &Lambert, &display));
             // Textures of a solve that was cut short say nothing of the map.
             if with > WORTH_KEEPING * without && !watch.stopped() {
                 state = anew;
@@ -211,7 +212,7 @@ pub fn fit_parallax_maps(
             }
         }
         let options = ParallaxOptions { steps: pass.steps, rate: pass.rate, ..plan.parallax };
-        losses.push(fit_parallax(&views, &mut state, &Lambert, &display, &options, watch));
+        losses.push(fit_parallax(&Cpu, &views, &mut state, &Lambert, &display, &options, watch));
         coarser = Some(pass.texture_size);
         map = state.map;
         textures = Some(state.maps);
@@ -229,9 +230,9 @@ pub fn fit_parallax_maps(
     let parallax = map.as_stored();
     if let Some(maps) = textures {
         let mut state = State { map, maps };
-        report.rounding[0] = mean_square(&judged, &state, &Lambert, &display);
+        report.rounding[0] = mean_square(&Cpu, &judged, &state, &Lambert, &display);
         state.map = parallax.clone();
-        report.rounding[1] = mean_square(&judged, &state, &Lambert, &display);
+        report.rounding[1] = mean_square(&Cpu, &judged, &state, &Lambert, &display);
     }
     Ok(FittedMaps { maps: ParallaxMaps { parallax, cutout }, views, report: Some(report) })
 }

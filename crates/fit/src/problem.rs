@@ -46,8 +46,9 @@ impl<B: Brdf> Problem<'_, B> {
     /// The loss of all samples, three channels each.
     pub fn loss(&self, maps: &MapSet) -> Loss {
         let size = self.samples.size;
-        let of_band = |band: &Vec<Sample>| -> Loss {
-            band.iter()
+        let of_band = |band: usize| -> Loss {
+            let samples = self.samples.band(band).iter();
+            samples
                 .map(|s| {
                     let (texels, w) = footprint(s, size);
                     let light = self.brdf.light(&s.light(), &maps.blend(texels, w));
@@ -55,7 +56,7 @@ impl<B: Brdf> Problem<'_, B> {
                 })
                 .sum()
         };
-        let bands: Vec<Loss> = self.samples.bands.par_iter().map(of_band).collect();
+        let bands: Vec<Loss> = (0..self.samples.bands()).into_par_iter().map(of_band).collect();
         bands.into_iter().sum()
     }
 }

@@ -6,6 +6,7 @@
 //! kept, so a run that is stopped, or a step that goes wrong, never ends worse. Best is by
 //! the loss that is minimised (`outliers.rs`); plain squares are what is reported.
 
+use crate::backend::{Backend, Cpu};
 use crate::membrane::Membrane;
 use crate::outliers::{Cauchy, Loss};
 use crate::problem::Problem;
@@ -132,7 +133,7 @@ struct Log {
 
 impl Log {
     fn new(samples: &SampleSet) -> Self {
-        let weight: f64 = samples.bands.iter().flatten().map(|s| f64::from(s.weight())).sum();
+        let weight: f64 = samples.iter().map(|s| f64::from(s.weight())).sum();
         Self { begin: Instant::now(), terms: (3.0 * weight).max(1e-9), losses: Vec::new(), best: None }
     }
 
@@ -147,7 +148,8 @@ impl Log {
 }
 
 /// The maps during the solve.
-struct Descent<'a, W> {
+struct Descent<'a, W, K> {
+    backend: &'a K,
     maps: MapSet,
     /// The projected maps: texels that nothing says more of stay there.
     start: &'a MapSet,
@@ -163,7 +165,7 @@ struct Descent<'a, W> {
     stopped: bool,
 }
 
-impl<W: Watcher> Descent<'_, W> {
+impl<W: Watcher, K: Backend> Descent<'_, W, K> {
     /// Counts a step; false where it shall not be taken.
     fn advance(&mut self) -> bool {
         if !self.stopped {
@@ -192,7 +194,8 @@ impl<W: Watcher> Descent<'_, W> {
             }
             let before = self.maps.clone();
             let options = schedule.options(kind, effort, self.damping);
-            let (loss, _) = fit_step(kind, problem, &options, &mut self.maps, start, &mut self.workspace);
+            let (maps, workspace) = (&mut self.maps, &mut self.workspace);
+            let (loss, _) = fit_step(self.backend, kind, problem, &options, maps, start, workspace);
             self.log.note(self.last, loss, &before);
             self.last = Move::Map(kind);
             if !is_damped {
@@ -225,7 +228,9 @@ impl<W: Watcher> Descent<'_, W> {
 
 /// What is fitted, and how it is compared.
 #[derive(Clone, Copy)]
-pub struct Comparison<'a, B> {
+pub struct Comparison<'a, B, K = Cpu> {
+    /// What computes.
+    pub backend: &'a K,
     /// How maps become light.
     pub brdf: &'a B,
     /// How light is shown.
@@ -235,15 +240,15 @@ pub struct Comparison<'a, B> {
 }
 
 /// Fits all maps that the start has, beginning there.
-pub fn fit_textures<B: Brdf>(
+pub fn fit_textures<B: Brdf, K: Backend>(
     samples: &SampleSet,
     atlas: &Atlas,
     start: &MapSet,
-    comparison: &Comparison<B>,
+    comparison: &Comparison<B, K>,
     schedule: &Schedule,
     watcher: &impl Watcher,
 ) -> Fitted {
-    let Comparison { brdf, display, srgb } = *comparison;
+    let Comparison { backend, brdf, display, srgb } = *comparison;
     let display = &DisplayTable::new(&display);
     let problem = &Problem { samples, atlas, display, brdf, outliers: Cauchy::new(schedule.outlier) };
     let kinds: Vec<MapKind> = start.kinds().filter(|kind| brdf.reads(*kind)).collect();
@@ -252,6 +257,7 @@ pub fn fit_textures<B: Brdf>(
     let total = schedule.rounds * kinds.iter().map(|kind| schedule.steps(*kind)).sum::<usize>()
         + schedule.final_steps * boxed.len();
     let mut descent = Descent {
+        backend,
         maps: start.clone(),
         start,
         workspace: Workspace::default(),
@@ -312,7 +318,7 @@ pub fn fit_textures<B: Brdf>(
 /// Texels that at least one sample reads.
 fn seen(samples: &SampleSet) -> Vec<bool> {
     let mut seen = vec![false; samples.size * samples.size];
-    for sample in samples.bands.iter().flatten() {
+    for sample in samples.iter() {
         for texel in block(sample.texel as usize, samples.size) {
             seen[texel] = true;
         }

@@ -9,6 +9,7 @@
 //! (`parbake_solve::boxed`); unit normals take a damped step (Levenberg–Marquardt) of limited length
 //! and are put back onto their hemisphere.
 
+use crate::backend::Backend;
 use crate::membrane::{Membrane, add_membrane, mean_pull};
 use crate::outliers::Loss;
 use crate::problem::{Problem, Response, footprint, local_places};
@@ -16,7 +17,7 @@ use parbake_image::{Domain, FloatImage, MapKind, MapSet};
 use parbake_model::glam::Vec4;
 use parbake_render::shade::{Brdf, Jacobian};
 use parbake_solve::boxed::solve_in_box;
-use parbake_solve::conjugate_gradient::{Effort, Outcome, solve};
+use parbake_solve::conjugate_gradient::{Effort, Outcome};
 use parbake_solve::grid::gather;
 use parbake_solve::stencil::{Block, Diagonal, Row, Stencil, Symmetric, add_diagonal, add_symmetric};
 use rayon::prelude::*;
@@ -46,6 +47,7 @@ pub struct Workspace {
 /// One step of the map of this kind, which must be in `maps`. `start` is what unseen texels are held
 /// to. Returns the loss before the step and what the linear solver did.
 pub fn fit_step<B: Brdf>(
+    backend: &impl Backend,
     kind: MapKind,
     problem: &Problem<B>,
     options: &StepOptions,
@@ -57,17 +59,19 @@ pub fn fit_step<B: Brdf>(
     match kind.spec().domain {
         Domain::Box => {
             let rows = &mut workspace.diagonal;
-            let loss = assemble(kind, problem, maps, rows);
+            let loss = backend.assemble(kind, problem, maps, rows);
             let Some(map) = maps.get_mut(kind) else { return (loss, Outcome::default()) };
             add_membrane(rows, problem.atlas, map, start, &options.membrane);
             let matrix = Stencil { size, rows: std::mem::take(rows) };
-            let outcome = solve_in_box(&matrix, &mut map.texels, &options.effort);
+            let solve =
+                |right: &[Vec4], free: &[Vec4]| backend.solve(&matrix, right, Some(free), &options.effort);
+            let outcome = solve_in_box(&matrix, &mut map.texels, solve);
             *rows = matrix.rows;
             (loss, outcome)
         }
         Domain::Hemisphere => {
             let rows = &mut workspace.symmetric;
-            let loss = assemble(kind, problem, maps, rows);
+            let loss = backend.assemble(kind, problem, maps, rows);
             let Some(map) = maps.get_mut(kind) else { return (loss, Outcome::default()) };
             let extra = options.damping * mean_pull(rows);
             add_membrane(rows, problem.atlas, map, start, &options.membrane);
@@ -75,7 +79,7 @@ pub fn fit_step<B: Brdf>(
                 .filter(|r| r.centre.trace() > 0.0)
                 .for_each(|r| r.centre.add(&Symmetric::identity(extra)));
             let matrix = Stencil { size, rows: std::mem::take(rows) };
-            let (step, outcome) = solve(&matrix, &matrix.right(), None, &options.effort);
+            let (step, outcome) = backend.solve(&matrix, &matrix.right(), None, &options.effort);
             map.texels.par_iter_mut().zip(&step).for_each(|(m, step)| {
                 let limit = (LONGEST / step.length().max(1e-9)).min(1.0);
                 *m = Domain::Hemisphere.clamp(*m + *step * limit);
@@ -87,7 +91,7 @@ pub fn fit_step<B: Brdf>(
 }
 
 /// The normal equations of one map over all samples; returns the loss.
-fn assemble<B: Brdf, S: SampleBlock>(
+pub(crate) fn assemble_on_cpu<B: Brdf, S: SampleBlock>(
     kind: MapKind,
     problem: &Problem<B>,
     maps: &MapSet,
@@ -99,7 +103,7 @@ fn assemble<B: Brdf, S: SampleBlock>(
         rows,
         |band, first, local| {
             let mut loss = Loss::default();
-            for s in &problem.samples.bands[band] {
+            for s in problem.samples.band(band) {
                 let (texels, w) = footprint(s, size);
                 let (light, jacobian) = problem.brdf.jacobian(kind, &s.light(), &maps.blend(texels, w));
                 let (response, weights, share) = problem.respond(light, s);
@@ -116,7 +120,7 @@ fn assemble<B: Brdf, S: SampleBlock>(
 }
 
 /// A matrix block that samples add to.
-trait SampleBlock: Block {
+pub trait SampleBlock: Block {
     /// `Jᵀ s ω s J` and `−Jᵀ s ω r`; none where nothing is asked.
     fn of(jacobian: &Jacobian, response: &Response, weights: Vec4) -> Option<(Self, Vec4)>;
 
@@ -182,6 +186,7 @@ fn along(jacobian: &Jacobian, response: &Response, weights: Vec4) -> Option<(f32
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::backend::Cpu;
     use crate::outliers::Cauchy;
     use parbake_image::display::{Curve, Display};
     use parbake_image::display_table::DisplayTable;
@@ -201,7 +206,7 @@ mod tests {
     }
 
     fn samples(first_band: Vec<Sample>) -> SampleSet {
-        SampleSet { size: SIZE, bands: vec![first_band] }
+        SampleSet::new(SIZE, &[first_band])
     }
 
     fn linear() -> DisplayTable {
@@ -228,7 +233,7 @@ mod tests {
             let mut workspace = Workspace::default();
             let before = problem.loss(&maps);
             for _ in 0..20 {
-                fit_step(MapKind::BaseColor, &problem, &OPTIONS, &mut maps, &start, &mut workspace);
+                fit_step(&Cpu, MapKind::BaseColor, &problem, &OPTIONS, &mut maps, &start, &mut workspace);
             }
             let found = maps.get(MapKind::BaseColor).expect("it was put there").texels[0].x;
             assert!((found - wanted).abs() < 3e-3, "{scale}: {found}");
@@ -253,7 +258,7 @@ mod tests {
         let mut maps = MapSet::of(FloatImage::solid(SIZE, Vec4::ONE), start.clone());
         let mut workspace = Workspace::default();
         for _ in 0..40 {
-            fit_step(MapKind::Normal, &problem, &OPTIONS, &mut maps, &start, &mut workspace);
+            fit_step(&Cpu, MapKind::Normal, &problem, &OPTIONS, &mut maps, &start, &mut workspace);
         }
         let found = maps.get(MapKind::Normal).expect("it was put there").texels[0];
         assert!((found.z - 0.5).abs() < 0.01 && (found.length() - 1.0).abs() < 1e-5, "{found}");
@@ -277,7 +282,7 @@ mod tests {
         maps.insert(MapKind::Emissive, start.clone());
         let mut workspace = Workspace::default();
         for _ in 0..5 {
-            fit_step(MapKind::Emissive, &problem, &OPTIONS, &mut maps, &start, &mut workspace);
+            fit_step(&Cpu, MapKind::Emissive, &problem, &OPTIONS, &mut maps, &start, &mut workspace);
         }
         let found = maps.get(MapKind::Emissive).expect("it was put there").texels[0];
         assert!((found.truncate() - parbake_model::glam::Vec3::splat(0.3)).length() < 3e-3, "{found}");

@@ -13,6 +13,7 @@ use crate::geometry::{Geometry, move_geometry};
 use crate::options::{BakeOptions, UvMode};
 use crate::report::{BakeReport, Work, layout_warning};
 use parbake_atlas::check_mesh;
+use parbake_fit::backend::{Backend, Cpu};
 use parbake_fit::parallax_maps::{FittedMaps, ParallaxMaps, fit_parallax_maps};
 use parbake_fit::schedule::{Comparison, fit_textures};
 use parbake_image::MapKind;
@@ -27,7 +28,6 @@ use parbake_views::high_poly::{Conventions, HighPoly, ViewSet};
 use parbake_views::low_poly::{LowPoly, lit};
 use parbake_views::pool::Rig;
 use parbake_views::projection::project;
-use parbake_views::samples::{collect_samples, shifted_samples};
 use parbake_views::sighted::sighted_views;
 use parbake_views::view_walk::Walker;
 use std::time::Instant;
@@ -171,7 +171,7 @@ fn run(
     };
     let (samples, maps, parallax_report) = match parallax {
         None => {
-            let samples = collect_samples(&walker, &references, size, &scope);
+            let samples = Cpu.view_samples(&walker, &references, size, &scope);
             drop(references);
             (samples, None, None)
         }
@@ -179,7 +179,7 @@ fn run(
             let walker = walker.with_cutout(maps.cutout.as_ref());
             sighted.extend(sighted_views(&walker, &references[sighted.len()..]));
             drop(references);
-            (shifted_samples(sighted, size, &maps.parallax, &scope), Some(maps), report)
+            (Cpu.shifted_view_samples(sighted, size, &maps.parallax, &scope), Some(maps), report)
         }
     };
     if samples.is_empty() {
@@ -187,7 +187,7 @@ fn run(
     }
     clock.lap(Stage::Sampling);
 
-    let comparison = Comparison { brdf: &Lambert, display, srgb: high.conventions.srgb() };
+    let comparison = Comparison { backend: &Cpu, brdf: &Lambert, display, srgb: high.conventions.srgb() };
     let LowPoly { written, map: texels, atlas, .. } = &prepared;
     let fitted = fit_textures(&samples, atlas, &projected.maps, &comparison, &plan.schedule, &scope);
     clock.lap(Stage::Solve);

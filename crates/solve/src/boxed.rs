@@ -2,7 +2,7 @@
 //! set. Lanes that leave the box are put on its face and held, and the rest is corrected (Moré and
 //! Toraldo 1991, simplified).
 
-use crate::conjugate_gradient::{Effort, Outcome, solve};
+use crate::conjugate_gradient::Outcome;
 use crate::stencil::{Diagonal, Stencil};
 use glam::Vec4;
 use rayon::prelude::*;
@@ -11,8 +11,13 @@ use rayon::prelude::*;
 const ROUNDS: usize = 3;
 
 /// Moves `values` towards the solution of `A d = b` for their change d, `b` being the matrix's own
-/// right-hand side; values end within [0, 1].
-pub fn solve_in_box(matrix: &Stencil<Diagonal>, values: &mut [Vec4], effort: &Effort) -> Outcome {
+/// right-hand side; values end within [0, 1]. `solve` solves `A d = r` from zero, for a right-hand side r and
+/// lanes that are free (1) or held (0).
+pub fn solve_in_box(
+    matrix: &Stencil<Diagonal>,
+    values: &mut [Vec4],
+    solve: impl Fn(&[Vec4], &[Vec4]) -> (Vec<Vec4>, Outcome),
+) -> Outcome {
     let right = matrix.right();
     // A lane on a face that is pushed outwards is held from the beginning.
     let mut free: Vec<Vec4> = values
@@ -28,7 +33,7 @@ pub fn solve_in_box(matrix: &Stencil<Diagonal>, values: &mut [Vec4], effort: &Ef
     let mut total = Outcome { steps: 0, reduction: 1.0 };
     let mut residual = right.clone();
     for round in 0..ROUNDS {
-        let (step, outcome) = solve(matrix, &residual, Some(&free), effort);
+        let (step, outcome) = solve(&residual, &free);
         total.steps += outcome.steps;
         total.reduction = outcome.reduction;
         let hits: usize = values

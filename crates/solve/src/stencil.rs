@@ -28,10 +28,12 @@ pub trait Block: Copy + Default + Send + Sync {
 
 /// Independent channels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(transparent)]
 pub struct Diagonal(pub Vec4);
 
 /// Symmetric 3 × 3: xx, yy, zz, xy, xz, yz.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(transparent)]
 pub struct Symmetric(pub [f32; 6]);
 
 impl Block for Diagonal {
@@ -116,6 +118,7 @@ impl Symmetric {
 
 /// One texel's part of the matrix and of the right-hand side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
 pub struct Row<B> {
     /// Coupling with itself.
     pub centre: B,

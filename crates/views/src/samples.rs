@@ -24,6 +24,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// One pixel of a training view, as the texture sees it: 36 bytes, since a fit reads
 /// millions of them in every step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
 pub struct Sample {
     /// Upper left texel of the bilinear fetch.
     pub texel: u32,
@@ -38,13 +39,15 @@ pub struct Sample {
     pub weight: u16,
 }
 
-/// All samples, by band of the texture.
+/// All samples, by band of the texture, in one flat buffer.
 #[derive(Clone, Debug, Default)]
 pub struct SampleSet {
     /// Texels along a side of the texture.
     pub size: usize,
-    /// Samples whose fetch begins in this band, in a fixed order.
-    pub bands: Vec<Vec<Sample>>,
+    /// Where each band's samples begin, and the end of the last one's.
+    first: Vec<usize>,
+    /// Samples whose fetch begins in the first band, then in the second …, each in a fixed order.
+    samples: Vec<Sample>,
 }
 
 impl Sample {
@@ -91,14 +94,43 @@ impl Sample {
 }
 
 impl SampleSet {
+    /// Of hand-made bands.
+    pub fn new(size: usize, bands: &[Vec<Sample>]) -> Self {
+        let mut first = vec![0];
+        first.extend(bands.iter().scan(0, |end, band| {
+            *end += band.len();
+            Some(*end)
+        }));
+        Self { size, first, samples: bands.concat() }
+    }
+
     /// How many samples there are.
     pub fn len(&self) -> usize {
-        self.bands.iter().map(Vec::len).sum()
+        self.samples.len()
     }
 
     /// True when no view saw anything.
     pub fn is_empty(&self) -> bool {
-        self.len() == 0
+        self.samples.is_empty()
+    }
+
+    /// All samples, band after band.
+    pub fn iter(&self) -> std::slice::Iter<'_, Sample> {
+        self.samples.iter()
+    }
+
+    /// How many bands there are.
+    pub fn bands(&self) -> usize {
+        self.first.len().saturating_sub(1)
+    }
+
+    /// The samples of a band; none where there is no such band.
+    #[inline]
+    pub fn band(&self, band: usize) -> &[Sample] {
+        match self.first.get(band..band + 2) {
+            Some(&[from, to]) => &self.samples[from..to],
+            _ => &[],
+        }
     }
 }
 
@@ -173,23 +205,32 @@ fn collect<V>(
             sort(samples, &layout)
         })
         .collect();
-    let bands = (0..bands(texture_size))
-        .into_par_iter()
-        .map(|band| {
-            let tiles = band * layout.tiles_across..(band + 1) * layout.tiles_across;
-            let of = |v: &Sorted, tile: usize| v.begin[tile] as usize..v.begin[tile + 1] as usize;
-            let count =
-                views.iter().map(|v| of(v, tiles.end - 1).end - of(v, tiles.start).start).sum::<usize>();
-            let mut out = Vec::with_capacity(count);
-            for tile in tiles {
-                for view in &views {
-                    out.extend_from_slice(&view.samples[of(view, tile)]);
-                }
+    let tiles = |band: usize| band * layout.tiles_across..(band + 1) * layout.tiles_across;
+    let of = |v: &Sorted, tile: usize| v.begin[tile] as usize..v.begin[tile + 1] as usize;
+    let mut first = vec![0];
+    for band in 0..bands(texture_size) {
+        let tiles = tiles(band);
+        let count = |v: &Sorted| of(v, tiles.end - 1).end - of(v, tiles.start).start;
+        first.push(first[band] + views.iter().map(count).sum::<usize>());
+    }
+    let mut samples = vec![Sample::default(); first.last().copied().unwrap_or_default()];
+    let (mut rest, mut parts) = (samples.as_mut_slice(), Vec::with_capacity(first.len()));
+    for ends in first.windows(2) {
+        let (part, others) = rest.split_at_mut(ends[1] - ends[0]);
+        parts.push(part);
+        rest = others;
+    }
+    parts.into_par_iter().enumerate().for_each(|(band, part)| {
+        let mut at = 0;
+        for tile in tiles(band) {
+            for view in &views {
+                let from = &view.samples[of(view, tile)];
+                part[at..at + from.len()].copy_from_slice(from);
+                at += from.len();
             }
-            out
-        })
-        .collect();
-    SampleSet { size: texture_size, bands }
+        }
+    });
+    SampleSet { size: texture_size, first, samples }
 }
 
 fn sort(samples: Vec<Sample>, layout: &Layout) -> Sorted {

@@ -14,6 +14,7 @@ use rayon::prelude::*;
 
 /// One pixel, as in `Sample` but for where it is fetched: 44 bytes.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub struct Sighted {
     /// Where it falls on the texture.
     pub uv: Vec2,

@@ -12,13 +12,14 @@ use parbake_model::glam::{Vec2, Vec4};
 use rayon::prelude::*;
 
 /// The values of N maps at one texel; or their gradients.
-pub(super) type Texel<const N: usize> = [Vec4; N];
+pub type Texel<const N: usize> = [Vec4; N];
 
 /// Texels of one task.
 pub(super) const BAND: usize = 4096;
 
 /// N maps of a square texture that repeats.
-pub(super) struct Texels<const N: usize> {
+pub struct Texels<const N: usize> {
+    /// Texels along a side.
     pub size: usize,
     /// Which maps.
     pub kinds: [MapKind; N],
@@ -80,7 +81,7 @@ impl<const N: usize> Texels<N> {
 
     /// The blend of four texels, and its slopes.
     #[inline]
-    pub fn fetch(&self, at: &Taps) -> Fetched<N> {
+    pub(super) fn fetch(&self, at: &Taps) -> Fetched<N> {
         let [a, b, c, d] = at.index;
         let [a, b, c, d] = [a, b, c, d].map(|i| &self.texels[i as usize]);
         let mut out = Fetched::default();

@@ -24,21 +24,24 @@ use parbake_views::sighted::Sighted;
 const GROUP: usize = 16;
 
 /// Loss and gradients of some views.
-pub(super) struct Sums<M, const N: usize> {
+pub struct Sums<M, const N: usize> {
     /// Squared differences of all three channels.
     pub loss: f64,
+    /// Gradient by the parallax map.
     pub map: M,
+    /// Gradient by the maps, texel by texel.
     pub texels: Vec<Texel<N>>,
 }
 
 impl<M: ShiftMap, const N: usize> Sums<M, N> {
+    /// Nothing yet, for these maps.
     pub fn zeros(map: &M, texels: &Texels<N>) -> Self {
         Self { loss: 0.0, map: map.zeros_like(), texels: vec![[Vec4::ZERO; N]; texels.texels.len()] }
     }
 }
 
 /// Adds what one view says.
-pub(super) fn add_view<B: Brdf, M: ShiftMap, const N: usize>(
+pub(crate) fn add_view<B: Brdf, M: ShiftMap, const N: usize>(
     pixels: &[Sighted],
     map: &M,
     texels: &Texels<N>,

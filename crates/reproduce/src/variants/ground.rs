@@ -10,6 +10,7 @@ use parbake::evaluate::options::EvaluateOptions;
 use parbake::evaluate::{compare, mean};
 use parbake::studio::shown;
 use parbake::{BakeError, Message, Watcher};
+use parbake_fit::backend::Cpu;
 use parbake_fit::parallax::{State, fit_parallax};
 use parbake_fit::schedule::{Comparison, Fitted, fit_textures};
 use parbake_image::MapSet;
@@ -109,7 +110,7 @@ impl Subject {
     /// How maps become light, and how that is shown.
     fn comparison(&self) -> Comparison<'static, Lambert> {
         let conventions = &self.high.conventions;
-        Comparison { brdf: &Lambert, display: conventions.display, srgb: conventions.srgb() }
+        Comparison { backend: &Cpu, brdf: &Lambert, display: conventions.display, srgb: conventions.srgb() }
     }
 
     fn walker(&self, options: &VariantsOptions) -> Walker<'_> {
@@ -187,9 +188,15 @@ impl<'a> Ground<'a> {
         let mut state = State { map, maps: self.begin.clone() };
         let losses = match stays || state.map.parameters().is_empty() {
             true => Vec::new(),
-            false => {
-                fit_parallax(&self.views, &mut state, &Lambert, &DisplayTable::new(display), &fit, watch)
-            }
+            false => fit_parallax(
+                &Cpu,
+                &self.views,
+                &mut state,
+                &Lambert,
+                &DisplayTable::new(display),
+                &fit,
+                watch,
+            ),
         };
         let (map, cost) = state.map.stored();
         let samples = shifted_samples(&self.views, options.texture_size, &map, watch);

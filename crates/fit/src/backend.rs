@@ -1,0 +1,139 @@
+//! The seam for a GPU: the four coarse operations in which a bake spends its time, on flat buffers of
+//! plain elements.
+//!
+//! ```text
+//! view samples ─ assemble ─ solve          (texture solve, `step.rs`)
+//!              └ view gradient             (parallax fit, `parallax.rs`)
+//! ```
+//!
+//! Elements are `repr(C)`: [`Sample`](parbake_views::samples::Sample),
+//! [`ViewSample`](parbake_views::sighted::Sighted), [`Row`] and `Vec4`. A kernel for each operation can
+//! stand in the place of the [`Cpu`]'s; nothing is kept between calls.
+//!
+//! Contract: results depend on the arguments alone, not on the number of threads.
+
+use crate::outliers::Loss;
+use crate::parallax::{Sums, Texels, add_view};
+use crate::problem::Problem;
+use crate::step::{SampleBlock, assemble_on_cpu};
+use parbake_image::display_table::DisplayTable;
+use parbake_image::{MapKind, MapSet};
+use parbake_model::glam::Vec4;
+use parbake_progress::Watcher;
+use parbake_render::parallax_variants::shift_map::ShiftMap;
+use parbake_render::shade::Brdf;
+use parbake_solve::conjugate_gradient::{self, Effort, Outcome};
+use parbake_solve::stencil::{Block, Row, Stencil};
+use parbake_views::reference::Reference;
+use parbake_views::samples::{SampleSet, collect_samples, shifted_samples};
+use parbake_views::sighted::Sighted;
+use parbake_views::view_walk::Walker;
+
+/// What a bake asks of the machine.
+pub trait Backend: Sync {
+    /// The samples of all views on a texture of `texture_size`² texels.
+    fn view_samples(
+        &self,
+        walker: &Walker,
+        references: &[Reference],
+        texture_size: usize,
+        watcher: &impl Watcher,
+    ) -> SampleSet;
+
+    /// The same of views that were sampled before, their coordinates shifted by a map. Each view is
+    /// freed once it was read.
+    fn shifted_view_samples<M: ShiftMap>(
+        &self,
+        views: Vec<Vec<Sighted>>,
+        texture_size: usize,
+        map: &M,
+        watcher: &impl Watcher,
+    ) -> SampleSet;
+
+    /// The normal equations of one map over all samples, texture size² rows; returns the loss.
+    fn assemble<B: Brdf, S: SampleBlock>(
+        &self,
+        kind: MapKind,
+        problem: &Problem<B>,
+        maps: &MapSet,
+        rows: &mut Vec<Row<S>>,
+    ) -> Loss;
+
+    /// Solves `A x = right` from zero by conjugate gradients; lanes of `free` that are 0 stay.
+    fn solve<S: Block>(
+        &self,
+        matrix: &Stencil<S>,
+        right: &[Vec4],
+        free: Option<&[Vec4]>,
+        effort: &Effort,
+    ) -> (Vec<Vec4>, Outcome);
+
+    /// Adds the loss of one view's pixels, and its gradient by N maps and the parallax map.
+    fn view_gradient<B: Brdf, M: ShiftMap, const N: usize>(
+        &self,
+        pixels: &[Sighted],
+        map: &M,
+        texels: &Texels<N>,
+        brdf: &B,
+        display: &DisplayTable,
+        sums: &mut Sums<M, N>,
+    );
+}
+
+/// All cores of this machine, through rayon's current thread pool.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cpu;
+
+impl Backend for Cpu {
+    fn view_samples(
+        &self,
+        walker: &Walker,
+        references: &[Reference],
+        texture_size: usize,
+        watcher: &impl Watcher,
+    ) -> SampleSet {
+        collect_samples(walker, references, texture_size, watcher)
+    }
+
+    fn shifted_view_samples<M: ShiftMap>(
+        &self,
+        views: Vec<Vec<Sighted>>,
+        texture_size: usize,
+        map: &M,
+        watcher: &impl Watcher,
+    ) -> SampleSet {
+        shifted_samples(views, texture_size, map, watcher)
+    }
+
+    fn assemble<B: Brdf, S: SampleBlock>(
+        &self,
+        kind: MapKind,
+        problem: &Problem<B>,
+        maps: &MapSet,
+        rows: &mut Vec<Row<S>>,
+    ) -> Loss {
+        assemble_on_cpu(kind, problem, maps, rows)
+    }
+
+    fn solve<S: Block>(
+        &self,
+        matrix: &Stencil<S>,
+        right: &[Vec4],
+        free: Option<&[Vec4]>,
+        effort: &Effort,
+    ) -> (Vec<Vec4>, Outcome) {
+        conjugate_gradient::solve(matrix, right, free, effort)
+    }
+
+    fn view_gradient<B: Brdf, M: ShiftMap, const N: usize>(
+        &self,
+        pixels: &[Sighted],
+        map: &M,
+        texels: &Texels<N>,
+        brdf: &B,
+        display: &DisplayTable,
+        sums: &mut Sums<M, N>,
+    ) {
+        add_view(pixels, map, texels, brdf, display, sums);
+    }
+}
