@@ -12,10 +12,11 @@
 //!
 //! Contract: results depend on the arguments alone, not on the number of threads.
 
+use crate::assemble::{SampleBlock, assemble_on_cpu};
 use crate::outliers::Loss;
-use crate::parallax::{Sums, Texels, add_view};
 use crate::problem::Problem;
-use crate::step::{SampleBlock, assemble_on_cpu};
+use crate::texels::Texels;
+use crate::view_gradient::{Sums, add_view};
 use parbake_image::display_table::DisplayTable;
 use parbake_image::{MapKind, MapSet};
 use parbake_model::glam::Vec4;

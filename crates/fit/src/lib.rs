@@ -1,22 +1,21 @@
-//! The fit: which textures make the low-poly look like the high-poly.
+//! Which maps make the low-poly look like the high-poly.
 //!
-//! Geometry and texture coordinates stand still here, so a view's samples never
-//! change: where each pixel falls on the texture and how the light meets it there
-//! is worked out once, and every iteration only re-reads that list.
+//! Geometry and texture coordinates stand still here, so a view's samples never change: where each
+//! pixel falls on the texture and how the light meets it there is worked out once
+//! (`parbake_views`), and every iteration only reads that list again.
 //!
 //! ```text
-//! views → reference ─┐
-//!                    ├→ samples → color ⇄ normal → gutter → quantise
-//! start (projection) ┘              │        │
-//!                                   └ stencil, conjugate_gradient
+//! samples ─ schedule ─ step ─ assemble ─ solve        the maps, in turns
+//!              │        └ membrane, outliers          unseen texels, robust loss
+//! layers ─ cutout                                     where the low-poly is left out
+//! view samples ─ parallax ─ view_gradient ─ texels    how coordinates shift
+//!              └ territory                            shifts stay within their chart
+//! backend                                             the coarse operations, for a GPU to replace
 //! ```
 //!
-//! With maps of depth, between views and samples: `view_walk` (a view's pixels) → `cutout` (what
-//! is left out) → `sighted` (what is left) → `parallax` (where coordinates shift) → `territory`
-//! (shifts stay in their chart).
-//!
-//! `schedule` walks that way; `watch` is how it reports and is stopped.
+//! `parallax_maps` is the stage of a bake that makes cutout and parallax map.
 
+pub(crate) mod assemble;
 pub mod backend;
 pub mod cutout;
 pub mod membrane;
@@ -27,3 +26,5 @@ pub mod problem;
 pub mod schedule;
 pub mod step;
 pub mod territory;
+pub mod texels;
+pub mod view_gradient;

@@ -13,10 +13,10 @@
 //! not depend on the number of threads.
 
 mod plate;
-mod texels;
-mod view_gradient;
 
 use crate::backend::Backend;
+use crate::texels::{BAND, Texels, gather};
+use crate::view_gradient::Sums;
 use parbake_image::MapSet;
 use parbake_image::display_table::DisplayTable;
 use parbake_model::glam::Vec4;
@@ -28,10 +28,6 @@ use parbake_solve::adam::{Adam, AdamOptions, rate_at};
 use parbake_views::sighted::Sighted;
 use plate::MapPlate;
 use rayon::prelude::*;
-pub use texels::Texels;
-use texels::{BAND, gather};
-pub use view_gradient::Sums;
-pub(crate) use view_gradient::add_view;
 
 /// How the map is fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,14 +12,13 @@
 use crate::backend::Backend;
 use crate::membrane::{Membrane, add_membrane, mean_pull};
 use crate::outliers::Loss;
-use crate::problem::{Problem, Response, footprint, local_places};
+use crate::problem::Problem;
 use parbake_image::{Domain, FloatImage, MapKind, MapSet};
 use parbake_model::glam::Vec4;
-use parbake_render::shade::{Brdf, Jacobian};
+use parbake_render::shade::Brdf;
 use parbake_solve::boxed::solve_in_box;
 use parbake_solve::conjugate_gradient::{Effort, Outcome};
-use parbake_solve::grid::gather;
-use parbake_solve::stencil::{Block, Diagonal, Row, Stencil, Symmetric, add_diagonal, add_symmetric};
+use parbake_solve::stencil::{Block, Diagonal, Row, Stencil, Symmetric};
 use rayon::prelude::*;
 
 /// The longest change of a normal in one step: beyond it the linear model of the
@@ -88,99 +87,6 @@ pub fn fit_step<B: Brdf>(
             (loss, outcome)
         }
     }
-}
-
-/// The normal equations of one map over all samples; returns the loss.
-pub(crate) fn assemble_on_cpu<B: Brdf, S: SampleBlock>(
-    kind: MapKind,
-    problem: &Problem<B>,
-    maps: &MapSet,
-    rows: &mut Vec<Row<S>>,
-) -> Loss {
-    let size = problem.samples.size;
-    let losses = gather(
-        size,
-        rows,
-        |band, first, local| {
-            let mut loss = Loss::default();
-            for s in problem.samples.band(band) {
-                let (texels, w) = footprint(s, size);
-                let (light, jacobian) = problem.brdf.jacobian(kind, &s.light(), &maps.blend(texels, w));
-                let (response, weights, share) = problem.respond(light, s);
-                loss += share;
-                if let Some((block, right)) = S::of(&jacobian, &response, weights) {
-                    S::add_sample(local, local_places(texels, first, size), w, &block, right);
-                }
-            }
-            loss
-        },
-        Row::add,
-    );
-    losses.into_iter().sum()
-}
-
-/// A matrix block that samples add to.
-pub trait SampleBlock: Block {
-    /// `Jᵀ s ω s J` and `−Jᵀ s ω r`; none where nothing is asked.
-    fn of(jacobian: &Jacobian, response: &Response, weights: Vec4) -> Option<(Self, Vec4)>;
-
-    /// Adds them, times the products of the bilinear weights, at the four places.
-    fn add_sample(rows: &mut [Row<Self>], places: [usize; 4], w: [f32; 4], block: &Self, right: Vec4);
-}
-
-impl SampleBlock for Diagonal {
-    #[inline(always)]
-    fn of(jacobian: &Jacobian, response: &Response, weights: Vec4) -> Option<(Self, Vec4)> {
-        match *jacobian {
-            Jacobian::Diagonal(slopes) => {
-                let j = response.slope * slopes;
-                Some((Self(j * j * weights), j * response.residual * -weights))
-            }
-            // Couplings between channels are left to the next steps.
-            Jacobian::RankOne { value, .. } => {
-                let (curvature, pull) = along(jacobian, response, weights)?;
-                Some((Self((value * value * curvature).extend(0.0)), (value * pull).extend(0.0)))
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn add_sample(rows: &mut [Row<Self>], places: [usize; 4], w: [f32; 4], block: &Self, right: Vec4) {
-        add_diagonal(rows, places, w, block.0, right);
-    }
-}
-
-impl SampleBlock for Symmetric {
-    #[inline(always)]
-    fn of(jacobian: &Jacobian, response: &Response, weights: Vec4) -> Option<(Self, Vec4)> {
-        match *jacobian {
-            Jacobian::Diagonal(slopes) => {
-                let j = response.slope * slopes;
-                let [xx, yy, zz, _] = (j * j * weights).to_array();
-                Some((Self([xx, yy, zz, 0.0, 0.0, 0.0]), j * response.residual * -weights))
-            }
-            Jacobian::RankOne { value, .. } => {
-                let (curvature, pull) = along(jacobian, response, weights)?;
-                Some((Self::outer(value, curvature), (value * pull).extend(0.0)))
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn add_sample(rows: &mut [Row<Self>], places: [usize; 4], w: [f32; 4], block: &Self, right: Vec4) {
-        add_symmetric(rows, places, w, block, right);
-    }
-}
-
-/// Curvature and pull of the loss along the one number that light depends on.
-#[inline(always)]
-fn along(jacobian: &Jacobian, response: &Response, weights: Vec4) -> Option<(f32, f32)> {
-    let Jacobian::RankOne { light, only_brighter, .. } = *jacobian else { return None };
-    let j = response.slope * light;
-    let curvature = j.dot(j * weights);
-    let pull = -j.dot(response.residual * weights);
-    // Turned away from the light: only asked to turn back where the reference is brighter.
-    (!only_brighter || pull > 0.0).then_some((curvature, pull))
 }
 
 #[cfg(test)]

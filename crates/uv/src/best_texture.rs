@@ -15,10 +15,9 @@
 //! number of threads.
 
 use crate::normal_equations::NormalEquations;
+pub use crate::parameterized::Mapped;
 use crate::rounding::rounded;
-use crate::runs::Runs;
-use crate::signal::Signal;
-use glam::{DVec2, Vec4};
+use glam::Vec4;
 use parbake_image::FloatImage;
 use rayon::prelude::*;
 
@@ -27,19 +26,6 @@ fn doubled(coarse: &FloatImage<Vec4>) -> FloatImage<Vec4> {
     let size = 2 * coarse.width;
     let texel = |i: usize| coarse.texels[i / size / 2 * coarse.width + i % size / 2];
     FloatImage::square(size, (0..size * size).into_par_iter().map(texel).collect())
-}
-
-/// FloatImage<Vec4> coordinates and the signals that they carry.
-#[derive(Clone, Copy)]
-pub struct Mapped<'a> {
-    /// P points.
-    pub points: &'a [DVec2],
-    /// F triangles.
-    pub triangles: &'a [[u32; 3]],
-    /// What the texture shall show: the same surface at one or more sizes.
-    pub showings: &'a [Signal],
-    /// The triangles, shared out.
-    pub runs: &'a Runs,
 }
 
 /// How exactly a texture is solved for.

@@ -1,4 +1,4 @@
-//! FloatImage<Vec4> coordinates that move to where they show most, and stay sound on the way.
+//! Texture coordinates that move to where they show most, and stay sound on the way.
 //!
 //! ```text
 //! signal, runs                        what the surface shall show
@@ -35,6 +35,7 @@ pub(crate) mod normal_equations;
 pub mod normal_matrix;
 pub mod optimise;
 pub mod paper;
+pub mod parameterized;
 pub mod picture;
 pub mod pyramid;
 pub mod region;

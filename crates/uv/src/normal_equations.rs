@@ -5,9 +5,9 @@
 //! Contract: all channels share the matrix; sums are made run by run in order, so that they do not
 //! depend on the number of threads.
 
-use crate::best_texture::Mapped;
 use crate::footprint::{Footprint, OnLevel, shares};
 use crate::normal_matrix::{NormalMatrix, Patch};
+use crate::parameterized::Mapped;
 use crate::pyramid::{gather, halve, level_count};
 use glam::{DVec2, Vec4};
 use rayon::prelude::*;

@@ -15,6 +15,7 @@ pub mod frame;
 pub mod gutter;
 pub mod high_poly;
 pub mod low_poly;
+mod packing;
 pub mod pool;
 pub mod projection;
 pub mod reference;

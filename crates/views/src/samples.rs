@@ -10,6 +10,7 @@
 //! Contract: the low-poly has normals, tangents and texture coordinates (wrapped by
 //! repetition); fetches are bilinear on the finest level.
 
+use crate::packing::{packed, unpacked};
 use crate::reference::Reference;
 use crate::sighted::Sighted;
 use crate::view_walk::Walker;
@@ -249,20 +250,6 @@ fn sort(samples: Vec<Sample>, layout: &Layout) -> Sorted {
         *place += 1;
     }
     Sorted { samples: sorted, begin }
-}
-
-/// Inverse of [`packed`].
-#[inline]
-pub(crate) fn unpacked(light: [i16; 9]) -> TangentLight {
-    let [x, y, z, tt, bb, nn, tb, tn, bn] = light.map(|v| f32::from(v) * (1.0 / 32767.0));
-    TangentLight { light: Vec3::new(x, y, z), gram: [tt, bb, nn, tb, tn, bn] }
-}
-
-/// See [`Sample::light`].
-pub(crate) fn packed(light: &TangentLight) -> [i16; 9] {
-    let [x, y, z] = light.light.to_array();
-    let [tt, bb, nn, tb, tn, bn] = light.gram;
-    [x, y, z, tt, bb, nn, tb, tn, bn].map(|v| (v.clamp(-1.0, 1.0) * 32767.0).round_ties_even() as i16)
 }
 
 /// The upper left texel of a coordinate's fetch, and the fractions.

@@ -4,8 +4,8 @@
 //! Contract: directions and light are rounded to 32767ths, which moves a shift by up to some ten
 //! thousandths of its length, where sight is grazing; pixels are in the walk's order (`view_walk.rs`).
 
+use crate::packing::{packed, unpacked};
 use crate::reference::Reference;
-use crate::samples::{packed, unpacked};
 use crate::view_walk::Walker;
 use parbake_model::glam::{Vec2, Vec3};
 use parbake_render::frame::TangentLight;

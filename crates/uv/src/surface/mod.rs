@@ -16,6 +16,7 @@ mod judge;
 mod moved;
 mod paper;
 mod refined;
+mod steps;
 mod surface_signal;
 mod surface_texture;
 

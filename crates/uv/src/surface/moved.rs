@@ -9,14 +9,15 @@
 
 use super::judge::Judge;
 use super::refined::refined;
+use super::steps::Steps;
 use super::surface_signal::Source;
 use super::{Moved, UnfoldOptions, UnfoldReport, as_f32, contact, packing, signal};
 use crate::metric::chart_scales;
 use crate::optimise::{Problem, RefineBy, UvOptions, shape, tensors};
 use parbake_atlas::{ChartScale, Layout, PackOptions, pack};
 use parbake_model::Mesh;
-use parbake_model::glam::{DMat2, DVec2, Vec2};
-use parbake_progress::{Message, Stage, Watcher};
+use parbake_model::glam::{DMat2, Vec2};
+use parbake_progress::Watcher;
 
 /// Charts are drawn at most so many times larger or smaller than their area says.
 const MOST_SCALE: f64 = 3.0;
@@ -67,7 +68,7 @@ pub fn moved(
     let (left, mut layout) = packed.unwrap_or_else(|| (unmoved, start.clone()));
     let mut frames = vec![as_f32(&start.points), as_f32(&layout.points)];
     let most = options.refine_steps + FLAT.len() * options.shape_steps;
-    let steps = &mut Steps { done: 0, most, watcher };
+    let steps = &mut Steps::new(most, watcher);
     frames.extend(shaped(judge, &mut layout, left, tensors, options, steps));
     let more_triangles = if own { asked.more_triangles } else { 0 };
     let (moved, relative) = refined(judge, layout, options, more_triangles, frames, steps)?;
@@ -85,24 +86,6 @@ fn told_apart(texture_size: usize, samples: usize) -> usize {
         size /= 2;
     }
     size
-}
-
-/// How far along the way is.
-pub struct Steps<'a, W> {
-    done: usize,
-    most: usize,
-    /// Who is told, and may stop it.
-    pub watcher: &'a W,
-}
-
-impl<W: Watcher> Steps<'_, W> {
-    /// Notes a step; false to stop.
-    pub fn step(&mut self, way: &mut Vec<Vec<Vec2>>, points: &[DVec2]) -> bool {
-        way.push(as_f32(points));
-        self.done = self.most.min(self.done + 1);
-        self.watcher.message(Message::Progress { stage: Stage::Unfold, done: self.done, total: self.most });
-        !self.watcher.stopped()
-    }
 }
 
 /// Moves the layout, which leaves this error in total, to the better one of the signal-specialised

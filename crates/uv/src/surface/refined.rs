@@ -12,7 +12,7 @@
 
 use super::finer::Finer;
 use super::judge::Judge;
-use super::moved::Steps;
+use super::steps::Steps;
 use super::{Moved, mapped, runs};
 use crate::best_texture::Solve;
 use crate::optimise::{Balance, Problem, UvOptions, refine};

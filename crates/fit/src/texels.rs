@@ -15,7 +15,7 @@ use rayon::prelude::*;
 pub type Texel<const N: usize> = [Vec4; N];
 
 /// Texels of one task.
-pub(super) const BAND: usize = 4096;
+pub(crate) const BAND: usize = 4096;
 
 /// N maps of a square texture that repeats.
 pub struct Texels<const N: usize> {
@@ -29,7 +29,7 @@ pub struct Texels<const N: usize> {
 
 /// What a fetch gives: values, and how they change with the coordinate, for a texture's width.
 #[derive(Clone, Copy)]
-pub(super) struct Fetched<const N: usize> {
+pub(crate) struct Fetched<const N: usize> {
     pub value: Texel<N>,
     pub per_u: Texel<N>,
     pub per_v: Texel<N>,
@@ -81,7 +81,7 @@ impl<const N: usize> Texels<N> {
 
     /// The blend of four texels, and its slopes.
     #[inline]
-    pub(super) fn fetch(&self, at: &Taps) -> Fetched<N> {
+    pub(crate) fn fetch(&self, at: &Taps) -> Fetched<N> {
         let [a, b, c, d] = at.index;
         let [a, b, c, d] = [a, b, c, d].map(|i| &self.texels[i as usize]);
         let mut out = Fetched::default();
@@ -127,7 +127,7 @@ impl<const N: usize> Fetched<N> {
 
 /// Adds the gradient of a fetch to the texels that it blended.
 #[inline]
-pub(super) fn scatter<const N: usize>(at: &Taps, gradient: &Texel<N>, into: &mut [Texel<N>]) {
+pub(crate) fn scatter<const N: usize>(at: &Taps, gradient: &Texel<N>, into: &mut [Texel<N>]) {
     for (index, weight) in at.index.into_iter().zip(at.weights()) {
         let texel = &mut into[index as usize];
         for k in 0..N {
@@ -138,7 +138,7 @@ pub(super) fn scatter<const N: usize>(at: &Taps, gradient: &Texel<N>, into: &mut
 
 /// Adds the gradients of others to these, one after the other, and leaves zeros in their places:
 /// they are wanted next, and are in the cache now.
-pub(super) fn gather<'a, const N: usize>(
+pub(crate) fn gather<'a, const N: usize>(
     into: &mut [Texel<N>],
     others: impl Iterator<Item = &'a mut [Texel<N>]>,
 ) {

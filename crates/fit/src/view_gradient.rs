@@ -10,8 +10,8 @@
 //! Contract: adds half the gradient of the squared differences of display values, each weighted by
 //! its pixel; pixels are summed in their order.
 
-use super::texels::{Fetched, Texel, Texels, scatter};
 use crate::problem::respond;
+use crate::texels::{Fetched, Texel, Texels, scatter};
 use parbake_image::display_table::DisplayTable;
 use parbake_image::pyramid::Taps;
 use parbake_model::glam::{Vec2, Vec4};
