@@ -48,8 +48,7 @@ pub struct Evaluated {
 pub fn options(convention: Convention) -> EvaluateOptions {
     EvaluateOptions {
         views: VIEWS,
-        gain: convention.display().gain,
-        decode_srgb: convention.decodes_srgb(),
+        convention,
         ..EvaluateOptions::default()
     }
 }

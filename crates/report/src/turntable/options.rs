@@ -138,8 +138,7 @@ impl TurntableOptions {
             supersample,
             radius: self.radius,
             fov: self.fov,
-            gain: self.convention.display().gain,
-            decode_srgb: self.convention.interpretation().decode_srgb,
+            convention: self.convention,
             no_parallax: self.no_parallax,
             background: self.background.clone(),
             ..EvaluateOptions::default()
