@@ -1,4 +1,4 @@
-//! What an evaluation leaves open, as plain data for library, command line and files.
+//! Options of an evaluation, as plain data for library, command line and files.
 
 use crate::error::BakeError;
 use crate::options::Convention;
@@ -16,19 +16,19 @@ pub const GREY: f32 = 0.5;
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct EvaluateOptions {
-    /// Views on a Fibonacci sphere, 1 to 4096
+    /// Views on a Fibonacci sphere around the model, 1 to 4096
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 48))]
     pub views: usize,
 
-    /// Side of a picture in pixels, 16 to 4096
+    /// Side of a view in pixels, 16 to 4096
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", default_value_t = 512))]
     pub resolution: usize,
 
-    /// Samples along a side of each pixel, 1 to 8
+    /// Samples along each side of a pixel, 1 to 8
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 2))]
     pub supersample: usize,
 
-    /// Distance of the cameras in half lengths of the high-poly's longest side, 1.8 to 100
+    /// Distance of the cameras, 1.8 to 100; the unit is half of the high-poly's longest side
     #[cfg_attr(feature = "clap", arg(long, value_name = "DISTANCE", default_value_t = 3.5))]
     pub radius: f32,
 
@@ -36,7 +36,7 @@ pub struct EvaluateOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", default_value_t = 43.602_818))]
     pub fov: f32,
 
-    /// Half the width of an orthographic view, in half lengths, instead of perspective, 0.001 to 100
+    /// Orthographic instead of perspective views: half their width, 0.001 to 100; unit as of --radius
     /// [default: perspective]
     #[cfg_attr(feature = "clap", arg(long, value_name = "HALF_WIDTH"))]
     pub ortho: Option<f32>,
@@ -49,7 +49,7 @@ pub struct EvaluateOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR"))]
     pub gain: Option<f32>,
 
-    /// Fetch textures on their finest level only
+    /// Use no mip levels
     #[cfg_attr(feature = "clap", arg(long))]
     pub no_mips: bool,
 
@@ -57,11 +57,11 @@ pub struct EvaluateOptions {
     #[cfg_attr(feature = "clap", arg(long))]
     pub no_parallax: bool,
 
-    /// Background: black, white, grey, or three numbers from 0 to 1 as R,G,B, of linear light
+    /// Background: black, white, grey, or R,G,B in linear light, each 0 to 1
     #[cfg_attr(feature = "clap", arg(long, default_value = "black"))]
     pub background: String,
 
-    /// Leave FLIP out, which takes most of the time
+    /// Leave out FLIP, which takes most of the time
     #[cfg_attr(feature = "clap", arg(long))]
     pub no_flip: bool,
 }
