@@ -1,13 +1,36 @@
 //! What can be typed.
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
-use parbake::{BakeOptions, EvaluateOptions, ImageOptions};
+use crate::rules::{NOT_IN_COMPRESS, WITH_NORMAL_MAPS};
+use clap::{Args, Command as Clap, CommandFactory, Parser, Subcommand, ValueEnum};
+use parbake::{BakeOptions, EvaluateOptions, ImageOptions, parse_texels};
 use parbake_report::TurntableOptions;
 use parbake_reproduce::ReproduceOptions;
 use parbake_reproduce::variants::VariantsOptions;
 use std::path::PathBuf;
 
-/// Makes a small 3D model look like a big one
+/// Heading of files and messages in `--help`.
+const IO: &str = "Input and output";
+
+/// The command with its subcommands. `compress` takes the options of a bake, so that options files serve
+/// both, and shows those that act there; `rules` refuses the others.
+pub fn command() -> Clap {
+    Arguments::command().mut_subcommand("compress", |compress| {
+        compress.mut_args(|argument| {
+            let name = argument.get_id().to_string();
+            if NOT_IN_COMPRESS.contains(&name.as_str()) {
+                argument.hide(true)
+            } else if name == "more_triangles" {
+                argument.hide(false)
+            } else if WITH_NORMAL_MAPS.contains(&name.as_str()) && name != "outlier" {
+                argument.help_heading("Models with a normal map")
+            } else {
+                argument
+            }
+        })
+    })
+}
+
+/// Bakes a high-poly's appearance onto a low-poly by differentiable rendering
 #[derive(Parser, Debug)]
 #[command(name = "parbake", version, propagate_version = true)]
 #[command(after_help = "Exit codes: 0 done, 1 bad input or failed output, 2 wrong usage, \
@@ -21,36 +44,36 @@ pub struct Arguments {
 /// What to do.
 #[derive(Subcommand, Debug)]
 pub enum Command {
-    /// Bake a detailed model's look onto a coarse one
+    /// Bake a high-poly's appearance onto a low-poly
     Bake(BakeCommand),
-    /// Give a model a smaller texture that looks the same
+    /// Shrink a model's texture
     Compress(CompressCommand),
     /// Make a plane that shows a picture with a smaller texture
     Image(ImageCommand),
-    /// Make a detailed model and a coarse one, bake, and write a report
+    /// Make a high-poly and a low-poly, bake, and write a report
     Demo(DemoCommand),
-    /// Compare two models picture by picture: PSNR, MS-SSIM, FLIP
+    /// Compare two models view by view: PSNR, MS-SSIM, FLIP
     Eval(EvalCommand),
-    /// Fit each kind of parallax map to a pair of models and show them side by side
+    /// Compare kinds of parallax maps on a pair of models
     Variants(VariantsCommand),
-    /// Film a detailed model and coarse ones beside it while they turn: an animated PNG or a GIF
+    /// Film models side by side while they turn: an animated PNG or a GIF
     Turntable(TurntableCommand),
-    /// Run the paper's experiments on a folder of data and draw its tables and figures
+    /// Run the paper's experiments on a folder of data
     Reproduce(ReproduceCommand),
-    /// Prove that a model's texture coordinates are sound, or say what is wrong with them
+    /// Prove that UVs neither flip nor overlap, or say what is wrong
     Check(CheckCommand),
-    /// Write a coarser copy of a model, which keeps its texture coordinates
+    /// Write a coarser copy of a model, which keeps its UVs
     Simplify(SimplifyCommand),
 }
 
 /// What is told while running.
 #[derive(Args, Debug, Clone, Copy)]
 pub struct Talk {
-    /// Tell what each stage took
+    /// Print what each stage took
     #[arg(short, long)]
     pub verbose: bool,
 
-    /// Tell nothing but errors and what was asked for
+    /// Print only errors and requested output
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,
 }
@@ -58,71 +81,77 @@ pub struct Talk {
 /// Arguments of `bake`.
 #[derive(Args, Debug)]
 pub struct BakeCommand {
-    /// The detailed model: .obj, .gltf or .glb
+    /// The high-poly: .obj, .gltf or .glb
     pub high: PathBuf,
 
-    /// The coarse model: .obj, .gltf or .glb; texture coordinates that it lacks are made
+    /// The low-poly: .obj, .gltf or .glb; missing UVs are made
     pub low: PathBuf,
 
-    /// Where the result goes: .glb, or .obj with .mtl and .png beside it
-    #[arg(short, long, value_name = "FILE", default_value = "baked.glb")]
+    /// File to write: .glb, or .obj with .mtl and .png beside it
+    #[arg(short, long, value_name = "FILE", default_value = "baked.glb", help_heading = IO)]
     pub output: PathBuf,
 
-    /// A JSON file of options, or a JSON report whose options are taken; the command line wins
-    /// over it
-    #[arg(long, value_name = "FILE")]
+    /// Options from a JSON file, or from a JSON report; the command line wins over it
+    #[arg(long, value_name = "FILE", help_heading = IO)]
     pub options: Option<PathBuf>,
 
-    /// Write figures of the run as JSON to this file, or to standard output for "-"
-    #[arg(long, value_name = "FILE")]
+    /// Write the figures of the run as JSON to this .json file, or to standard output for "-"
+    #[arg(long, value_name = "FILE", help_heading = IO)]
     pub json: Option<PathBuf>,
 
-    /// Write a report with pictures to this HTML file
-    #[arg(long, value_name = "FILE")]
+    /// Write a report with pictures to this .html file
+    #[arg(long, value_name = "FILE", help_heading = IO)]
     pub report: Option<PathBuf>,
 
+    /// Fail if a texture that a model names is missing, instead of warning
+    #[arg(long, help_heading = IO)]
+    pub strict: bool,
+
     /// How to bake
-    #[command(flatten, next_help_heading = "Baking")]
+    #[command(flatten)]
     pub bake: BakeOptions,
 
     /// What to tell
-    #[command(flatten, next_help_heading = "Messages")]
+    #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
 }
 
 /// Arguments of `compress`.
 #[derive(Args, Debug)]
 #[command(
-    after_help = "The surface stays: options of vertices, parallax maps and cutouts have no effect, and those \
-                        of views have one on models with a normal map alone."
+    after_help = "The surface stays. Options under \"Models with a normal map\" act on those alone: they are baked as a \
+pair is."
 )]
 pub struct CompressCommand {
     /// The model with its texture: .obj, .gltf or .glb
     pub model: PathBuf,
 
-    /// Where the result goes: .glb, or .obj with .mtl and .png beside it
-    #[arg(short, long, value_name = "FILE", default_value = "compressed.glb")]
+    /// File to write: .glb, or .obj with .mtl and .png beside it
+    #[arg(short, long, value_name = "FILE", default_value = "compressed.glb", help_heading = IO)]
     pub output: PathBuf,
 
-    /// A JSON file of options, or a JSON report whose options are taken; the command line wins
-    /// over it
-    #[arg(long, value_name = "FILE")]
+    /// Options from a JSON file, or from a JSON report; the command line wins over it
+    #[arg(long, value_name = "FILE", help_heading = IO)]
     pub options: Option<PathBuf>,
 
-    /// Write figures of the run as JSON to this file, or to standard output for "-"
-    #[arg(long, value_name = "FILE")]
+    /// Write the figures of the run as JSON to this .json file, or to standard output for "-"
+    #[arg(long, value_name = "FILE", help_heading = IO)]
     pub json: Option<PathBuf>,
 
-    /// Write a report with pictures to this HTML file
-    #[arg(long, value_name = "FILE")]
+    /// Write a report with pictures to this .html file
+    #[arg(long, value_name = "FILE", help_heading = IO)]
     pub report: Option<PathBuf>,
 
+    /// Fail if a texture that a model names is missing, instead of warning
+    #[arg(long, help_heading = IO)]
+    pub strict: bool,
+
     /// How to do it
-    #[command(flatten, next_help_heading = "Baking")]
+    #[command(flatten)]
     pub bake: BakeOptions,
 
     /// What to tell
-    #[command(flatten, next_help_heading = "Messages")]
+    #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
 }
 
@@ -132,44 +161,49 @@ pub struct ImageCommand {
     /// The picture: .png, .jpg or .webp
     pub picture: PathBuf,
 
-    /// Where the plane goes: .glb, or .obj with .mtl and .png beside it
-    #[arg(short, long, value_name = "FILE", default_value = "image.glb")]
+    /// File to write: .glb, or .obj with .mtl and .png beside it
+    #[arg(short, long, value_name = "FILE", default_value = "image.glb", help_heading = IO)]
     pub output: PathBuf,
 
-    /// Write figures of the run as JSON to this file, or to standard output for "-"
-    #[arg(long, value_name = "FILE")]
+    /// Write the figures of the run as JSON to this .json file, or to standard output for "-"
+    #[arg(long, value_name = "FILE", help_heading = IO)]
     pub json: Option<PathBuf>,
 
-    /// Write how the texture coordinates moved as a GIF
-    #[arg(long, value_name = "FILE")]
+    /// Write an animation of the moving UVs to this .gif file
+    #[arg(long, value_name = "FILE", help_heading = IO)]
     pub animation: Option<PathBuf>,
 
     /// How to do it
-    #[command(flatten, next_help_heading = "Texture")]
+    #[command(flatten)]
     pub options: ImageOptions,
 
     /// What to tell
-    #[command(flatten, next_help_heading = "Messages")]
+    #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
 }
 
 /// Arguments of `demo`.
 #[derive(Args, Debug)]
 pub struct DemoCommand {
-    /// Folder for demo.glb, demo.html, demo.json and the two models
-    #[arg(short, long, value_name = "FOLDER", default_value = "out")]
+    /// Folder to write demo.glb, demo.html, demo.json and the two models to
+    #[arg(short, long, value_name = "FOLDER", default_value = "out", help_heading = IO)]
     pub output: PathBuf,
 
-    /// Which models to make
+    /// Also render high-poly, ray-cast bake, bake, and bake with parallax maps side by side into
+    /// demo.webp in this folder
+    #[arg(long, value_name = "FOLDER", help_heading = IO)]
+    pub pictures: Option<PathBuf>,
+
+    /// Models to make
     #[arg(long, value_enum, default_value_t = DemoScene::Jar)]
     pub scene: DemoScene,
 
     /// How to bake
-    #[command(flatten, next_help_heading = "Baking")]
+    #[command(flatten)]
     pub bake: BakeOptions,
 
     /// What to tell
-    #[command(flatten, next_help_heading = "Messages")]
+    #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
 }
 
@@ -188,18 +222,18 @@ pub enum DemoScene {
 Only maps of spherical harmonics can be written to files, by bake --parallax sh. \
 For the brick wall: parbake demo --scene wall, then its demo_high.glb and demo_low.glb.")]
 pub struct VariantsCommand {
-    /// The detailed model
+    /// The high-poly: .obj, .gltf or .glb
     pub high: PathBuf,
 
-    /// The coarse model with texture coordinates
+    /// The low-poly, with UVs: .obj, .gltf or .glb
     pub low: PathBuf,
 
-    /// Where the page with pictures goes
-    #[arg(short, long, value_name = "FILE", default_value = "variants.html")]
+    /// Page with pictures to write: .html
+    #[arg(short, long, value_name = "FILE", default_value = "variants.html", help_heading = IO)]
     pub output: PathBuf,
 
-    /// Write the figures as JSON to this file, or to standard output for "-"
-    #[arg(long, value_name = "FILE")]
+    /// Write the figures as JSON to this .json file, or to standard output for "-"
+    #[arg(long, value_name = "FILE", help_heading = IO)]
     pub json: Option<PathBuf>,
 
     /// How to fit
@@ -207,28 +241,28 @@ pub struct VariantsCommand {
     pub variants: VariantsOptions,
 
     /// What to tell
-    #[command(flatten, next_help_heading = "Messages")]
+    #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
 }
 
 /// Arguments of `eval`.
 #[derive(Args, Debug)]
 pub struct EvalCommand {
-    /// The detailed model
+    /// The high-poly: .obj, .gltf or .glb
     pub high: PathBuf,
 
-    /// The model to compare with it
+    /// The model to compare with it: .obj, .gltf or .glb
     pub low: PathBuf,
 
-    /// Write the figures as JSON to this file, or to standard output for "-"
-    #[arg(long, value_name = "FILE")]
+    /// Write the figures as JSON to this .json file, or to standard output for "-"
+    #[arg(long, value_name = "FILE", help_heading = IO)]
     pub json: Option<PathBuf>,
 
-    /// Show each view's figures
+    /// Print the figures of each view
     #[arg(long)]
     pub per_view: bool,
 
-    /// Threads to work with, 0 to 256, 0 for one a core
+    /// Number of threads, 0 to 256; 0 is one a core
     #[arg(long, value_name = "COUNT", default_value_t = 0)]
     pub threads: usize,
 
@@ -237,7 +271,7 @@ pub struct EvalCommand {
     pub evaluate: EvaluateOptions,
 
     /// What to tell
-    #[command(flatten, next_help_heading = "Messages")]
+    #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
 }
 
@@ -246,15 +280,15 @@ pub struct EvalCommand {
 #[command(after_help = "All models are shown as they stand in the high-poly's frame, by a light at the \
 camera. The film plays again and again. Ctrl-C ends without a file.")]
 pub struct TurntableCommand {
-    /// The detailed model
+    /// The high-poly: .obj, .gltf or .glb
     pub high: PathBuf,
 
     /// The models to show beside it, in this order
     #[arg(required = true)]
     pub low: Vec<PathBuf>,
 
-    /// Where the film goes: .png or .apng for all colours, .gif for smaller files with 256
-    #[arg(short, long, value_name = "FILE", default_value = "turntable.png")]
+    /// File to write: .png or .apng for all colours, .gif for smaller files with 256
+    #[arg(short, long, value_name = "FILE", default_value = "turntable.png", help_heading = IO)]
     pub output: PathBuf,
 
     /// How to film
@@ -262,7 +296,7 @@ pub struct TurntableCommand {
     pub turntable: TurntableOptions,
 
     /// What to tell
-    #[command(flatten, next_help_heading = "Messages")]
+    #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
 }
 
@@ -279,11 +313,11 @@ pub struct ReproduceCommand {
     pub data: Option<PathBuf>,
 
     /// Folder for report.html, tables.md, gains.json and what is kept
-    #[arg(short, long, value_name = "FOLDER", default_value = "reproduced")]
+    #[arg(short, long, value_name = "FOLDER", default_value = "reproduced", help_heading = IO)]
     pub output: PathBuf,
 
     /// Compare gains with those on record in this JSON file
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = IO)]
     pub record: Option<PathBuf>,
 
     /// Write the gains to the record instead of comparing them
@@ -295,7 +329,7 @@ pub struct ReproduceCommand {
     pub options: ReproduceOptions,
 
     /// What to tell
-    #[command(flatten, next_help_heading = "Messages")]
+    #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
 }
 
@@ -310,25 +344,25 @@ pub struct CheckCommand {
     /// The model: .obj, .gltf or .glb
     pub model: PathBuf,
 
-    /// Texels along a side for lengths, 1 to 65536; by default those of the shorter side of each
-    /// base colour picture, or as of a bake where there is none
-    #[arg(long, value_name = "TEXELS")]
+    /// Texture size in which lengths are measured, 1 to 65536 texels [default: the shorter side of each
+    /// base colour texture, 512 where there is none]
+    #[arg(long, value_name = "TEXELS", value_parser = parse_texels)]
     pub texture_size: Option<usize>,
 
-    /// The smallest gutter between two charts that will do, 0 or more; 0 to ask for none
+    /// Least padding between charts in texels, 0 or more; 0 checks none
     #[arg(long, value_name = "TEXELS", default_value_t = 0.0)]
     pub gutter: f64,
 
-    /// Write the figures as JSON to this file, or to standard output for "-"
-    #[arg(long, value_name = "FILE")]
+    /// Write the figures as JSON to this .json file, or to standard output for "-"
+    #[arg(long, value_name = "FILE", help_heading = IO)]
     pub json: Option<PathBuf>,
 
-    /// Threads to work with, 0 to 256, 0 for one a core
+    /// Number of threads, 0 to 256; 0 is one a core
     #[arg(long, value_name = "COUNT", default_value_t = 0)]
     pub threads: usize,
 
     /// What to tell
-    #[command(flatten, next_help_heading = "Messages")]
+    #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
 }
 
@@ -338,19 +372,19 @@ pub struct SimplifyCommand {
     /// The model: .obj, .gltf or .glb
     pub model: PathBuf,
 
-    /// Where the copy goes: .glb or .obj
-    #[arg(short, long, value_name = "FILE")]
+    /// File to write: .glb or .obj
+    #[arg(short, long, value_name = "FILE", help_heading = IO)]
     pub output: PathBuf,
 
-    /// Triangles to aim at, 4 or more
+    /// Number of triangles to aim at, 4 or more
     #[arg(short, long, value_name = "COUNT", default_value_t = 500)]
     pub triangles: usize,
 
-    /// Instead make it finer: split each triangle into four, so many times, 1 to 6
+    /// Subdivide instead: split each triangle into four, 1 to 6 times
     #[arg(long, value_name = "TIMES", conflicts_with = "triangles")]
     pub subdivide: Option<u32>,
 
     /// What to tell
-    #[command(flatten, next_help_heading = "Messages")]
+    #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
 }

@@ -3,11 +3,13 @@
 use crate::arguments::{BakeCommand, Talk};
 use crate::failure::{Ending, Failure};
 use crate::options_file::merged;
+use crate::outputs::{check_beside, check_maps, check_not_input, check_output, is_obj, is_stdout};
 use crate::progress::{Console, interrupted};
+use crate::rules;
 use clap::ArgMatches;
 use parbake::{
-    BakeOptions, BakeReport, Baked, Limits, Loaded, Message, Model, Parallax, Stage, StageTime, Watcher,
-    bake, read_model, with_threads, write_file, write_glb, write_obj,
+    BakeOptions, BakeReport, Baked, Limits, Loaded, Message, Model, NormalY, Stage, StageTime, Watcher, Work,
+    bake, read_model, with_normal_y, with_threads, write_file, write_glb, write_obj,
 };
 use parbake_report::html_report;
 use std::io::Write;
@@ -15,15 +17,22 @@ use std::path::Path;
 
 /// Runs the command.
 pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure> {
-    let options = merged(&command.bake, given, command.options.as_deref())?;
+    let file = command.options.as_deref();
+    let options = merged(&command.bake, given, file)?;
+    rules::check(Work::Bake, &options, given, file)?;
     options.check()?;
-    check_output(&command.output)?;
-    check_outputs(command)?;
-    check_maps(&command.output, &options)?;
+    let (output, inputs) = (&command.output, [command.high.as_path(), command.low.as_path()]);
+    check_maps(output, &options)?;
+    check_output(output)?;
+    check_not_input(output, &inputs)?;
+    check_beside(Some(output), command.json.as_ref(), command.report.as_ref(), &inputs)?;
     let console = Console::for_bake(command.talk, options.time_budget);
     with_threads(options.threads, || {
         let pair = read_pair(&command.high, &command.low, &console)?;
-        let baked = bake_and_write(&pair, &options, &command.output, &console)?;
+        if command.strict {
+            check_textures(&pair.warnings)?;
+        }
+        let baked = bake_and_write(&pair, &options, output, &console)?;
         if let Some(path) = &command.json {
             write_json(path, &baked.report)?;
         }
@@ -31,7 +40,7 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
             write_report(path, &pair.high, &baked, &console)?;
         }
         console.finish();
-        tell(&console, command.talk, &baked.report, &command.output);
+        tell(&console, command.talk, &baked.report, output);
         Ok(ending(&baked.report))
     })?
 }
@@ -41,89 +50,33 @@ pub fn ending(report: &BakeReport) -> Ending {
     if interrupted() && report.stopped_early { Ending::Interrupted } else { Ending::Finished }
 }
 
-/// Refuses what cannot be written, before any work is done.
-pub fn check_output(path: &Path) -> Result<(), Failure> {
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
-    if !matches!(extension.as_str(), "glb" | "obj") {
-        return Err(Failure::Usage(format!("{}: the output must end in .glb or .obj", path.display())));
-    }
-    check_place(path)
-}
-
-/// Refuses maps that the output's format has no place for.
-pub fn check_maps(output: &Path, options: &BakeOptions) -> Result<(), Failure> {
-    if options.parallax == Parallax::None || !is_obj(output) {
-        return Ok(());
-    }
-    Err(Failure::Usage(format!(
-        "{}: an OBJ cannot hold a parallax map; write a .glb, or leave --parallax out",
-        output.display()
-    )))
-}
-
-fn is_obj(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"))
-}
-
-/// Refuses a file that has no folder to lie in, or would take a folder's place.
-pub fn check_place(path: &Path) -> Result<(), Failure> {
-    if path.is_dir() {
-        return Err(Failure::Usage(format!("{}: this is a folder; give it a file's name", path.display())));
-    }
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
-    match folder {
-        Some(folder) if !folder.is_dir() => Err(Failure::Usage(format!(
-            "{}: there is no folder {}; make it first",
-            path.display(),
-            folder.display()
-        ))),
-        _ => Ok(()),
-    }
-}
-
-/// Refuses to write over an input: artists keep their only copy in such files.
-pub fn check_not_input(output: &Path, inputs: &[&Path]) -> Result<(), Failure> {
-    let whole = |path: &Path| path.canonicalize().ok();
-    // An OBJ takes its material file with it.
-    let written = [output.to_path_buf(), output.with_extension("mtl")];
-    for input in inputs {
-        let read = [input.to_path_buf(), input.with_extension("mtl")];
-        let hit = written
-            .iter()
-            .any(|w| whole(w).is_some_and(|w| read.iter().any(|r| whole(r).as_ref() == Some(&w))));
-        if hit {
-            return Err(Failure::Usage(format!(
-                "{}: this would overwrite the input {}; choose another name",
-                output.display(),
-                input.display()
-            )));
-        }
-    }
-    Ok(())
-}
-
-fn check_outputs(command: &BakeCommand) -> Result<(), Failure> {
-    let inputs = [command.high.as_path(), command.low.as_path()];
-    check_not_input(&command.output, &inputs)?;
-    let json = command.json.as_deref().filter(|path| path.as_os_str() != "-");
-    let others: Vec<&Path> = json.into_iter().chain(command.report.as_deref()).collect();
-    for (index, path) in others.iter().enumerate() {
-        check_place(path)?;
-        check_not_input(path, &inputs)?;
-        if *path == command.output || others[..index].contains(path) {
-            return Err(Failure::Usage(format!("{}: two outputs have this name", path.display())));
-        }
-    }
-    Ok(())
-}
-
 /// Writes a model as its extension says.
 pub fn write_model(path: &Path, model: &Model) -> Result<u64, Failure> {
     Ok(if is_obj(path) { write_obj(path, model) } else { write_glb(path, model) }?)
 }
 
+/// Refuses the name that elsewhere means standard input.
+pub fn check_input(path: &Path) -> Result<(), Failure> {
+    match path.as_os_str() == "-" {
+        true => Err(Failure::Usage("-: reading from standard input is not supported; give a file".into())),
+        false => Ok(()),
+    }
+}
+
+/// What readers say of a texture that is not there.
+const MISSING: &str = "goes without it";
+
+/// With `--strict` a missing texture is an error.
+pub fn check_textures(warnings: &[String]) -> Result<(), Failure> {
+    match warnings.iter().find(|warning| warning.contains(MISSING)) {
+        Some(warning) => Err(Failure::Strict(warning.clone())),
+        None => Ok(()),
+    }
+}
+
 /// Reads one model and passes its warnings on.
 pub fn read(path: &Path, console: &Console) -> Result<Loaded, Failure> {
+    check_input(path)?;
     let loaded = read_model(path, &Limits::default())?;
     for warning in &loaded.warnings {
         console.message(Message::Warning(warning.clone()));
@@ -162,7 +115,7 @@ pub fn bake_and_write(
 ) -> Result<Baked, Failure> {
     let mut baked = bake(&pair.high, &pair.low, options, console)?;
     let begin = console.seconds();
-    write_model(output, &baked.model)?;
+    write_model(output, &with_normal_y(&baked.model, options.normal_y))?;
     let report = &mut baked.report;
     report.warnings.splice(0..0, pair.warnings.iter().cloned());
     let reading = pair.seconds.map(|seconds| StageTime { stage: Stage::Read, seconds });
@@ -185,7 +138,7 @@ pub fn write_report(path: &Path, high: &Model, baked: &Baked, console: &Console)
 pub fn write_json(path: &Path, report: &impl serde::Serialize) -> Result<(), Failure> {
     let json =
         serde_json::to_string_pretty(report).map_err(|e| Failure::Output(format!("no JSON report: {e}")))?;
-    if path.as_os_str() == "-" {
+    if is_stdout(path) {
         return print(&json);
     }
     Ok(write_file(path, json.as_bytes())?)
@@ -212,6 +165,11 @@ pub fn tell(console: &Console, talk: Talk, report: &BakeReport, output: &Path) {
             report.views,
             console.seconds()
         ));
+    }
+    if report.options.normal_y == NormalY::Down {
+        console.say(
+            "the normal map is written with -Y (--normal-y down); glTF viewers and eval show it wrongly",
+        );
     }
     if talk.verbose {
         tell_of_shape(console, report);

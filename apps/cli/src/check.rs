@@ -1,8 +1,9 @@
 //! `parbake check`.
 
 use crate::arguments::CheckCommand;
-use crate::bake::{check_not_input, print, read, write_json};
+use crate::bake::{print, read, write_json};
 use crate::failure::{Ending, Failure};
+use crate::outputs::{check_json, is_stdout};
 use crate::progress::Console;
 use parbake::{LayoutCheck, ModelCheck, UvCheck, check_model, with_threads};
 use std::fmt::Write;
@@ -16,10 +17,8 @@ pub fn run(command: &CheckCommand) -> Result<Ending, Failure> {
     if !(gutter >= 0.0 && gutter.is_finite()) {
         return Err(Failure::Usage(format!("--gutter {gutter} is out of range: it may be 0 or more")));
     }
-    let to_stdout = command.json.as_ref().is_some_and(|p| p.as_os_str() == "-");
-    if let Some(path) = command.json.as_deref().filter(|_| !to_stdout) {
-        check_not_input(path, &[&command.model])?;
-    }
+    check_json(command.json.as_ref(), &[&command.model])?;
+    let to_stdout = command.json.as_ref().is_some_and(|path| is_stdout(path));
     let console = Console::new(command.talk);
     with_threads(command.threads, || {
         let model = read(&command.model, &console)?.model;

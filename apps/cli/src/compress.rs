@@ -1,28 +1,35 @@
 //! `parbake compress`.
 
 use crate::arguments::CompressCommand;
-use crate::bake::{
-    check_not_input, check_output, ending, print, read, write_json, write_model, write_report,
-};
+use crate::bake::{check_textures, ending, print, read, write_json, write_model, write_report};
 use crate::failure::{Ending, Failure};
 use crate::options_file::merged;
+use crate::outputs::{check_beside, check_not_input, check_output, is_stdout};
 use crate::progress::Console;
+use crate::rules;
 use clap::ArgMatches;
-use parbake::{BakeReport, LossStep, Stage, StageTime, compress, with_threads};
+use parbake::{BakeReport, LossStep, Stage, StageTime, Work, compress, with_normal_y, with_threads};
 use std::path::Path;
 
 /// Runs the command.
 pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Failure> {
-    let options = merged(&command.bake, given, command.options.as_deref())?;
+    let file = command.options.as_deref();
+    let options = merged(&command.bake, given, file)?;
+    rules::check(Work::Compress, &options, given, file)?;
     options.check()?;
-    check_output(&command.output)?;
-    check_not_input(&command.output, &[&command.model])?;
+    let (output, inputs) = (&command.output, [command.model.as_path()]);
+    check_output(output)?;
+    check_not_input(output, &inputs)?;
+    check_beside(Some(output), command.json.as_ref(), command.report.as_ref(), &inputs)?;
     let console = Console::for_bake(command.talk, options.time_budget);
     with_threads(options.threads, || {
         let loaded = read(&command.model, &console)?;
+        if command.strict {
+            check_textures(&loaded.warnings)?;
+        }
         let mut baked = compress(&loaded.model, &options, &console)?;
         let begin = console.seconds();
-        let bytes = [loaded.bytes, write_model(&command.output, &baked.model)?];
+        let bytes = [loaded.bytes, write_model(output, &with_normal_y(&baked.model, options.normal_y))?];
         baked.report.warnings.splice(0..0, loaded.warnings);
         baked.report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
         if let Some(path) = &command.json {
@@ -32,8 +39,8 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
             write_report(path, &loaded.model, &baked, &console)?;
         }
         console.finish();
-        if !command.talk.quiet && command.json.as_ref().is_none_or(|p| p.as_os_str() != "-") {
-            print(&summary(&baked.report, bytes, &command.output, console.seconds()))?;
+        if !command.talk.quiet && command.json.as_ref().is_none_or(|path| !is_stdout(path)) {
+            print(&summary(&baked.report, bytes, output, console.seconds()))?;
         }
         Ok(ending(&baked.report))
     })?

@@ -3,16 +3,28 @@
 use crate::arguments::{DemoCommand, DemoScene};
 use crate::bake::{Pair, bake_and_write, ending, tell, write_json, write_report};
 use crate::failure::{Ending, Failure};
+use crate::outputs::check_place;
+use crate::pictures::write_pictures;
 use crate::progress::Console;
+use crate::rules;
 use clap::ArgMatches;
-use parbake::{demo_pair, wall_pair, with_threads, write_glb};
+use parbake::{Work, demo_pair, wall_pair, with_threads, write_glb};
+use std::path::Path;
+
+/// File of the pictures.
+const PICTURE: &str = "demo.webp";
 
 /// Runs the command.
-pub fn run(command: &DemoCommand, _: &ArgMatches) -> Result<Ending, Failure> {
+pub fn run(command: &DemoCommand, given: &ArgMatches) -> Result<Ending, Failure> {
+    rules::check(Work::Bake, &command.bake, given, None)?;
     command.bake.check()?;
     let folder = &command.output;
-    std::fs::create_dir_all(folder)
-        .map_err(|e| Failure::Output(format!("{}: cannot make the folder: {e}", folder.display())))?;
+    make_folder(folder)?;
+    check_place(&folder.join("demo.glb"))?;
+    if let Some(pictures) = &command.pictures {
+        make_folder(pictures)?;
+        check_place(&pictures.join(PICTURE))?;
+    }
     let console = Console::for_bake(command.talk, command.bake.time_budget);
     with_threads(command.bake.threads, || {
         let (high, low) = match command.scene {
@@ -27,9 +39,17 @@ pub fn run(command: &DemoCommand, _: &ArgMatches) -> Result<Ending, Failure> {
         let report = folder.join("demo.html");
         write_report(&report, &pair.high, &baked, &console)?;
         write_json(&folder.join("demo.json"), &baked.report)?;
+        if let Some(folder) = &command.pictures {
+            write_pictures(&folder.join(PICTURE), &pair, &baked, &console)?;
+        }
         console.finish();
         tell(&console, command.talk, &baked.report, &output);
         console.say(&format!("look at {}", report.display()));
         Ok(ending(&baked.report))
     })?
+}
+
+fn make_folder(folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder)
+        .map_err(|e| Failure::Output(format!("{}: cannot make the folder: {e}", folder.display())))
 }

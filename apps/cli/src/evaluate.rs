@@ -3,18 +3,20 @@
 use crate::arguments::EvalCommand;
 use crate::bake::{print, read_pair, write_json};
 use crate::failure::{Ending, Failure};
+use crate::outputs::{check_json, is_stdout};
 use crate::progress::Console;
 use parbake::{ViewFigures, evaluate, with_threads};
 
 /// Runs the command.
 pub fn run(command: &EvalCommand) -> Result<Ending, Failure> {
     command.evaluate.check()?;
+    check_json(command.json.as_ref(), &[&command.high, &command.low])?;
     let console = Console::new(command.talk);
     with_threads(command.threads, || {
         let pair = read_pair(&command.high, &command.low, &console)?;
         let evaluation = evaluate(&pair.high, &pair.low, &command.evaluate, &console)?;
         console.finish();
-        let to_stdout = command.json.as_ref().is_some_and(|p| p.as_os_str() == "-");
+        let to_stdout = command.json.as_ref().is_some_and(|path| is_stdout(path));
         if let Some(path) = &command.json {
             write_json(path, &evaluation)?;
         }

@@ -39,6 +39,8 @@ pub enum Failure {
     Usage(String),
     /// The report or JSON could not be made or written: 1.
     Output(String),
+    /// A texture is missing, and `--strict` was given: 1.
+    Strict(String),
     /// The paper's experiments could not be run: 2 for options, 1 for everything else.
     Reproduce(ReproduceError),
 }
@@ -50,7 +52,9 @@ impl Failure {
             Failure::Usage(_)
             | Failure::Bake(BakeError::Option { .. })
             | Failure::Reproduce(ReproduceError::Bake(BakeError::Option { .. })) => ExitCode::from(2),
-            Failure::Bake(_) | Failure::Output(_) | Failure::Reproduce(_) => ExitCode::from(1),
+            Failure::Bake(_) | Failure::Output(_) | Failure::Strict(_) | Failure::Reproduce(_) => {
+                ExitCode::from(1)
+            }
         }
     }
 }
@@ -60,6 +64,7 @@ impl fmt::Display for Failure {
         match self {
             Failure::Bake(error) => error.fmt(f),
             Failure::Reproduce(error) => error.fmt(f),
+            Failure::Strict(warning) => write!(f, "{warning} (an error because of --strict)"),
             Failure::Usage(text) | Failure::Output(text) => f.write_str(text),
         }
     }

@@ -1,18 +1,29 @@
 //! `parbake image`.
 
 use crate::arguments::ImageCommand;
-use crate::bake::{check_not_input, check_output, print, write_json, write_model};
+use crate::bake::{check_input, print, write_json, write_model};
 use crate::failure::{Ending, Failure};
+use crate::outputs::{check_beside, check_not_input, check_output, check_place, is_stdout};
 use crate::progress::{Console, interrupted};
+use crate::rules;
+use clap::ArgMatches;
 use parbake::{BakedImage, ImageReport, Limits, bake_image, read_image, with_threads, write_file};
 use parbake_report::{UvAnimationOptions, uv_animation};
 use std::path::Path;
 
 /// Runs the command.
-pub fn run(command: &ImageCommand) -> Result<Ending, Failure> {
+pub fn run(command: &ImageCommand, given: &ArgMatches) -> Result<Ending, Failure> {
+    rules::check_image(&command.options, given)?;
     command.options.check()?;
-    check_output(&command.output)?;
-    check_not_input(&command.output, &[&command.picture])?;
+    let (output, inputs) = (&command.output, [command.picture.as_path()]);
+    check_input(&command.picture)?;
+    check_output(output)?;
+    check_not_input(output, &inputs)?;
+    check_beside(Some(output), command.json.as_ref(), None, &inputs)?;
+    if let Some(animation) = &command.animation {
+        check_place(animation)?;
+        check_not_input(animation, &inputs)?;
+    }
     let console = Console::for_bake(command.talk, None);
     with_threads(command.options.threads, || {
         let picture = read_image(&command.picture, &Limits::default())?;
@@ -26,7 +37,7 @@ pub fn run(command: &ImageCommand) -> Result<Ending, Failure> {
             write_animation(path, &baked, &console)?;
         }
         console.finish();
-        if !command.talk.quiet && command.json.as_ref().is_none_or(|p| p.as_os_str() != "-") {
+        if !command.talk.quiet && command.json.as_ref().is_none_or(|path| !is_stdout(path)) {
             print(&summary(&baked.report, bytes, &command.output, console.seconds()))?;
         }
         let stopped = interrupted() && baked.report.stopped_early;

@@ -10,18 +10,21 @@ mod evaluate;
 mod failure;
 mod image;
 mod options_file;
+mod outputs;
+mod pictures;
 mod progress;
 mod reproduce;
+mod rules;
 mod simplify;
 mod turntable;
 mod variants;
 
 use arguments::{Arguments, Command};
-use clap::{CommandFactory, FromArgMatches};
+use clap::FromArgMatches;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let matches = Arguments::command().get_matches();
+    let matches = arguments::command().get_matches();
     let arguments = match Arguments::from_arg_matches(&matches) {
         Ok(arguments) => arguments,
         Err(error) => error.exit(),
@@ -32,7 +35,7 @@ fn main() -> ExitCode {
         (Command::Demo(command), Some(given)) => demo::run(command, given),
         (Command::Eval(command), _) => evaluate::run(command),
         (Command::Compress(command), Some(given)) => compress::run(command, given),
-        (Command::Image(command), _) => image::run(command),
+        (Command::Image(command), Some(given)) => image::run(command, given),
         (Command::Variants(command), _) => variants::run(command),
         (Command::Turntable(command), _) => turntable::run(command),
         (Command::Reproduce(command), _) => reproduce::run(command),

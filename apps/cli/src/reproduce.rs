@@ -1,8 +1,9 @@
 //! `parbake reproduce`.
 
 use crate::arguments::ReproduceCommand;
-use crate::bake::{check_place, print};
+use crate::bake::print;
 use crate::failure::{Ending, Failure};
+use crate::outputs::check_place;
 use crate::progress::{Console, interrupted};
 use parbake::{with_threads, write_file};
 use parbake_reproduce::{Event, Fall, Observer, Record, Reproduced, reproduce};

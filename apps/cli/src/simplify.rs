@@ -1,8 +1,9 @@
 //! `parbake simplify`.
 
 use crate::arguments::SimplifyCommand;
-use crate::bake::{check_not_input, check_output, read, write_model};
+use crate::bake::{read, write_model};
 use crate::failure::{Ending, Failure};
+use crate::outputs::{check_not_input, check_output};
 use crate::progress::Console;
 use parbake::{simplified, subdivided};
 

@@ -1,8 +1,9 @@
 //! `parbake turntable`.
 
 use crate::arguments::TurntableCommand;
-use crate::bake::{check_not_input, check_place, read};
+use crate::bake::read;
 use crate::failure::{Ending, Failure};
+use crate::outputs::{check_not_input, check_place};
 use crate::progress::{Console, interrupted};
 use parbake::{BakeError, Loaded, Message, Stage, Watcher, with_threads};
 use parbake_report::{FilmFormat, write_turntable};

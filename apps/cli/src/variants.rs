@@ -1,8 +1,9 @@
 //! `parbake variants`.
 
 use crate::arguments::VariantsCommand;
-use crate::bake::{check_not_input, check_place, print, read_pair, write_json};
+use crate::bake::{print, read_pair, write_json};
 use crate::failure::{Ending, Failure};
+use crate::outputs::{check_beside, is_stdout};
 use crate::progress::Console;
 use parbake::{with_threads, write_file};
 use parbake_reproduce::variants::{VariantsReport, compare_variants, variants_html};
@@ -12,17 +13,9 @@ pub fn run(command: &VariantsCommand) -> Result<Ending, Failure> {
     let options = &command.variants;
     options.check()?;
     let json = command.json.as_deref();
-    let (file, to_stdout) = match json {
-        Some(path) if path.as_os_str() == "-" => (None, true),
-        other => (other, false),
-    };
-    if file == Some(&command.output) {
-        return Err(Failure::Usage(format!("{}: two outputs have this name", command.output.display())));
-    }
-    for path in file.into_iter().chain([command.output.as_path()]) {
-        check_place(path)?;
-        check_not_input(path, &[&command.high, &command.low])?;
-    }
+    let to_stdout = json.is_some_and(is_stdout);
+    let inputs = [command.high.as_path(), command.low.as_path()];
+    check_beside(None, command.json.as_ref(), Some(&command.output), &inputs)?;
     // Stopped, it shows the variants that it has.
     let console = Console::for_bake(command.talk, None);
     with_threads(options.threads, || {

@@ -1,19 +1,21 @@
-//! What a user can ask of `parbake image`.
+//! Options of `parbake image`.
 
 use crate::error::BakeError;
 use crate::options::{Method, check_content_aware};
+#[cfg(feature = "clap")]
+use crate::options::{heading, parse_texels};
 use parbake_uv::paper::PaperOptions;
 use parbake_uv::picture::PictureOptions;
 use serde::{Deserialize, Serialize};
 
-/// What becomes of a plane's texture coordinates.
+/// How a plane's texture coordinates are treated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum PictureUv {
-    /// They stay: an ordinary, smaller texture, on two triangles unless a grid was asked for.
+    /// Keep UVs: an ordinary, smaller texture, on two triangles unless --grid is given.
     Keep,
-    /// They move to where they show most.
+    /// Redistribute texels to minimise the rendered error.
     #[default]
     Optimize,
 }
@@ -23,36 +25,35 @@ pub enum PictureUv {
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ImageOptions {
-    /// Side of the square texture in texels, 16 to 4096
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 256))]
+    /// Side of the square texture in texels, 16 to 4096; 1k, 2k and 4k mean 1024, 2048 and 4096
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 256, value_parser = parse_texels, help_heading = heading::QUALITY))]
     pub texture_size: usize,
 
-    /// Cells along a side of the plane, 4 to 400: more follow the picture better and make the
-    /// model larger, by some 18 bytes a cell (up to 40 where no number from 2 to 16 divides them) [default: 200, 240 from 128
-    /// texels on, 400 from 256 on, with --method paper 50 as there, 1 where coordinates stay]
-    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
+    /// Cells along a side of the plane, 4 to 400. More cells follow the picture better and make the file
+    /// larger, by 18 to 40 bytes a cell [default: 200, from 128 texels on 240, from 256 on 400; with --method
+    /// paper 50, with --uv keep 1]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::QUALITY))]
     pub grid: Option<usize>,
 
-    /// What becomes of texture coordinates
-    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = PictureUv::Optimize))]
+    /// UV mode: how the plane's texture coordinates are treated
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = PictureUv::Optimize, help_heading = heading::UV))]
     pub uv: PictureUv,
 
-    /// How they are moved; the texture itself is the least-squares one with either
-    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Method::Fit))]
+    /// UV optimiser; the texture is the least-squares one with either
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Method::Fit, help_heading = heading::RESEARCH))]
     pub method: Method,
 
-    /// Leave out the paper's content-aware term; only with --method paper
-    #[cfg_attr(feature = "clap", arg(long))]
+    /// Leave out the content-aware term of the paper's UV optimiser; needs --method paper
+    #[cfg_attr(feature = "clap", arg(long, help_heading = heading::RESEARCH))]
     pub no_content_aware: bool,
 
-    /// Steps that texture coordinates take at most on each of the grids, coarse to fine, or with
-    /// --method paper on the one it has, 0 to 10000 [default: 80, 60 from 128 texels on, 40
-    /// from 256 on, whose steps take longer, with --method paper 800]
-    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
+    /// Steps of the UV optimiser on each grid, coarse to fine, 0 to 10000 [default: 80, from 128 texels on
+    /// 60, from 256 on 40; with --method paper, on its one grid, 800]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::UV))]
     pub steps: Option<usize>,
 
-    /// Threads to work with, 0 to 256, 0 for one a core
-    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 0))]
+    /// Number of threads, 0 to 256; 0 is one a core
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 0, help_heading = heading::ADVANCED))]
     pub threads: usize,
 }
 

@@ -26,6 +26,7 @@ mod image;
 mod image_options;
 mod memory;
 mod models;
+mod normal_y;
 mod options;
 mod plan;
 mod report;
@@ -40,7 +41,10 @@ pub use evaluate::{Evaluation, ViewFigures, evaluate, evaluate_before};
 pub use image::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
 pub use memory::peak_memory;
 pub use models::{demo_pair, laid_out, simplified, subdivided, wall_pair};
+pub use normal_y::{NormalY, with_normal_y};
 pub use options::{Backdrop, BakeOptions, Convention, Method, Parallax, Preset, ShapeMode, UvMode};
+#[cfg(feature = "clap")]
+pub use options::{heading, parse_texels};
 pub use parbake_atlas::{LayoutCheck, ModelCheck, UvCheck, check_mesh, check_model};
 pub use parbake_files::{
     FileError, Limits, Loaded, encode_png, read_image, read_model, write_atomically as write_file, write_glb,

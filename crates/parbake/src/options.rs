@@ -1,36 +1,71 @@
-//! What a user can ask for: one plain struct for the library, the command line and
-//! the options file. Every field states its unit, range and default; `None` in a
-//! quality field means "as the preset says".
+//! Options of a bake: one plain struct for the library, the command line and the options file.
+//! Every field states its unit, range and default; `None` in a field means that preset, texture size
+//! or other options decide.
 
 use crate::error::BakeError;
+use crate::normal_y::NormalY;
 use parbake_image::display::{Curve, Display};
 use parbake_render::interpretation::Interpretation;
 pub use parbake_uv::mode::{Method, UvMode};
 use serde::{Deserialize, Serialize};
 
-/// How much time a bake may take for how much quality.
+/// Headings of options in `--help`.
+#[cfg(feature = "clap")]
+pub mod heading {
+    /// Texture size, presets, views.
+    pub const QUALITY: &str = "Quality";
+    /// Texture coordinates.
+    pub const UV: &str = "UV";
+    /// Vertices and outlines.
+    pub const SHAPE: &str = "Shape";
+    /// Parallax maps and cutouts.
+    pub const PARALLAX: &str = "Parallax";
+    /// What few users need.
+    pub const ADVANCED: &str = "Advanced";
+    /// What reproduces earlier work or serves experiments.
+    pub const RESEARCH: &str = "Research";
+}
+
+/// Reads a number of texels: `512`, or `1k`, `2k`, `4k` and `8k` for multiples of 1024.
+///
+/// # Errors
+/// A sentence that says what a number of texels looks like.
+#[cfg(feature = "clap")]
+pub fn parse_texels(text: &str) -> Result<usize, String> {
+    let (digits, unit) = match text.strip_suffix(['k', 'K']) {
+        Some(digits) => (digits, 1024),
+        None => (text, 1),
+    };
+    digits
+        .parse()
+        .ok()
+        .and_then(|number: usize| number.checked_mul(unit))
+        .ok_or_else(|| "give a whole number of texels, such as 512, or 1k, 2k, 4k or 8k".into())
+}
+
+/// Time against quality.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Preset {
-    /// A look within seconds.
+    /// A preview within seconds.
     Fast,
-    /// What most bakes should use.
+    /// For most bakes.
     #[default]
     Balanced,
-    /// The last tenths of a decibel.
+    /// A few tenths of a decibel more, for two to three times the time.
     Best,
 }
 
-/// How colours are understood when pictures are compared.
+/// Shading convention of compared pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Convention {
-    /// As glTF says: base colour is decoded from sRGB, light has unit strength.
+    /// As glTF viewers show models: base colour decoded from sRGB, a light of strength 1.
     #[default]
     Gltf,
-    /// As in the paper's pictures: textures as stored, light of strength 1.59.
+    /// As in the paper's pictures: base colour as stored, a light of strength 1.59.
     Paper,
 }
 
@@ -52,31 +87,33 @@ impl Convention {
     }
 }
 
-/// What becomes of vertices.
+/// How vertices are moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum ShapeMode {
-    /// They stay as they are.
+    /// Vertices stay.
     Keep,
-    /// They move along their normals, as in the paper.
+    /// Vertices move along their normals only.
     Normal,
-    /// They move anywhere, held together by a Laplacian term as in earlier work, for comparison.
+    /// Research only: vertices move freely under a Laplacian term, as in earlier work.
+    #[cfg_attr(feature = "clap", value(hide = true))]
     Laplacian,
-    /// They move where the pictures want them.
+    /// Vertices move until outlines agree.
     #[default]
     Free,
 }
 
-/// How depth is shown without triangles.
+/// Whether depth is faked by maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Parallax {
-    /// Not at all: the file is plain glTF.
+    /// No maps: plain glTF.
     #[default]
     None,
-    /// By a map of spherical harmonics in a material extension (docs/parallax_format.md).
+    /// A parallax map and a cutout of spherical harmonics in a material extension
+    /// (docs/parallax_format.md).
     Sh,
 }
 
@@ -89,16 +126,16 @@ pub(crate) fn check_content_aware(method: Method, no_content_aware: bool) -> Res
     Ok(())
 }
 
-/// What lies behind the models while fitting: the low-poly is asked to look like this
-/// where its silhouette goes beyond the high-poly's.
+/// Background of the training views: what the low-poly shall look like where it overhangs the
+/// high-poly's outline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Backdrop {
-    /// Darkness, which shading at grazing light comes close to by itself.
+    /// Black, which shading at grazing angles comes close to by itself.
     #[default]
     Black,
-    /// Grey, of half the linear light of white.
+    /// Grey: half the linear light of white.
     Grey,
     /// White.
     White,
@@ -116,135 +153,132 @@ impl Backdrop {
 }
 
 /// Options of a bake.
+///
+/// [`BakeOptions::check`] checks ranges and combinations.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct BakeOptions {
-    /// Side of the baked textures in texels, 16 to 8192
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 512))]
+    /// Side of the baked textures in texels, 16 to 8192; 1k, 2k, 4k and 8k mean 1024, 2048, 4096 and 8192
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 512, value_parser = parse_texels, help_heading = heading::QUALITY))]
     pub texture_size: usize,
 
-    /// How much time to spend for how much quality
-    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Preset::Balanced))]
+    /// Trades time for quality
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Preset::Balanced, help_heading = heading::QUALITY))]
     pub preset: Preset,
 
-    /// What becomes of the low-poly's texture coordinates
-    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = UvMode::Optimize))]
+    /// UV mode: how the low-poly's texture coordinates are treated
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = UvMode::Optimize, help_heading = heading::UV))]
     pub uv: UvMode,
 
-    /// What becomes of the low-poly's vertices
-    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = ShapeMode::Free))]
+    /// Shape mode: how the low-poly's vertices are moved
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = ShapeMode::Free, help_heading = heading::SHAPE))]
     pub shape: ShapeMode,
 
-    /// How depth is shown without triangles; viewers need to know the extension
-    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Parallax::None))]
+    /// Parallax maps, which fake depth and cut round outlines; viewers need to know the glTF extension
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Parallax::None, help_heading = heading::PARALLAX))]
     pub parallax: Parallax,
 
-    /// Highest order of the parallax map's spherical harmonics, 0 to 7
-    #[cfg_attr(feature = "clap", arg(long, value_name = "ORDER", default_value_t = 2))]
+    /// Highest order of the parallax map's spherical harmonics, 0 to 7; needs --parallax sh
+    #[cfg_attr(feature = "clap", arg(long, value_name = "ORDER", default_value_t = 2, help_heading = heading::PARALLAX))]
     pub parallax_order: usize,
 
-    /// Keep what the low-poly shows beyond the high-poly's silhouette instead of cutting it out;
-    /// only with --parallax sh
-    #[cfg_attr(feature = "clap", arg(long))]
+    /// Fit no cutout (view-dependent opacity mask): outlines stay those of the triangles; needs --parallax sh
+    #[cfg_attr(feature = "clap", arg(long, help_heading = heading::PARALLAX))]
     pub no_cutout: bool,
 
-    /// Highest order of the cutout's spherical harmonics, 0 to 7
-    #[cfg_attr(feature = "clap", arg(long, value_name = "ORDER", default_value_t = 4))]
+    /// Highest order of the cutout's spherical harmonics, 0 to 7; needs --parallax sh
+    #[cfg_attr(feature = "clap", arg(long, value_name = "ORDER", default_value_t = 4, help_heading = heading::PARALLAX))]
     pub cutout_order: usize,
 
-    /// Side of the cutout map in texels, 4 to 1024
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 128))]
+    /// Side of the cutout map in texels, 4 to 1024; needs --parallax sh
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 128, help_heading = heading::PARALLAX))]
     pub cutout_size: usize,
 
-    /// Side of the parallax map in texels, 4 to 1024
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 64))]
+    /// Side of the parallax map in texels, 4 to 1024; needs --parallax sh
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 64, help_heading = heading::PARALLAX))]
     pub parallax_size: usize,
 
-    /// How texture coordinates are moved; textures are fitted the same way after either
-    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Method::Fit))]
-    pub method: Method,
-
-    /// Leave out the paper's content-aware term; only with --method paper
-    #[cfg_attr(feature = "clap", arg(long))]
-    pub no_content_aware: bool,
-
-    /// Least distance between charts in texels, 0 to 64 [default: a 256th of the side, 1 to 8;
-    /// with a parallax map two of its texels where charts are few: 16 for a map of 64²]
-    #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "TEXELS"))]
+    /// Padding between charts (UV islands) in texels, 0 to 64 [default: texture size / 256, at least 1, at most 8;
+    /// with --parallax sh and few charts two texels of the parallax map]
+    #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "TEXELS", help_heading = heading::UV))]
     pub gutter: Option<f64>,
 
-    /// Steps in which texture coordinates are moved, 0 to 10000 [default: by preset 10, 30, 60,
-    /// eight times as many where a model is compressed; with --method paper 800]
-    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
+    /// Steps of the UV optimiser, 0 to 10000 [default: by preset 10, 30, 60, in compress 80, 240, 480; with
+    /// --method paper 800]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::UV))]
     pub uv_steps: Option<usize>,
 
-    /// Triangles that a compressed model may have more than it had, 0 to 1000000: those with the largest
-    /// errors are halved, so that texture coordinates can bend within them. The surface stays [default: one for
-    /// each 32 texels of the texture, at most 2000]
-    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
+    /// Triangles that compress may add, 0 to 1000000: those with the largest error are halved so that UVs can
+    /// bend more. The shape does not change [default: one for each 32 texels, at most 2000]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", hide = true, help_heading = heading::UV))]
     pub more_triangles: Option<usize>,
 
-    /// How colours are understood when pictures are compared
-    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Convention::Gltf))]
-    pub convention: Convention,
-
-    /// What lies behind the models while fitting
-    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Backdrop::Black))]
+    /// Background of the training views, where the low-poly overhangs the high-poly's outline
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Backdrop::Black, help_heading = heading::SHAPE))]
     pub backdrop: Backdrop,
 
-    /// How much pixels count where the low-poly reaches beyond the high-poly's silhouette, 0 to 1:
-    /// 1 looks best on the backdrop's colour, 0 treats all backgrounds alike [default: 0.5, with a
-    /// cutout 0]
-    #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "WEIGHT"))]
+    /// Weight of pixels where the low-poly overhangs the high-poly's outline, 0 to 1. High values darken the
+    /// edges: best on black. 0 is neutral: best on varied backgrounds [default: 0.5, with a cutout 0]
+    #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "WEIGHT", help_heading = heading::SHAPE))]
     pub silhouette: Option<f32>,
 
-    /// Keep the projected normal map instead of fitting it
-    #[cfg_attr(feature = "clap", arg(long))]
-    pub keep_normals: bool,
-
-    /// Length of a pixel's display difference (three channels from 0 to 1) at which it counts half in
-    /// the textures, since no texture can please it, 0.01 to 1000; twice as much where it is too dark.
-    /// Less keeps surfaces clean where views contradict each other, 1000 is as good as plain least
-    /// squares [default: 1, with parallax maps 0.5, with --method paper 1000]
-    #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "DIFFERENCE"))]
-    pub outlier: Option<f32>,
-
-    /// How far to either side of the low-poly projection looks for the high-poly, as a share of
-    /// the high-poly's longest side, 0 to 1
-    #[cfg_attr(
-        feature = "clap",
-        arg(long, allow_negative_numbers = true, value_name = "SHARE", default_value_t = 0.05)
-    )]
-    pub reach: f32,
-
     /// Training views, 1 to 4096 [default: by preset 240, 960, 1280]
-    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::QUALITY))]
     pub views: Option<usize>,
 
-    /// Side of a training view in pixels, 32 to 2048 [default: by preset 192, 192, 256, more for textures beyond 1024]
-    #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS"))]
+    /// Side of a training view in pixels, 32 to 2048 [default: by preset 192, 192, 256, larger for textures
+    /// above 1024]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", help_heading = heading::QUALITY))]
     pub view_size: Option<usize>,
 
-    /// Turns that colours and normals take, 0 to 100, 0 for the projection as it is [default: by preset 3, 5, 8]
-    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT"))]
+    /// Alternations between the colour and the normal solve, 0 to 100; 0 writes the projected textures
+    /// [default: by preset 3, 5, 8]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::QUALITY))]
     pub rounds: Option<usize>,
 
-    /// Chooses the training views: another seed, another pool
-    #[cfg_attr(feature = "clap", arg(long, value_name = "NUMBER", default_value_t = 0))]
+    /// Seconds after which the best textures so far are written, 0 to 1e9, reading of files included. Below 8
+    /// vertices stay and UVs are only repaired [default: no limit]
+    #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "SECONDS", help_heading = heading::QUALITY))]
+    pub time_budget: Option<f64>,
+
+    /// Shading convention of the pictures that are fitted
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Convention::Gltf, help_heading = heading::ADVANCED))]
+    pub convention: Convention,
+
+    /// Keep the projected normal map instead of fitting it
+    #[cfg_attr(feature = "clap", arg(long, help_heading = heading::ADVANCED))]
+    pub keep_normals: bool,
+
+    /// Direction of the green channel of the normal map that is written
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = NormalY::Up, help_heading = heading::ADVANCED))]
+    pub normal_y: NormalY,
+
+    /// Distance to either side of the low-poly within which projection looks for the high-poly, as a share of
+    /// the high-poly's longest side, 0 to 1
+    #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "SHARE", default_value_t = 0.05, help_heading = heading::ADVANCED))]
+    pub reach: f32,
+
+    /// Random seed of the training views, 0 to 2^64 - 1
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NUMBER", default_value_t = 0, help_heading = heading::ADVANCED))]
     pub seed: u64,
 
-    /// Threads to work with, 0 to 256, 0 for one a core; the result does not depend on it unless
-    /// a time budget ends the run
-    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 0))]
+    /// Number of threads, 0 to 256; 0 is one a core. The result depends on it only if a time budget ends the run
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 0, help_heading = heading::ADVANCED))]
     pub threads: usize,
 
-    /// Seconds after which the best textures so far are written, 0 to 1e9; reading files counts, for
-    /// a library from the call of `bake`. Projection is always finished; below 8 seconds vertices stay
-    /// and texture coordinates are only mended, and with any budget maps learn from 96 views
-    /// [default: no limit]
-    #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "SECONDS"))]
-    pub time_budget: Option<f64>,
+    /// UV optimiser, and with `paper` also that of vertices and parallax maps; textures are solved the same way
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Method::Fit, help_heading = heading::RESEARCH))]
+    pub method: Method,
+
+    /// Leave out the content-aware term of the paper's UV optimiser; needs --method paper
+    #[cfg_attr(feature = "clap", arg(long, help_heading = heading::RESEARCH))]
+    pub no_content_aware: bool,
+
+    /// Scale of the robust (Cauchy) loss of the texture solve, in display units, 0.01 to 1000. Lower it if
+    /// surfaces look mottled; 1000 is least squares [default: 1, with --parallax sh 0.5, with --method paper 1000]
+    #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "DIFFERENCE", help_heading = heading::RESEARCH))]
+    pub outlier: Option<f32>,
 }
 
 impl Default for BakeOptions {
@@ -269,6 +303,7 @@ impl Default for BakeOptions {
             backdrop: Backdrop::Black,
             silhouette: None,
             keep_normals: false,
+            normal_y: NormalY::Up,
             outlier: None,
             reach: 0.05,
             views: None,

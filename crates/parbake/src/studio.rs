@@ -11,7 +11,7 @@
 
 use crate::error::BakeError;
 use crate::evaluate::options::EvaluateOptions;
-use parbake_image::display::{Curve, Display};
+use parbake_image::display::Display;
 use parbake_metric::Rgb;
 use parbake_model::glam::Vec3;
 use parbake_model::{Model, Placement};
@@ -57,8 +57,7 @@ impl Studio {
 
     /// The shot as a screen shows it before `background`, in linear light.
     pub fn develop(&self, shot: &Shot, background: [f32; 3]) -> Rgb {
-        let display = Display { gain: self.options.gain, curve: Curve::Srgb };
-        shown(&shot.0, &display, background)
+        shown(&shot.0, &self.options.display(), background)
     }
 }
 

@@ -39,8 +39,6 @@ fn maps_improve_the_look_whatever_the_number_of_threads() {
             resolution: 96,
             background: background.into(),
             no_flip: true,
-            decode_srgb: true,
-            gain: 1.0,
             ..EvaluateOptions::default()
         };
         let psnr = |low: &Model| evaluate(&high, low, &options, &()).unwrap().mean.psnr;

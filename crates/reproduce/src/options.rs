@@ -49,15 +49,14 @@ impl ReproduceOptions {
         self.evaluate().check()
     }
 
-    /// How results are compared with the high-poly: the setting that fits the paper's figures
-    /// best, which are `parbake eval`'s defaults.
+    /// How results are compared with the high-poly: by the paper's convention (`eval --convention paper`).
     pub fn evaluate(&self) -> EvaluateOptions {
         let (views, resolution) = if self.quick { (12, 256) } else { (48, 512) };
         EvaluateOptions {
             views: self.views.unwrap_or(views),
             resolution: self.resolution.unwrap_or(resolution),
             no_flip: true,
-            ..EvaluateOptions::default()
+            ..EvaluateOptions::paper()
         }
     }
 }

@@ -18,8 +18,8 @@ pub fn as_shown(plane: &Model, picture: &Image) -> Result<Rgb, BakeError> {
         resolution: longest.clamp(16, 4096),
         supersample: 1,
         ortho: Some(1.0),
-        gain: 1.0,
-        ..EvaluateOptions::default()
+        gain: Some(1.0),
+        ..EvaluateOptions::paper()
     };
     let studio = Studio::new(plane, &options)?;
     let shot = studio.shot(&studio.subject(plane), Vec3::Z);

@@ -1,38 +1,36 @@
-//! What a user may ask of texture coordinates.
+//! Options of texture coordinates.
 
 use crate::paper::Guide;
 use serde::{Deserialize, Serialize};
 
-/// What becomes of texture coordinates.
+/// How texture coordinates are treated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum UvMode {
-    /// They stay as they are.
+    /// Keep UVs as they are.
     Keep,
-    /// What overlaps, is mirrored or lies outside is mended; sound ones stay.
+    /// Repair what overlaps, is mirrored or lies outside the square; keep sound UVs.
     Repair,
-    /// They are made anew.
+    /// Replace UVs by a new unwrap.
     Unwrap,
-    /// They are made anew as Tutte's embedding in the middle of the square, a poor start that
-    /// optimisers can be tried on.
+    /// Research only: Tutte's embedding in the middle of the square, a poor start for optimisers.
+    #[cfg_attr(feature = "clap", value(hide = true))]
     Tutte,
-    /// They are mended and then moved to where they show most.
+    /// Repair, then redistribute texels to minimise the rendered error.
     #[default]
     Optimize,
 }
 
-/// How texture coordinates are moved where they are optimised.
+/// UV optimiser.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
-    /// A start specialised to the signal, then variable projection: what the best texture
-    /// leaves is reduced itself.
+    /// A parameterisation specialised to the signal, then variable projection.
     #[default]
     Fit,
-    /// The paper's alternation: steps of Adam on the texture, one step of L-BFGS on the
-    /// coordinates.
+    /// The paper's alternation of Adam on the texture and L-BFGS on the UVs.
     Paper,
 }
 

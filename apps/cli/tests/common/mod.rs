@@ -58,11 +58,14 @@ pub fn real_models() -> Option<PathBuf> {
     folder
 }
 
-/// PSNR of a comparison under the evaluator's own conventions.
+/// PSNR of a comparison by the paper's convention.
 pub fn psnr(folder: &Path, high: &Path, low: &Path) -> f64 {
     let arguments = ["eval", high.to_str().unwrap(), low.to_str().unwrap()];
-    let output =
-        run(folder, &[&arguments[..], &["--views", "24", "--no-flip", "--json", "-", "-q"]].concat());
+    let output = run(
+        folder,
+        &[&arguments[..], &["--convention", "paper", "--views", "24", "--no-flip", "--json", "-", "-q"]]
+            .concat(),
+    );
     let evaluation: Value = serde_json::from_slice(&output.stdout).unwrap();
     evaluation["mean"]["psnr"].as_f64().unwrap()
 }

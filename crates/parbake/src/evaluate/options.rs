@@ -1,6 +1,8 @@
-//! What an evaluation leaves open, as plain data for library, command line and files.
+//! Options of an evaluation, as plain data for library, command line and files.
 
 use crate::error::BakeError;
+use crate::options::Convention;
+use parbake_image::display::Display;
 use parbake_render::camera::Projection;
 use parbake_render::interpretation::Interpretation;
 use serde::{Deserialize, Serialize};
@@ -8,25 +10,25 @@ use serde::{Deserialize, Serialize};
 /// Linear light of a grey background, the independent evaluator's too.
 pub const GREY: f32 = 0.5;
 
-/// Conventions of an evaluation. The defaults ("preset B") are those that agree best
-/// with the paper's figures.
+/// Conventions of an evaluation. The defaults are those that a bake fits by default: glTF's.
+/// [`EvaluateOptions::paper`] are those of the paper's figures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct EvaluateOptions {
-    /// Views on a Fibonacci sphere, 1 to 4096
+    /// Views on a Fibonacci sphere around the model, 1 to 4096
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 48))]
     pub views: usize,
 
-    /// Side of a picture in pixels, 16 to 4096
+    /// Side of a view in pixels, 16 to 4096
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", default_value_t = 512))]
     pub resolution: usize,
 
-    /// Samples along a side of each pixel, 1 to 8
+    /// Samples along each side of a pixel, 1 to 8
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 2))]
     pub supersample: usize,
 
-    /// Distance of the cameras in half lengths of the high-poly's longest side, 1.8 to 100
+    /// Distance of the cameras, 1.8 to 100; the unit is half of the high-poly's longest side
     #[cfg_attr(feature = "clap", arg(long, value_name = "DISTANCE", default_value_t = 3.5))]
     pub radius: f32,
 
@@ -34,20 +36,20 @@ pub struct EvaluateOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", default_value_t = 43.602_818))]
     pub fov: f32,
 
-    /// Half the width of an orthographic view, in half lengths, instead of perspective, 0.001 to 100
+    /// Orthographic instead of perspective views: half their width, 0.001 to 100; unit as of --radius
     /// [default: perspective]
     #[cfg_attr(feature = "clap", arg(long, value_name = "HALF_WIDTH"))]
     pub ortho: Option<f32>,
 
-    /// Strength of the light, 0.001 to 100
-    #[cfg_attr(feature = "clap", arg(long, default_value_t = 1.59))]
-    pub gain: f32,
+    /// Shading convention of the comparison; use the one that was baked with
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Convention::Gltf))]
+    pub convention: Convention,
 
-    /// Decode base colour from sRGB before shading, as glTF says
-    #[cfg_attr(feature = "clap", arg(long))]
-    pub decode_srgb: bool,
+    /// Strength of the light, 0.001 to 100 [default: 1, with --convention paper 1.59]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR"))]
+    pub gain: Option<f32>,
 
-    /// Fetch textures on their finest level only
+    /// Use no mip levels
     #[cfg_attr(feature = "clap", arg(long))]
     pub no_mips: bool,
 
@@ -55,11 +57,11 @@ pub struct EvaluateOptions {
     #[cfg_attr(feature = "clap", arg(long))]
     pub no_parallax: bool,
 
-    /// Background: black, white, grey, or three numbers from 0 to 1 as R,G,B, of linear light
+    /// Background: black, white, grey, or R,G,B in linear light, each 0 to 1
     #[cfg_attr(feature = "clap", arg(long, default_value = "black"))]
     pub background: String,
 
-    /// Leave FLIP out, which takes most of the time
+    /// Leave out FLIP, which takes most of the time
     #[cfg_attr(feature = "clap", arg(long))]
     pub no_flip: bool,
 }
@@ -73,8 +75,8 @@ impl Default for EvaluateOptions {
             radius: 3.5,
             fov: 43.602_818,
             ortho: None,
-            gain: 1.59,
-            decode_srgb: false,
+            convention: Convention::Gltf,
+            gain: None,
             no_mips: false,
             no_parallax: false,
             background: "black".into(),
@@ -84,6 +86,17 @@ impl Default for EvaluateOptions {
 }
 
 impl EvaluateOptions {
+    /// The conventions that agree best with the paper's figures: [`Convention::Paper`], all else by default.
+    pub fn paper() -> Self {
+        Self { convention: Convention::Paper, ..Self::default() }
+    }
+
+    /// Light strength and display curve.
+    pub fn display(&self) -> Display {
+        let own = self.convention.display();
+        Display { gain: self.gain.unwrap_or(own.gain), ..own }
+    }
+
     /// Checks every range; the error names the option and what it may be.
     pub fn check(&self) -> Result<(), BakeError> {
         self.checked_background().map(|_| ())
@@ -104,7 +117,7 @@ impl EvaluateOptions {
             ("radius", f64::from(self.radius), 1.8, 100.0),
             ("fov", f64::from(self.fov), 1.0, 170.0),
             ("ortho", f64::from(self.ortho.unwrap_or(1.0)), 1e-3, 100.0),
-            ("gain", f64::from(self.gain), 1e-3, 100.0),
+            ("gain", f64::from(self.display().gain), 1e-3, 100.0),
         ];
         for (option, value, low, high) in ranges {
             if !(low..=high).contains(&value) {
@@ -137,7 +150,7 @@ impl EvaluateOptions {
     /// How textures are read.
     pub fn interpretation(&self) -> Interpretation {
         Interpretation {
-            decode_srgb: self.decode_srgb,
+            decode_srgb: self.convention.decodes_srgb(),
             trilinear: !self.no_mips,
             parallax: !self.no_parallax,
         }

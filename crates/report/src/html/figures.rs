@@ -46,12 +46,7 @@ pub struct Evaluated {
 
 /// The conventions of a comparison after this bake.
 pub fn options(convention: Convention) -> EvaluateOptions {
-    EvaluateOptions {
-        views: VIEWS,
-        gain: convention.display().gain,
-        decode_srgb: convention.decodes_srgb(),
-        ..EvaluateOptions::default()
-    }
+    EvaluateOptions { views: VIEWS, convention, ..EvaluateOptions::default() }
 }
 
 /// Compares; `tick` is called after each view.

@@ -72,8 +72,6 @@ fn the_page_is_whole() {
     for (model, background) in [(&baked.model, "black"), (&baked.projected, "grey")] {
         let options = EvaluateOptions {
             views: super::figures::VIEWS,
-            gain: 1.0,
-            decode_srgb: true,
             background: background.into(),
             no_flip: true,
             ..EvaluateOptions::default()

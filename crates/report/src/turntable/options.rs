@@ -1,4 +1,4 @@
-//! What a turntable is asked for.
+//! Options of a turntable.
 
 use super::FilmFormat;
 use super::layout::Layout;
@@ -16,7 +16,7 @@ pub struct TurntableOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 60))]
     pub frames: usize,
 
-    /// Seconds that one turn takes, 1 to 100; viewers show a frame for 0.02 s at least
+    /// Seconds of one turn, 1 to 100; a frame is shown for at least 0.02 s
     #[cfg_attr(feature = "clap", arg(long, value_name = "SECONDS", default_value_t = 6.0))]
     pub seconds: f64,
 
@@ -24,18 +24,18 @@ pub struct TurntableOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", default_value_t = 384))]
     pub resolution: usize,
 
-    /// Samples along a side of each pixel, 1 to 8
+    /// Samples along each side of a pixel, 1 to 8
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 2))]
     pub supersample: usize,
 
-    /// How high the camera stands, in degrees above the models' middle, -87 to 87
+    /// Elevation of the camera in degrees, -87 to 87
     #[cfg_attr(
         feature = "clap",
         arg(long, allow_negative_numbers = true, value_name = "DEGREES", default_value_t = 15.0)
     )]
     pub height: f32,
 
-    /// Distance of the camera in half lengths of the high-poly's longest side, 1.8 to 100
+    /// Distance of the camera, 1.8 to 100; the unit is half of the high-poly's longest side
     #[cfg_attr(feature = "clap", arg(long, value_name = "DISTANCE", default_value_t = 3.5))]
     pub radius: f32,
 
@@ -43,12 +43,11 @@ pub struct TurntableOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "DEGREES", default_value_t = 43.602_818))]
     pub fov: f32,
 
-    /// How colours are understood
+    /// Shading convention
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Convention::Gltf))]
     pub convention: Convention,
 
-    /// Background: black, white, grey, or three numbers from 0 to 1 as R,G,B, of linear light; a
-    /// dark grey by default
+    /// Background: black, white, grey, or R,G,B in linear light, each 0 to 1; by default dark grey
     #[cfg_attr(feature = "clap", arg(long, default_value = DARK_GREY))]
     pub background: String,
 
@@ -56,11 +55,11 @@ pub struct TurntableOptions {
     #[cfg_attr(feature = "clap", arg(long))]
     pub no_parallax: bool,
 
-    /// Leave out the models' names below their pictures
+    /// Leave out the models' names
     #[cfg_attr(feature = "clap", arg(long))]
     pub no_captions: bool,
 
-    /// Threads to work with, 0 to 256, 0 for one a core; the film does not depend on it
+    /// Number of threads, 0 to 256; 0 is one a core. The film does not depend on it
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 0))]
     pub threads: usize,
 }
@@ -138,8 +137,7 @@ impl TurntableOptions {
             supersample,
             radius: self.radius,
             fov: self.fov,
-            gain: self.convention.display().gain,
-            decode_srgb: self.convention.interpretation().decode_srgb,
+            convention: self.convention,
             no_parallax: self.no_parallax,
             background: self.background.clone(),
             ..EvaluateOptions::default()

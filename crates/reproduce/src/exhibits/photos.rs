@@ -49,7 +49,7 @@ pub fn row(title: &str, high: &Path, plates: &[Plate]) -> Result<String, Reprodu
     let high = read_model(high, &limits)?.model;
     let (direction, fov) = framing(&high)?;
     let studio =
-        |resolution| Studio::new(&high, &EvaluateOptions { resolution, fov, ..EvaluateOptions::default() });
+        |resolution| Studio::new(&high, &EvaluateOptions { resolution, fov, ..EvaluateOptions::paper() });
     let (whole, fine) = (studio(PICTURE)?, studio(FINER * PICTURE)?);
     let taken = |model: &Model| {
         let taken = [&whole, &fine].map(|studio| {
@@ -86,7 +86,7 @@ struct Pictures {
 /// Where to take pictures from, and the field of view in degrees, as near as the model fits: the
 /// usual front, as a photographer would take it, unless another side shows much more.
 fn framing(high: &Model) -> Result<(Vec3, f32), ReproduceError> {
-    let options = EvaluateOptions { resolution: 96, supersample: 1, ..EvaluateOptions::default() };
+    let options = EvaluateOptions { resolution: 96, supersample: 1, ..EvaluateOptions::paper() };
     let studio = Studio::new(high, &options)?;
     let subject = studio.subject(high);
     let sides = [[0.413, 0.208, 0.887], [-0.54, 0.45, 0.71], [0.35, 0.8, 0.49], [0.3, -0.45, -0.84]];

@@ -1,4 +1,4 @@
-//! What a comparison of parallax variants is asked for.
+//! Options of a comparison of parallax variants.
 
 use parbake::BakeError;
 use parbake::Convention;
@@ -21,21 +21,21 @@ pub struct VariantsOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 64))]
     pub parallax_size: usize,
 
-    /// Side of the height maps in texels, 4 to 2048; at twice the side of the other maps they
-    /// see as much detail in fewer bytes
+    /// Side of the height maps in texels, 4 to 2048; with twice the side of the other maps they hold
+    /// as much detail in fewer bytes
     #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 128))]
     pub height_size: usize,
 
-    /// Texture widths that the heights span, 0.0001 to 1; the paper's by default
+    /// Range of the heights in texture widths, 0.0001 to 1; by default the paper's
     #[cfg_attr(feature = "clap", arg(long, value_name = "WIDTHS", default_value_t = SCALE))]
     pub height_scale: f32,
 
-    /// Measure heights along the normals instead of fitting them, and their scale with them; other
-    /// maps are fitted all the same
+    /// Measure heights and their scale along the normals instead of fitting them; other maps are still
+    /// fitted
     #[cfg_attr(feature = "clap", arg(long))]
     pub measured_heights: bool,
 
-    /// Steps in which each map is fitted, 0 to 10000
+    /// Steps of the fit of each map, 0 to 10000
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 300))]
     pub steps: usize,
 
@@ -47,7 +47,7 @@ pub struct VariantsOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", default_value_t = 144))]
     pub view_size: usize,
 
-    /// Held-out views that figures are means of, 1 to 4096
+    /// Held-out views over which figures are averaged, 1 to 4096
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 8))]
     pub held_out: usize,
 
@@ -55,15 +55,15 @@ pub struct VariantsOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", default_value_t = 512))]
     pub resolution: usize,
 
-    /// How colours are understood when pictures are compared
+    /// Shading convention of the comparison
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Convention::Gltf))]
     pub convention: Convention,
 
-    /// Chooses the training views: another seed, another pool
+    /// Random seed of the training views, 0 to 2^64 - 1
     #[cfg_attr(feature = "clap", arg(long, value_name = "NUMBER", default_value_t = 0))]
     pub seed: u64,
 
-    /// Threads to work with, 0 to 256, 0 for one a core; the result does not depend on it
+    /// Number of threads, 0 to 256; 0 is one a core. The result does not depend on it
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 0))]
     pub threads: usize,
 }

@@ -1,0 +1,155 @@
+//! Checks of output files before any work is done.
+//!
+//! Contract: what passes here can be written unless the disk changes or fills meanwhile. No file that
+//! stands there is touched.
+
+use crate::failure::Failure;
+use parbake::{BakeOptions, Parallax};
+use std::fs::OpenOptions;
+use std::path::{Path, PathBuf};
+
+/// The name that means standard output, for JSON alone.
+pub fn is_stdout(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Refuses a model that cannot be written.
+pub fn check_output(path: &Path) -> Result<(), Failure> {
+    check_extension(path, &["glb", "obj"], "the output")?;
+    check_place(path)
+}
+
+fn check_extension(path: &Path, allowed: &[&str], what: &str) -> Result<(), Failure> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+    if allowed.contains(&extension.as_str()) {
+        return Ok(());
+    }
+    let allowed: Vec<String> = allowed.iter().map(|extension| format!(".{extension}")).collect();
+    Err(Failure::Usage(format!("{}: {what} must end in {}", path.display(), allowed.join(" or "))))
+}
+
+/// Refuses maps that the output's format has no place for.
+pub fn check_maps(output: &Path, options: &BakeOptions) -> Result<(), Failure> {
+    if options.parallax == Parallax::None || !is_obj(output) {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!(
+        "{}: an OBJ cannot hold a parallax map; write a .glb, or leave --parallax out",
+        output.display()
+    )))
+}
+
+/// Whether the file is to be an OBJ.
+pub fn is_obj(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"))
+}
+
+/// Refuses a file that has no folder to lie in, would take a folder's place, or lies in a folder that
+/// cannot be written.
+pub fn check_place(path: &Path) -> Result<(), Failure> {
+    if path.is_dir() {
+        return Err(Failure::Usage(format!("{}: this is a folder; give it a file's name", path.display())));
+    }
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        let (path, folder) = (path.display(), folder.display());
+        return Err(Failure::Usage(format!("{path}: there is no folder {folder}; make it first")));
+    }
+    check_writable(path, folder.unwrap_or(Path::new(".")))
+}
+
+/// Files are written beside their place and renamed, so the folder must take a new file. Whether it does
+/// depends on more than its permissions, so a file is made and removed again.
+fn check_writable(path: &Path, folder: &Path) -> Result<(), Failure> {
+    let probe = folder.join(format!(".parbake-{}", std::process::id()));
+    match OpenOptions::new().write(true).create_new(true).open(&probe) {
+        Ok(_) => {
+            // It is empty and hidden: if it cannot be removed, nothing is lost.
+            let _ = std::fs::remove_file(&probe);
+            Ok(())
+        }
+        Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => Ok(()),
+        Err(error) => Err(Failure::Output(format!(
+            "{}: nothing can be written to this folder ({error}); choose another one",
+            path.display()
+        ))),
+    }
+}
+
+/// Refuses to write over an input: artists keep their only copy in such files.
+pub fn check_not_input(output: &Path, inputs: &[&Path]) -> Result<(), Failure> {
+    let whole = |path: &Path| path.canonicalize().ok();
+    // An OBJ takes its material file with it.
+    let written = [output.to_path_buf(), output.with_extension("mtl")];
+    for input in inputs {
+        let read = [input.to_path_buf(), input.with_extension("mtl")];
+        let hit = written
+            .iter()
+            .any(|w| whole(w).is_some_and(|w| read.iter().any(|r| whole(r).as_ref() == Some(&w))));
+        if hit {
+            return Err(Failure::Usage(format!(
+                "{}: this would overwrite the input {}; choose another name",
+                output.display(),
+                input.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Checks the JSON file of a command that writes nothing else.
+pub fn check_json(json: Option<&PathBuf>, inputs: &[&Path]) -> Result<(), Failure> {
+    check_beside(None, json, None, inputs)
+}
+
+/// Checks JSON and HTML files: their extensions, their places, and that no two outputs have one name.
+pub fn check_beside(
+    output: Option<&Path>,
+    json: Option<&PathBuf>,
+    report: Option<&PathBuf>,
+    inputs: &[&Path],
+) -> Result<(), Failure> {
+    let json = json.filter(|path| !is_stdout(path));
+    let mut taken: Vec<&Path> = output.into_iter().collect();
+    let all = [(json, &["json"][..], "figures"), (report, &["html", "htm"][..], "the report")];
+    for (path, extensions, what) in all {
+        let Some(path) = path else { continue };
+        if is_stdout(path) {
+            return Err(Failure::Usage(format!(
+                "{what} cannot go to standard output, as --json - can; give a file"
+            )));
+        }
+        if taken.contains(&path.as_path()) {
+            return Err(Failure::Usage(format!("{}: two outputs have this name", path.display())));
+        }
+        check_extension(path, extensions, what)?;
+        check_place(path)?;
+        check_not_input(path, inputs)?;
+        taken.push(path);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    /// Protects the folder: the check leaves nothing there, and files of other kinds are named.
+    #[test]
+    fn checks_leave_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        assert!(check_output(&at("a.glb")).is_ok());
+        assert!(check_beside(Some(&at("a.glb")), Some(&at("a.json")), Some(&at("a.html")), &[]).is_ok());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        let wrong = |json: Option<&str>, report: Option<&str>| {
+            check_beside(Some(&at("a.glb")), json.map(at).as_ref(), report.map(at).as_ref(), &[])
+                .unwrap_err()
+                .to_string()
+        };
+        assert!(wrong(Some("a.glb"), None).contains("two outputs"));
+        assert!(wrong(Some("a.txt"), None).contains("must end in .json"));
+        assert!(wrong(None, Some("a.pdf")).contains("must end in .html or .htm"));
+    }
+}

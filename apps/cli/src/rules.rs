@@ -1,0 +1,106 @@
+//! Options that would do nothing are refused, typed or read from an options file.
+//!
+//! Contract: an option counts as asked for if it was typed, or if the options file gives it another value
+//! than the default (a report holds all options, most of them at their defaults). The first rule that is
+//! broken becomes one sentence that says what to do.
+
+use crate::failure::Failure;
+use clap::ArgMatches;
+use clap::parser::ValueSource;
+use parbake::{BakeOptions, ImageOptions, Method, Parallax, PictureUv, UvMode, Work};
+use serde_json::Value;
+use std::path::Path;
+
+/// Options of a bake that do nothing where a model's own texture is replaced: the surface stays.
+pub const NOT_IN_COMPRESS: [&str; 10] = [
+    "shape",
+    "backdrop",
+    "silhouette",
+    "parallax",
+    "parallax_order",
+    "parallax_size",
+    "no_cutout",
+    "cutout_order",
+    "cutout_size",
+    "reach",
+];
+
+/// Options that act in `compress` on models with a normal map alone, which are baked as a pair is.
+pub const WITH_NORMAL_MAPS: [&str; 8] =
+    ["views", "view_size", "rounds", "convention", "keep_normals", "normal_y", "seed", "outlier"];
+
+/// Whether an argument was typed; false for one that the command does not have.
+pub fn is_typed(given: &ArgMatches, name: &str) -> bool {
+    given.ids().any(|id| id == name) && given.value_source(name) == Some(ValueSource::CommandLine)
+}
+
+/// An option as one types it.
+fn typed_name(name: &str) -> String {
+    format!("--{}", name.replace('_', "-"))
+}
+
+/// Checks the options of `bake`, `demo` or `compress`; `file` is the options file, if there was one.
+pub fn check(
+    work: Work,
+    options: &BakeOptions,
+    given: &ArgMatches,
+    file: Option<&Path>,
+) -> Result<(), Failure> {
+    let fields = |options: &BakeOptions| serde_json::to_value(options).unwrap_or(Value::Null);
+    let (own, default) = (fields(options), fields(&BakeOptions::default()));
+    let is_asked = |name: &str| is_typed(given, name) || (file.is_some() && own[name] != default[name]);
+    let refuse = |names: &[&str], why: &str| match names.iter().find(|name| is_asked(name)) {
+        None => Ok(()),
+        Some(name) => {
+            let source = match file {
+                Some(file) if !is_typed(given, name) => format!("{}: ", file.display()),
+                _ => String::new(),
+            };
+            Err(Failure::Usage(format!("{source}{} {why}", typed_name(name))))
+        }
+    };
+    if work == Work::Compress {
+        refuse(&NOT_IN_COMPRESS, "does nothing in compress, which keeps the surface; leave it out")?;
+    } else {
+        refuse(&["more_triangles"], "acts in compress only; leave it out")?;
+    }
+    if options.parallax == Parallax::None {
+        let maps = ["parallax_order", "parallax_size", "no_cutout", "cutout_order", "cutout_size"];
+        refuse(&maps, "does nothing without --parallax sh; add that or leave it out")?;
+    }
+    let of_cutout = ["cutout_order", "cutout_size"];
+    if options.no_cutout {
+        refuse(&of_cutout, "does nothing with --no-cutout; leave one of the two out")?;
+    }
+    if options.method == Method::Paper {
+        refuse(&of_cutout, "does nothing with --method paper, which fits no cutout; leave it out")?;
+    } else {
+        refuse(&["no_content_aware"], "does nothing without --method paper; add that or leave it out")?;
+        if options.uv != UvMode::Optimize {
+            refuse(&["uv_steps"], "does nothing without --uv optimize; choose that or leave it out")?;
+        }
+    }
+    if options.silhouette_weight() == 0.0 {
+        refuse(
+            &["backdrop"],
+            "does nothing where --silhouette is 0, its default with a cutout; give --silhouette as well",
+        )?;
+    }
+    Ok(())
+}
+
+/// Checks the options of `image`.
+pub fn check_image(options: &ImageOptions, given: &ArgMatches) -> Result<(), Failure> {
+    let refuse = |names: &[&str], why: &str| match names.iter().find(|name| is_typed(given, name)) {
+        None => Ok(()),
+        Some(name) => Err(Failure::Usage(format!("{} {why}", typed_name(name)))),
+    };
+    if options.uv == PictureUv::Keep {
+        let moves = ["steps", "method", "no_content_aware", "animation"];
+        refuse(&moves, "does nothing with --uv keep; choose --uv optimize or leave it out")?;
+    }
+    if options.method != Method::Paper {
+        refuse(&["no_content_aware"], "does nothing without --method paper; add that or leave it out")?;
+    }
+    Ok(())
+}
