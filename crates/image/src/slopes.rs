@@ -6,7 +6,7 @@
 //! `λ = ½ log₂ q`, `q = max(|∂uv/∂x|², |∂uv/∂y|²)` in texels: `dL/d(∂uv/∂x) =
 //! dL/dλ · size² ∘ ∂uv/∂x / (q ln 2)` for the longer of the two.
 //!
-//! Contract: as `texture.rs`.
+//! Contract: as `pyramid.rs`.
 
 use crate::FloatImage;
 use crate::pyramid::{Pyramid, Taps, taps};

@@ -2,7 +2,7 @@
 //! a high-poly and the pictures of an evaluation go through here.
 //!
 //! Forward: for each sample `raster → interpolate → frame → parallax → texture → shade`,
-//! as in the other files of this room; samples of a pixel are averaged. Where a material has
+//! as in the other files of this crate; samples of a pixel are averaged. Where a material has
 //! a cutout, what that leaves out is looked through (`cutout.rs`).
 //!
 //! Contract: pictures are linear light, premultiplied, with coverage in the fourth

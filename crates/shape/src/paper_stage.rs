@@ -1,9 +1,9 @@
-//! The paper's Algorithm 1 after its steps of texture coordinates (`unfold/paper.rs`): the
+//! The paper's Algorithm 1 after its steps of texture coordinates (`parbake_uv::surface`): the
 //! parallax map with its depth and the displacement along the normals, by Adam from nothing
 //! (`parbake_shape::paper`). Its textures are thrown away, as the ones that are written are
 //! solved for afterwards with all else held, which leaves less error than its last k₂ steps.
 //!
-//! Contract: as of `shape.rs`.
+//! Contract: as of `stage.rs`.
 
 use crate::paper::{PaperOptions, paper_fit};
 use crate::stage::{ShapeReport, move_vertices, smooth_references};

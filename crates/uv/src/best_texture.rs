@@ -171,8 +171,9 @@ fn sum(rows: &[Vec4]) -> Vec4 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::runs::Runs;
     use crate::shown::shown_errors;
-    use crate::signal::{Pixels, Sample};
+    use crate::signal::{Pixels, Sample, Signal};
     use glam::{DMat2, dvec2};
 
     /// Protects the time that fine textures of few samples take: begun from coarse to fine, few steps

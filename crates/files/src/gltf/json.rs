@@ -5,6 +5,7 @@
 //! Contract: nothing is checked here but the types; what is missing has the
 //! specification's default, and numbers are whole from 0 where it asks for that.
 
+use super::ignored::Ignored;
 use super::integer::{integer, integers, optional_integer};
 use super::json_material::Material;
 use serde::Deserialize;
@@ -30,10 +31,6 @@ pub(super) struct Document {
     pub skins: Vec<Ignored>,
     pub animations: Vec<Ignored>,
 }
-
-/// Something that is only counted.
-#[derive(Debug, Deserialize)]
-pub(super) struct Ignored {}
 
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]

@@ -3,8 +3,8 @@
 //!
 //! Contract: that of `json.rs`: nothing is checked but the types.
 
+use super::ignored::Ignored;
 use super::integer::{integer, optional_integer};
-use super::json::Ignored;
 use serde::Deserialize;
 
 #[derive(Debug, Default, Deserialize)]

@@ -10,6 +10,7 @@ mod binary;
 mod buffers;
 mod container;
 mod extensions;
+mod ignored;
 mod integer;
 mod json;
 mod json_material;

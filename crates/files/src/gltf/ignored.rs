@@ -1,0 +1,7 @@
+//! Parts of glTF that are only counted.
+
+use serde::Deserialize;
+
+/// Something that is only counted.
+#[derive(Debug, Deserialize)]
+pub(super) struct Ignored {}
