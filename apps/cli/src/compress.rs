@@ -2,13 +2,13 @@
 
 use crate::arguments::CompressCommand;
 use crate::bake::{
-    check_not_input, check_output, ending, print, read, write_json, write_model, write_report,
+    check_not_input, check_output, compare, ending, gains, print, read, write_json, write_model, write_report,
 };
 use crate::failure::{Ending, Failure};
 use crate::options_file::merged;
 use crate::progress::Console;
 use clap::ArgMatches;
-use parbake::{BakeReport, LossStep, Stage, StageTime, compress, with_threads};
+use parbake::{BakeReport, Stage, StageTime, compress, with_threads};
 use std::path::Path;
 
 /// Runs the command.
@@ -25,6 +25,9 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
         let bytes = [loaded.bytes, write_model(&command.output, &baked.model)?];
         baked.report.warnings.splice(0..0, loaded.warnings);
         baked.report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
+        if !command.talk.quiet || command.json.is_some() || command.report.is_some() {
+            compare(&loaded.model, &mut baked, command.report.is_some(), &console)?;
+        }
         if let Some(path) = &command.json {
             write_json(path, &baked.report)?;
         }
@@ -41,19 +44,15 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
 
 /// `bytes` are those of the model as delivered and as written, with all files that belong to it.
 fn summary(report: &BakeReport, [before, after]: [u64; 2], output: &Path, seconds: f64) -> String {
-    let decibels = |step: &LossStep| -10.0 * step.mean_square.max(1e-10).log10();
     let mut text = String::new();
-    if let (Some(first), Some(last)) = (report.losses.first(), report.losses.last()) {
-        let (ordinary, written) = (decibels(first), decibels(last));
-        let (begun, over) = match first.moved.as_str() {
-            "delivered" => ("with coordinates as they are", "the surface"),
-            "mended" => ("with coordinates mended", "the surface"),
-            _ => ("projected", "training views"),
+    if let Some(comparison) = &report.comparison {
+        let before = match report.losses.first().map(|first| first.moved.as_str()) {
+            Some("delivered") => "coordinates as they are",
+            Some("mended") => "coordinates mended",
+            _ => "ray-cast",
         };
-        text += &format!(
-            "{}: {ordinary:.2} dB {begun}, {written:.2} dB written, over {over}\n",
-            output.display()
-        );
+        let gains = gains(comparison, before, "compressed").replace("HIGH BAKED", "MODEL COMPRESSED");
+        text += &format!("{}: {gains}\n", output.display());
     }
     text += &format!("{before} bytes → {after} bytes, ");
     let [given, now] = [report.high_triangles, report.low_triangles];

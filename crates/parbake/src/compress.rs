@@ -114,7 +114,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     let mut report = own.report(baseline, &written, watcher);
     (report.losses, report.stages) = (losses, clock.stages);
     Ok(Baked {
-        projected: textured(baseline.low.model.clone(), &baseline.solved),
+        ray_cast: textured(baseline.low.model.clone(), &baseline.solved),
         model: textured(written.low.model, &written.solved),
         report,
         uv_moves: written.low.moves,
@@ -210,6 +210,7 @@ impl OwnSurface<'_> {
             overlapping_texels: 0,
             missed_texels: 0,
             uv,
+            comparison: None,
             losses: Vec::new(),
             stages: Vec::new(),
             stopped_early: watcher.stopped_a_stage(),

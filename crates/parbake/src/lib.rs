@@ -18,6 +18,7 @@
 
 mod bake;
 mod budget;
+mod comparison;
 mod compress;
 mod error;
 pub mod evaluate;
@@ -33,6 +34,9 @@ pub mod studio;
 mod threads;
 
 pub use bake::{Baked, bake, bake_prepared, prepare_high_poly};
+pub use comparison::{
+    BACKGROUNDS, BeforeAndAfter, COMPARED_VIEWS, Comparison, OnBackground, compare_bake, compared_as,
+};
 pub use compress::compress;
 pub use error::BakeError;
 pub use evaluate::options::EvaluateOptions;

@@ -1,7 +1,7 @@
 //! The animation read again by the GIF decoder, on layouts of which one knows what to see.
 
 use super::*;
-use parbake_model::glam::vec2;
+use parbake_model::glam::{Vec2, vec2};
 
 /// A grid of `cells`² squares, of which the upper and the lower half are charts, and
 /// `count` layouts in which it turns and shrinks.
