@@ -8,7 +8,7 @@
 //!           └ mend ─ LowPoly ─ projection ─ Model (to compare with)
 //! ```
 
-use crate::budget::shares;
+use crate::budget::{at_the_end, check_budget, shares, stage_weights};
 use crate::error::BakeError;
 use crate::geometry::{Geometry, move_geometry};
 use crate::options::{BakeOptions, UvMode};
@@ -133,6 +133,7 @@ fn run(
     watcher: &impl Watcher,
     begin: Instant,
 ) -> Result<Baked, BakeError> {
+    check_budget(options)?;
     let mut plan = options.plan();
     let same = work == Work::Compress;
     if same {
@@ -141,9 +142,11 @@ fn run(
     }
     let size = options.texture_size;
     let Conventions { display, .. } = high.conventions;
-    let scope = ProgressScope::new(watcher, begin, options.time_budget);
+    let scope = ProgressScope::new(watcher, begin, options.time_budget).keeping_back(at_the_end(size));
+    watcher.message(Message::Plan(stage_weights(options)));
     let mut clock = Clock::new(begin);
     let mut warnings = Warnings { watcher, told: Vec::new() };
+    warnings.tell((!same).then(|| swapped(high, low)).flatten());
     // One model twice keeps its vertices, whatever their normals are like.
     let turned = (!same).then(|| lit(low));
     let low = turned.as_ref().map_or(low, |(model, _)| model);
@@ -214,6 +217,8 @@ fn run(
 
     let uv = check_mesh(written, size);
     warnings.tell(layout_warning(&low.name, &uv));
+    let only_projected = plan.schedule.rounds == 0;
+    warnings.tell((!only_projected).then(|| unseen(&low.name, fitted.unseen, fitted.covered)).flatten());
     let report = BakeReport {
         work,
         shape,
@@ -270,6 +275,39 @@ fn other_baseline(
     mesh.triangle_materials.fill(0);
     let mended = Model { name, mesh, materials: vec![Material::default()], images: Vec::new() };
     LowPoly::new(&mended, &high.frame, options.texture_size).ok()
+}
+
+/// A low-poly has more triangles than its high-poly by more than this factor only where the two are swapped.
+const SWAPPED: usize = 2;
+
+/// A word about models that are likely in each other's place. A plain low-poly for a textured high-poly is
+/// not, however fine it is: a scan with its colours on a coarser mesh than the model's own is a good pair.
+fn swapped(high: &HighPoly, low: &Model) -> Option<String> {
+    let (of_low, of_high) = (low.mesh.triangles.len(), high.triangles);
+    let has_pictures = low.materials.iter().any(|material| material.base_color_texture.is_some());
+    let only_high = high.scene.has(MapKind::BaseColor) && !has_pictures;
+    (of_low > SWAPPED * of_high && !only_high).then(|| {
+        format!(
+            "the low-poly {} has {of_low} triangles and the high-poly {} {of_high}: are they swapped?",
+            low.name, high.name
+        )
+    })
+}
+
+/// Share of the texels on the surface that no view saw from which on it is worth a word.
+const UNSEEN_WORTH_A_WORD: f64 = 0.05;
+
+/// A word about texels that no training view saw.
+fn unseen(model: &str, unseen: usize, covered: usize) -> Option<String> {
+    let share = unseen as f64 / covered.max(1) as f64;
+    (share > UNSEEN_WORTH_A_WORD).then(|| {
+        format!(
+            "{model}: no training view saw {:.0} % of the texels on the surface, which are as projected or filled from \
+             their neighbours; parts that nothing shows are no loss, else try more --views, a larger --view-size \
+             or --time-budget, or a smaller --texture-size",
+            100.0 * share
+        )
+    })
 }
 
 /// Maps as files hold them.

@@ -52,7 +52,7 @@ pub use parbake_files::{
 };
 pub use parbake_fit::parallax_maps::ParallaxReport;
 pub use parbake_model::{Image as Picture, Model};
-pub use parbake_progress::{Message, ProgressScope, Stage, StageTime, Watcher};
+pub use parbake_progress::{Estimate, Message, ProgressScope, Stage, StageTime, Watcher};
 pub use parbake_shape::stage::ShapeReport;
 pub use parbake_uv::convergence::Convergence;
 pub use parbake_uv::moves::UvMoves;
