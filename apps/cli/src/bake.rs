@@ -8,8 +8,9 @@ use crate::progress::{Console, interrupted};
 use crate::rules;
 use clap::ArgMatches;
 use parbake::{
-    BakeOptions, BakeReport, Baked, Limits, Loaded, Message, Model, NormalY, Stage, StageTime, Watcher, Work,
-    bake, read_model, with_normal_y, with_threads, write_file, write_glb, write_obj,
+    BakeOptions, BakeReport, Baked, Comparison, Convention, Limits, Loaded, Message, Model, NormalY, Stage,
+    StageTime, Watcher, Work, bake, compare_bake, read_model, with_normal_y, with_threads, write_file,
+    write_glb, write_obj,
 };
 use parbake_report::html_report;
 use std::io::Write;
@@ -32,7 +33,10 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
         if command.strict {
             check_textures(&pair.warnings)?;
         }
-        let baked = bake_and_write(&pair, &options, output, &console)?;
+        let mut baked = bake_and_write(&pair, &options, output, &console)?;
+        if !command.talk.quiet || command.json.is_some() || command.report.is_some() {
+            compare(&pair.high, &mut baked, command.report.is_some(), &console)?;
+        }
         if let Some(path) = &command.json {
             write_json(path, &baked.report)?;
         }
@@ -127,6 +131,13 @@ pub fn bake_and_write(
     Ok(baked)
 }
 
+/// Compares the result with a ray-cast bake, for the last line, the report and JSON. FLIP, which takes most of
+/// the time, is for the HTML report alone.
+pub fn compare(high: &Model, baked: &mut Baked, with_flip: bool, console: &Console) -> Result<(), Failure> {
+    baked.report.comparison = Some(compare_bake(high, baked, with_flip, console)?);
+    Ok(())
+}
+
 /// Renders and writes the HTML report.
 pub fn write_report(path: &Path, high: &Model, baked: &Baked, console: &Console) -> Result<(), Failure> {
     let html = html_report(high, baked, console)?;
@@ -157,14 +168,9 @@ pub fn print(text: &str) -> Result<(), Failure> {
 /// The last lines: what came of it.
 pub fn tell(console: &Console, talk: Talk, report: &BakeReport, output: &Path) {
     let decibels = |mean_square: f64| -10.0 * mean_square.max(1e-10).log10();
-    let losses: Vec<f64> = report.losses.iter().map(|l| decibels(l.mean_square)).collect();
-    if let (Some(first), Some(last)) = (losses.first(), losses.last()) {
-        console.say(&format!(
-            "{}: {first:.2} dB projected, {last:.2} dB baked on the surface seen by {} training views; {:.1} s",
-            output.display(),
-            report.views,
-            console.seconds()
-        ));
+    if let Some(comparison) = &report.comparison {
+        let gains = gains(comparison, "ray-cast", "baked");
+        console.say(&format!("{}: {gains}; {:.1} s", output.display(), console.seconds()));
     }
     if report.options.normal_y == NormalY::Down {
         console.say(
@@ -178,6 +184,7 @@ pub fn tell(console: &Console, talk: Talk, report: &BakeReport, output: &Path) {
             "{} texels on the surface, {} ({share:.1} %) seen by no view; {} samples",
             report.covered_texels, report.unseen_texels, report.samples
         ));
+        console.say("agreement with the training views after each step:");
         for step in &report.losses {
             console.say(&format!(
                 "  {:8.3} s  {:8}  {:.3} dB",
@@ -190,6 +197,21 @@ pub fn tell(console: &Console, talk: Talk, report: &BakeReport, output: &Path) {
             console.say(&format!("peak memory {:.0} MB", bytes as f64 / 1e6));
         }
     }
+}
+
+/// Decibels before and after on black and on grey, and the command that gives the latter again.
+pub fn gains(comparison: &Comparison, before: &str, after: &str) -> String {
+    let [mut from, mut to] = [format!("{before} "), format!(" {after} ")];
+    let mut text = String::new();
+    for on in comparison.backgrounds.iter().take(2) {
+        let [a, b] = [on.mean.ray_cast.psnr, on.mean.baked.psnr];
+        text += &format!("{from}{a:.1} →{to}{b:.1} dB on {}, ", on.background);
+        (from, to) = (String::new(), " ".into());
+    }
+    let views = comparison.options.views;
+    let paper = if comparison.options.convention == Convention::Gltf { "" } else { " --convention paper" };
+    let text = text.trim_end_matches(", ");
+    format!("{text} ({views} views; eval HIGH BAKED --views {views}{paper} gives the same)")
 }
 
 /// What became of vertices and silhouettes.

@@ -1,14 +1,16 @@
 //! `parbake compress`.
 
 use crate::arguments::CompressCommand;
-use crate::bake::{check_textures, ending, print, read, write_json, write_model, write_report};
+use crate::bake::{
+    check_textures, compare, ending, gains, print, read, write_json, write_model, write_report,
+};
 use crate::failure::{Ending, Failure};
 use crate::options_file::merged;
 use crate::outputs::{check_beside, check_not_input, check_output, is_stdout};
 use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;
-use parbake::{BakeReport, LossStep, Stage, StageTime, Work, compress, with_normal_y, with_threads};
+use parbake::{BakeReport, Stage, StageTime, Work, compress, with_normal_y, with_threads};
 use std::path::Path;
 
 /// Runs the command.
@@ -32,6 +34,9 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
         let bytes = [loaded.bytes, write_model(output, &with_normal_y(&baked.model, options.normal_y))?];
         baked.report.warnings.splice(0..0, loaded.warnings);
         baked.report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
+        if !command.talk.quiet || command.json.is_some() || command.report.is_some() {
+            compare(&loaded.model, &mut baked, command.report.is_some(), &console)?;
+        }
         if let Some(path) = &command.json {
             write_json(path, &baked.report)?;
         }
@@ -48,19 +53,15 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
 
 /// `bytes` are those of the model as delivered and as written, with all files that belong to it.
 fn summary(report: &BakeReport, [before, after]: [u64; 2], output: &Path, seconds: f64) -> String {
-    let decibels = |step: &LossStep| -10.0 * step.mean_square.max(1e-10).log10();
     let mut text = String::new();
-    if let (Some(first), Some(last)) = (report.losses.first(), report.losses.last()) {
-        let (ordinary, written) = (decibels(first), decibels(last));
-        let (begun, over) = match first.moved.as_str() {
-            "delivered" => ("with coordinates as they are", "the surface"),
-            "mended" => ("with coordinates mended", "the surface"),
-            _ => ("projected", "training views"),
+    if let Some(comparison) = &report.comparison {
+        let before = match report.losses.first().map(|first| first.moved.as_str()) {
+            Some("delivered") => "coordinates as they are",
+            Some("mended") => "coordinates mended",
+            _ => "ray-cast",
         };
-        text += &format!(
-            "{}: {ordinary:.2} dB {begun}, {written:.2} dB written, over {over}\n",
-            output.display()
-        );
+        let gains = gains(comparison, before, "compressed").replace("HIGH BAKED", "MODEL COMPRESSED");
+        text += &format!("{}: {gains}\n", output.display());
     }
     text += &format!("{before} bytes → {after} bytes, ");
     let [given, now] = [report.high_triangles, report.low_triangles];

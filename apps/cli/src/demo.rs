@@ -1,7 +1,7 @@
 //! `parbake demo`: everything from nothing.
 
 use crate::arguments::{DemoCommand, DemoScene};
-use crate::bake::{Pair, bake_and_write, ending, tell, write_json, write_report};
+use crate::bake::{Pair, bake_and_write, compare, ending, tell, write_json, write_report};
 use crate::failure::{Ending, Failure};
 use crate::outputs::check_place;
 use crate::pictures::write_pictures;
@@ -35,7 +35,8 @@ pub fn run(command: &DemoCommand, given: &ArgMatches) -> Result<Ending, Failure>
         write_glb(&folder.join("demo_low.glb"), &low)?;
         let output = folder.join("demo.glb");
         let pair = Pair { high, low, warnings: Vec::new(), seconds: None };
-        let baked = bake_and_write(&pair, &command.bake, &output, &console)?;
+        let mut baked = bake_and_write(&pair, &command.bake, &output, &console)?;
+        compare(&pair.high, &mut baked, true, &console)?;
         let report = folder.join("demo.html");
         write_report(&report, &pair.high, &baked, &console)?;
         write_json(&folder.join("demo.json"), &baked.report)?;

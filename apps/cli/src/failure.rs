@@ -50,7 +50,7 @@ impl Failure {
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Failure::Usage(_)
-            | Failure::Bake(BakeError::Option { .. })
+            | Failure::Bake(BakeError::Option { .. } | BakeError::Budget { .. })
             | Failure::Reproduce(ReproduceError::Bake(BakeError::Option { .. })) => ExitCode::from(2),
             Failure::Bake(_) | Failure::Output(_) | Failure::Strict(_) | Failure::Reproduce(_) => {
                 ExitCode::from(1)

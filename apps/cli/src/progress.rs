@@ -3,7 +3,7 @@
 
 use crate::arguments::Talk;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use parbake::{Message, Stage, Watcher};
+use parbake::{Estimate, Message, Stage, Watcher};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
@@ -35,7 +35,7 @@ pub struct Console {
     deadline: Option<Instant>,
     begin: Instant,
     bar: ProgressBar,
-    stage: Mutex<Option<(Stage, Instant)>>,
+    state: Mutex<(Option<Stage>, Estimate)>,
 }
 
 /// Kept back from a time budget for encoding and writing, as a share and at least
@@ -90,10 +90,10 @@ impl Console {
         if talk.quiet {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
-        if let Ok(style) = ProgressStyle::with_template("{msg:24} {bar:30} {pos}/{len}, {eta} left") {
+        if let Ok(style) = ProgressStyle::with_template("{msg:24} {bar:30} {pos}/{len}{prefix}") {
             bar.set_style(style);
         }
-        Self { talk, deadline, begin, bar, stage: Mutex::new(None) }
+        Self { talk, deadline, begin, bar, state: Mutex::default() }
     }
 
     /// A line for people, unless they asked for quiet.
@@ -131,18 +131,27 @@ fn minutes(seconds: f64) -> String {
 
 impl Watcher for Console {
     fn message(&self, message: Message) {
+        let Ok(mut state) = self.state.lock() else { return };
+        let (current, estimate) = &mut *state;
+        estimate.note(&message);
         match message {
+            Message::Plan(_) => {}
             Message::Warning(text) => self.say(&format!("warning: {text}")),
             Message::Progress { stage, done, total } => {
-                if let Ok(mut current) = self.stage.lock()
-                    && current.is_none_or(|(s, _)| s != stage)
-                {
-                    *current = Some((stage, Instant::now()));
+                if *current != Some(stage) {
+                    *current = Some(stage);
                     self.bar.reset();
                     self.bar.set_message(stage.label());
                 }
                 self.bar.set_length(total as u64);
                 self.bar.set_position(done as u64);
+                // Of the whole run where its stages are known, else of this stage.
+                let left = match estimate.done() {
+                    Some(_) => estimate.seconds_left(self.seconds()),
+                    None => Some(self.bar.eta().as_secs_f64()),
+                };
+                let left = left.map_or(String::new(), |left| format!(", {} left", minutes(left)));
+                self.bar.set_prefix(left);
             }
         }
     }

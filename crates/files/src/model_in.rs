@@ -2,6 +2,7 @@
 
 use crate::context::{Context, Textures};
 use crate::resources::{begins_with, read_file};
+use crate::words::shown;
 use crate::{FileError, Folder, Limits, Place, gltf, obj};
 use parbake_model::Model;
 use std::path::Path;
@@ -13,7 +14,7 @@ const SUPPORTED: &str = "OBJ (.obj) and glTF 2.0 (.gltf, .glb)";
 pub struct Loaded {
     /// Keeps the model's contract; has at least one triangle, and every triangle an area.
     pub model: Model,
-    /// One sentence each, to show to people.
+    /// One sentence each, to show to people; where a file was read, each begins with the file's name.
     pub warnings: Vec<String>,
     /// Bytes of its file and of all others that were read for it.
     pub bytes: u64,
@@ -50,11 +51,15 @@ fn read(path: &Path, limits: &Limits, textures: Textures) -> Result<Loaded, File
     let bytes = read_file(path, limits.max_file_bytes).map_err(unreadable)?;
     let resources = Folder::beside(path);
     let context = Context::new(path, &resources, limits, textures);
-    if bytes.starts_with(gltf::MAGIC) || extension != "obj" {
+    let mut loaded = if bytes.starts_with(gltf::MAGIC) || extension != "obj" {
         gltf::read(context, &bytes)
     } else {
         obj::read(context, &bytes)
-    }
+    }?;
+    // Two models are read for a bake: each warning names the one it is about.
+    let name = shown(&path.file_name().unwrap_or_default().to_string_lossy());
+    loaded.warnings.iter_mut().for_each(|warning| *warning = format!("{name}: {warning}"));
+    Ok(loaded)
 }
 
 #[cfg(test)]
@@ -101,6 +106,21 @@ mod tests {
             let error = read_model(&path, &Limits::default()).unwrap_err();
             assert!(matches!(error, FileError::Read { .. }), "{error}");
         }
+    }
+
+    /// Protects the user's look: where a picture is missing, the warning names the model, the material and
+    /// the file.
+    #[test]
+    fn a_missing_picture_is_named_with_its_material_and_model() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("chair.obj");
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        write("chair.mtl", "newmtl oak\nmap_Kd oak_color.png\n");
+        write("chair.obj", "mtllib chair.mtl\nusemtl oak\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        let warnings = read_model(&path, &Limits::default()).unwrap().warnings;
+        let named =
+            |warning: &String| ["chair.obj", "oak", "oak_color.png"].iter().all(|n| warning.contains(n));
+        assert!(warnings.len() == 1 && named(&warnings[0]), "{warnings:?}");
     }
 
     /// Protects capital extensions, as old exporters write them.

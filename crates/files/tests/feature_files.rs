@@ -164,7 +164,7 @@ fn primitive_modes() {
         read_model(&data.join("feature/MeshPrimitiveModes/MeshPrimitiveModes.gltf"), &Limits::default());
     let loaded = loaded.unwrap();
     assert_eq!(loaded.model.mesh.triangles.len(), 16);
-    assert_eq!(loaded.warnings, ["points and lines were left out"]);
+    assert_eq!(loaded.warnings, ["MeshPrimitiveModes.gltf: points and lines were left out"]);
 }
 
 /// Protects alpha modes and cutoffs, sides, and pictures whose URIs have encoded blanks.

@@ -3,11 +3,12 @@
 //! ```text
 //! high ─ placed ─┬ Scene ──────┬ reference views ──────────────┬───────┐
 //!                └ HighSurface ┴ projection ────────┐          │       │
-//! low ─ lit ─ mend ─ shape ─ unfold ─ LowPoly ───── start ─── depth ─ samples ─ fit ─ Model
-//!   (normals)    (vertices) (coordinates) (texel map, charts)  (cutout, parallax)
+//! low ─ lit ┬ mend ─ shape ─ unfold ─ LowPoly ───── start ─── depth ─ samples ─ fit ─ Model
+//!   (normals)│    (vertices) (coordinates) (texel map, charts)  (cutout, parallax)
+//!           └ mend ─ LowPoly ─ projection ─ Model (to compare with)
 //! ```
 
-use crate::budget::shares;
+use crate::budget::{at_the_end, check_budget, shares, stage_weights};
 use crate::error::BakeError;
 use crate::geometry::{Geometry, move_geometry};
 use crate::options::{BakeOptions, UvMode};
@@ -16,14 +17,15 @@ use parbake_atlas::check_mesh;
 use parbake_fit::backend::{Backend, Cpu};
 use parbake_fit::parallax_maps::{FittedMaps, ParallaxMaps, fit_parallax_maps};
 use parbake_fit::schedule::{Comparison, fit_textures};
-use parbake_image::MapKind;
 use parbake_image::material_maps::set_texture;
 use parbake_image::quantise::to_image;
+use parbake_image::{MapKind, MapSet};
 use parbake_model::{Image, Material, Mesh, Model, TextureSlot, Wrap};
 use parbake_progress::{Clock, Message, ProgressScope, Stage, Watcher};
 use parbake_render::camera::Projection;
 use parbake_render::shade::Lambert;
 use parbake_uv::moves::UvMoves;
+use parbake_uv::surface::{Mended, UnfoldOptions, mend};
 use parbake_views::high_poly::{Conventions, HighPoly, ViewSet};
 use parbake_views::low_poly::{LowPoly, lit};
 use parbake_views::pool::Rig;
@@ -41,8 +43,12 @@ const RIG: Rig = Rig { radius: 3.5, projection: Projection::Perspective(0.4) };
 pub struct Baked {
     /// The low-poly with its fitted textures.
     pub model: Model,
-    /// The same with projected textures, as an ordinary baker would deliver it.
-    pub projected: Model,
+    /// What the result is compared with: what an ordinary ray-cast baker makes of the same two models.
+    /// The low-poly as it was delivered, vertices included, with its own texture coordinates where they
+    /// are sound or were to be kept (else mended as [`UvMode::Repair`] does), and with maps of the same
+    /// size that were projected along its normals. Where a model is compressed: its own surface with the
+    /// best texture for its own coordinates.
+    pub ray_cast: Model,
     /// What the run saw.
     pub report: BakeReport,
     /// The way of the texture coordinates through the run, where they moved.
@@ -127,6 +133,7 @@ fn run(
     watcher: &impl Watcher,
     begin: Instant,
 ) -> Result<Baked, BakeError> {
+    check_budget(options)?;
     let mut plan = options.plan();
     let same = work == Work::Compress;
     if same {
@@ -135,12 +142,15 @@ fn run(
     }
     let size = options.texture_size;
     let Conventions { display, .. } = high.conventions;
-    let scope = ProgressScope::new(watcher, begin, options.time_budget);
+    let scope = ProgressScope::new(watcher, begin, options.time_budget).keeping_back(at_the_end(size));
+    watcher.message(Message::Plan(stage_weights(options)));
     let mut clock = Clock::new(begin);
     let mut warnings = Warnings { watcher, told: Vec::new() };
+    warnings.tell((!same).then(|| swapped(high, low)).flatten());
     // One model twice keeps its vertices, whatever their normals are like.
     let turned = (!same).then(|| lit(low));
     let low = turned.as_ref().map_or(low, |(model, _)| model);
+    let delivered = low;
     warnings.tell(turned.iter().flat_map(|(_, of_normals)| of_normals.clone()));
     let Geometry { unfolded, shape, map } = move_geometry(low, work, high, options, &scope, &mut clock)?;
     let low = unfolded.as_ref().map_or(low, |u| &u.model);
@@ -190,10 +200,25 @@ fn run(
     let comparison = Comparison { backend: &Cpu, brdf: &Lambert, display, srgb: high.conventions.srgb() };
     let LowPoly { written, map: texels, atlas, .. } = &prepared;
     let fitted = fit_textures(&samples, atlas, &projected.maps, &comparison, &plan.schedule, &scope);
+    let samples = samples.len();
     clock.lap(Stage::Solve);
+
+    let missed_texels = projected.missed;
+    let ray_cast = match other_baseline(delivered, &prepared, work, high, options) {
+        // What was projected to begin with makes room for what is projected now.
+        Some(baseline) => {
+            drop(projected);
+            let maps = project(&baseline, high).maps;
+            textured(delivered, &baseline.written, images(&maps, comparison.srgb), None)
+        }
+        None => textured(low, written, images(&projected.maps, comparison.srgb), None),
+    };
+    clock.lap(Stage::Baseline);
 
     let uv = check_mesh(written, size);
     warnings.tell(layout_warning(&low.name, &uv));
+    let only_projected = plan.schedule.rounds == 0;
+    warnings.tell((!only_projected).then(|| unseen(&low.name, fitted.unseen, fitted.covered)).flatten());
     let report = BakeReport {
         work,
         shape,
@@ -203,26 +228,91 @@ fn run(
         high_triangles: high.triangles,
         low_triangles: low.mesh.triangles.len(),
         views,
-        samples: samples.len(),
+        samples,
         covered_texels: fitted.covered,
         unseen_texels: fitted.unseen,
         overlapping_texels: texels.overlaps,
-        missed_texels: projected.missed,
+        missed_texels,
         uv,
+        comparison: None,
         losses: fitted.losses.iter().map(Into::into).collect(),
         stages: clock.stages,
         stopped_early: fitted.stopped || views < plan.views || scope.stopped_a_stage(),
         warnings: warnings.told,
         peak_memory: crate::memory::peak_memory(),
     };
-    let start =
-        projected.maps.iter().map(|(kind, map)| (kind, to_image(kind, map, comparison.srgb))).collect();
     Ok(Baked {
-        projected: textured(low, written, start, None),
+        ray_cast,
         model: textured(low, written, fitted.images, maps.as_ref()),
         report,
         uv_moves: unfolded.and_then(|u| u.moves),
     })
+}
+
+/// The delivered low-poly made ready to be compared with, as [`Baked::ray_cast`] says; none where that is what
+/// was prepared for the bake already, or where its own coordinates have no place for a texture.
+fn other_baseline(
+    delivered: &Model,
+    prepared: &LowPoly,
+    work: Work,
+    high: &HighPoly,
+    options: &BakeOptions,
+) -> Option<LowPoly> {
+    let same = |mesh: &Mesh| {
+        let own = &prepared.written;
+        own.uvs == mesh.uvs && own.positions == mesh.positions && own.triangles == mesh.triangles
+    };
+    if work == Work::Compress || same(&delivered.mesh) {
+        return None;
+    }
+    let mode = if options.uv == UvMode::Keep { UvMode::Keep } else { UvMode::Repair };
+    // A gutter that was asked for is no reason to pack anew what is sound.
+    let asked = UnfoldOptions { gutter_required: false, ..options.unfold_as(mode) };
+    let Mended { name, mut mesh, .. } = mend(delivered, &asked).ok()?;
+    if same(&mesh) {
+        return None;
+    }
+    mesh.triangle_materials.fill(0);
+    let mended = Model { name, mesh, materials: vec![Material::default()], images: Vec::new() };
+    LowPoly::new(&mended, &high.frame, options.texture_size).ok()
+}
+
+/// A low-poly has more triangles than its high-poly by more than this factor only where the two are swapped.
+const SWAPPED: usize = 2;
+
+/// A word about models that are likely in each other's place. A plain low-poly for a textured high-poly is
+/// not, however fine it is: a scan with its colours on a coarser mesh than the model's own is a good pair.
+fn swapped(high: &HighPoly, low: &Model) -> Option<String> {
+    let (of_low, of_high) = (low.mesh.triangles.len(), high.triangles);
+    let has_pictures = low.materials.iter().any(|material| material.base_color_texture.is_some());
+    let only_high = high.scene.has(MapKind::BaseColor) && !has_pictures;
+    (of_low > SWAPPED * of_high && !only_high).then(|| {
+        format!(
+            "the low-poly {} has {of_low} triangles and the high-poly {} {of_high}: are they swapped?",
+            low.name, high.name
+        )
+    })
+}
+
+/// Share of the texels on the surface that no view saw from which on it is worth a word.
+const UNSEEN_WORTH_A_WORD: f64 = 0.05;
+
+/// A word about texels that no training view saw.
+fn unseen(model: &str, unseen: usize, covered: usize) -> Option<String> {
+    let share = unseen as f64 / covered.max(1) as f64;
+    (share > UNSEEN_WORTH_A_WORD).then(|| {
+        format!(
+            "{model}: no training view saw {:.0} % of the texels on the surface, which are as projected or filled from \
+             their neighbours; parts that nothing shows are no loss, else try more --views, a larger --view-size \
+             or --time-budget, or a smaller --texture-size",
+            100.0 * share
+        )
+    })
+}
+
+/// Maps as files hold them.
+fn images(maps: &MapSet, srgb: bool) -> Vec<(MapKind, Image)> {
+    maps.iter().map(|(kind, map)| (kind, to_image(kind, map, srgb))).collect()
 }
 
 /// What the user is told of as it is found, and reads again in the report.

@@ -16,8 +16,8 @@
 //! scaled.
 
 use crate::bake::{Baked, bake_onto_itself};
+use crate::budget::check_budget;
 use crate::error::BakeError;
-
 use crate::options::{BakeOptions, Convention, Parallax, UvMode};
 use crate::report::{BakeReport, LossStep, Work, layout_warning};
 use parbake_atlas::{check_mesh, in_one_tile};
@@ -51,6 +51,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         return Err(BakeError::Option { option, value: "sh".into(), range });
     }
     options.check()?;
+    check_budget(options)?;
     let as_it_is = options.unfold_as(UvMode::Keep);
     let delivered = mend(model, &as_it_is)?;
     if options.uv == UvMode::Keep && delivered.mesh.uvs.is_empty() {
@@ -63,6 +64,8 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     }
     let begin = Instant::now();
     let watcher = &ProgressScope::new(watcher, begin, options.time_budget);
+    // Coordinates are all that takes long; a texture is solved for those before and after.
+    watcher.message(Message::Plan(vec![(Stage::Unfold, 4.0), (Stage::Evaluate, 1.0)]));
     let mut clock = Clock::new(begin);
     let frame = common_frame(model)?;
     let surface = placed(model, &frame);
@@ -114,7 +117,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     let mut report = own.report(baseline, &written, watcher);
     (report.losses, report.stages) = (losses, clock.stages);
     Ok(Baked {
-        projected: textured(baseline.low.model.clone(), &baseline.solved),
+        ray_cast: textured(baseline.low.model.clone(), &baseline.solved),
         model: textured(written.low.model, &written.solved),
         report,
         uv_moves: written.low.moves,
@@ -210,6 +213,7 @@ impl OwnSurface<'_> {
             overlapping_texels: 0,
             missed_texels: 0,
             uv,
+            comparison: None,
             losses: Vec::new(),
             stages: Vec::new(),
             stopped_early: watcher.stopped_a_stage(),

@@ -22,6 +22,21 @@ pub enum BakeError {
         /// What may be asked.
         range: String,
     },
+    /// A time budget that a texture's size cannot keep.
+    #[error(
+        "--time-budget {budget} cannot hold with --texture-size {size}: projecting and writing alone take about {least} s; \
+         give it {least} s or more, or take --texture-size {largest}"
+    )]
+    Budget {
+        /// Seconds that were asked for.
+        budget: f64,
+        /// Texels along a side.
+        size: usize,
+        /// Seconds that hold with that size.
+        least: f64,
+        /// A size that holds with that budget.
+        largest: usize,
+    },
     /// A picture that a library caller made is not one.
     #[error("{image}: the picture has no pixels, or not as many as its width and height say")]
     BrokenImage {

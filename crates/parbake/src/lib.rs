@@ -18,6 +18,7 @@
 
 mod bake;
 mod budget;
+mod comparison;
 mod compress;
 mod error;
 pub mod evaluate;
@@ -34,6 +35,9 @@ pub mod studio;
 mod threads;
 
 pub use bake::{Baked, bake, bake_prepared, prepare_high_poly};
+pub use comparison::{
+    BACKGROUNDS, BeforeAndAfter, COMPARED_VIEWS, Comparison, OnBackground, compare_bake, compared_as,
+};
 pub use compress::compress;
 pub use error::BakeError;
 pub use evaluate::options::EvaluateOptions;
@@ -52,7 +56,7 @@ pub use parbake_files::{
 };
 pub use parbake_fit::parallax_maps::ParallaxReport;
 pub use parbake_model::{Image as Picture, Model};
-pub use parbake_progress::{Message, ProgressScope, Stage, StageTime, Watcher};
+pub use parbake_progress::{Estimate, Message, ProgressScope, Stage, StageTime, Watcher};
 pub use parbake_shape::stage::ShapeReport;
 pub use parbake_uv::convergence::Convergence;
 pub use parbake_uv::moves::UvMoves;

@@ -27,9 +27,6 @@ pub struct Plan {
     pub schedule: Schedule,
 }
 
-/// Seconds below which a time budget is better spent on textures alone.
-const LEAST_BUDGET: f64 = 8.0;
-
 /// Views that maps are fitted to within a time budget.
 const HURRIED_VIEWS: usize = 96;
 
@@ -56,7 +53,7 @@ impl BakeOptions {
 
     /// Whether there is only time for textures.
     fn hurried(&self) -> bool {
-        self.time_budget.is_some_and(|seconds| seconds < LEAST_BUDGET)
+        crate::budget::is_hurried(self)
     }
 
     /// What to do with vertices; none where they stay.

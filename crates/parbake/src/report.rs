@@ -1,5 +1,6 @@
 //! What a bake saw, as plain data: the JSON report, and what the HTML report shows.
 
+use crate::comparison::Comparison;
 use crate::options::BakeOptions;
 use parbake_atlas::UvCheck;
 use parbake_fit::parallax_maps::ParallaxReport;
@@ -100,6 +101,10 @@ pub struct BakeReport {
     pub missed_texels: usize,
     /// The check of the texture coordinates that are written.
     pub uv: UvCheck,
+    /// How much closer the result comes to the high-poly than a ray-cast bake; none until
+    /// [`compare_bake`](crate::compare_bake) was asked.
+    #[serde(default)]
+    pub comparison: Option<Comparison>,
     /// Loss of the start and after each step.
     pub losses: Vec<LossStep>,
     /// Seconds by stage.
@@ -116,10 +121,10 @@ impl BakeReport {
     /// What the textures are that the result is compared with.
     pub fn start(&self) -> &'static str {
         match (self.views, self.losses.first().map(|loss| loss.moved.as_str())) {
-            // Nothing was projected where nothing was looked at.
+            // Nothing was ray-cast where nothing was looked at.
             (0, Some("mended")) => "the best texture of this size for coordinates that were only mended",
             (0, _) => "the best texture of this size for the coordinates as they were",
-            _ => "what an ordinary baker delivers",
+            _ => "what a ray-cast baker makes of the low-poly as it was delivered",
         }
     }
 }

@@ -4,6 +4,8 @@
 use crate::stage::Stage;
 
 /// One message.
+///
+/// A run with a plan sends it first; messages of stages that are not in it change no estimate.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {
     /// `done` of `total` steps of a stage are finished.
@@ -15,6 +17,8 @@ pub enum Message {
         /// Steps in all.
         total: usize,
     },
+    /// The stages that are to come, in their order, with weights: what each takes as a rule, in any unit.
+    Plan(Vec<(Stage, f64)>),
     /// Something that the user should know and that stops nothing.
     Warning(String),
 }

@@ -22,6 +22,19 @@ impl<'a, W: Watcher> ProgressScope<'a, W> {
         Self { watcher, until, told: Arc::default() }
     }
 
+    /// The same run without the last `seconds` of its time, which what cannot be stopped at its end takes.
+    /// Where neither a budget nor the watcher limits the time, nothing changes.
+    pub fn keeping_back(mut self, seconds: f64) -> Self {
+        let seconds = Duration::from_secs_f64(seconds.clamp(0.0, 1e9));
+        let watchers = self
+            .watcher
+            .seconds_left()
+            .map(|left| Instant::now() + Duration::from_secs_f64(left.clamp(0.0, 1e9)));
+        let until = self.until.into_iter().chain(watchers).min();
+        self.until = until.map(|until| until.checked_sub(seconds).unwrap_or_else(Instant::now));
+        self
+    }
+
     /// Whether a stage was told to stop.
     pub fn stopped_a_stage(&self) -> bool {
         self.told.load(Ordering::Relaxed)

@@ -26,6 +26,8 @@ pub enum Stage {
     Parallax,
     /// Solving for the textures.
     Solve,
+    /// Projecting the high-poly onto the delivered low-poly, to compare with.
+    Baseline,
     /// Comparing pictures.
     Evaluate,
     /// Rendering and encoding frames of a film.
@@ -48,6 +50,7 @@ impl Stage {
             Stage::Cutout => "cutting silhouettes",
             Stage::Parallax => "fitting parallax",
             Stage::Solve => "solving for textures",
+            Stage::Baseline => "ray-casting the delivered low-poly",
             Stage::Evaluate => "comparing pictures",
             Stage::Film => "filming",
             Stage::Write => "writing files",

@@ -77,6 +77,10 @@ impl<'a, 'd> TextureReader<'a, 'd> {
             return Ok(None);
         };
         let Some(image) = self.image(source, &format!("/textures/{}/source", info.index))? else {
+            // Its file was named when it was looked for; here the material that misses it is.
+            buffers
+                .context
+                .warn(format!("{here}: its picture is missing; {} goes without it", named(document, here)));
             return Ok(None);
         };
         Ok(Some(TextureSlot {
@@ -145,6 +149,15 @@ impl<'a, 'd> TextureReader<'a, 'd> {
             }
         };
         Ok(Some((name, bytes.into())))
+    }
+}
+
+/// The material of a pointer "/materials/INDEX/…", by its name where it has one.
+fn named(document: &json::Document, pointer: &str) -> String {
+    let index = pointer.split('/').nth(2).and_then(|index| index.parse::<usize>().ok());
+    match index.and_then(|index| document.materials.get(index)) {
+        Some(material) if !material.name.is_empty() => format!("material {:?}", material.name),
+        _ => "the material".into(),
     }
 }
 

@@ -133,7 +133,7 @@ fn fill<'f>(
     }
     if let Some(map) = &section.diffuse_map {
         material.base_color = [1.0; 4];
-        material.base_color_texture = pictures.slot(map, folder)?;
+        material.base_color_texture = pictures.slot(map, folder, &material.name)?;
     }
     material.base_color[3] = section.opacity.filter(|o| o.is_finite()).unwrap_or(1.0).clamp(0.0, 1.0);
     if section.has_opacity_map {
@@ -144,7 +144,7 @@ fn fill<'f>(
     super::pbr::fill(material, found, pictures)?;
     let normals = section.normal_map.as_ref();
     if let Some(map) = normals.or(section.bump_map.as_ref()) {
-        material.normal_texture = pictures.slot(map, folder)?;
+        material.normal_texture = pictures.slot(map, folder, &material.name)?;
         if material.normal_texture.is_some() {
             material.normal_scale = map.strength;
             return Ok(normals.is_none().then_some(&map.file));
@@ -175,8 +175,13 @@ pub(super) struct Pictures<'a, 'c> {
 }
 
 impl Pictures<'_, '_> {
-    /// A use of the picture, if it can be found.
-    pub fn slot(&mut self, map: &Map, folder: &str) -> Result<Option<TextureSlot>, FileError> {
+    /// The material's use of the picture, if it can be found; else a warning that names both.
+    pub fn slot(
+        &mut self,
+        map: &Map,
+        folder: &str,
+        material: &str,
+    ) -> Result<Option<TextureSlot>, FileError> {
         if self.context.textures == Textures::Skip {
             return Ok(None);
         }
@@ -189,7 +194,12 @@ impl Pictures<'_, '_> {
                 image
             }
         };
-        let Some(image) = image else { return Ok(None) };
+        let Some(image) = image else {
+            let name = &map.file;
+            self.context
+                .warn(format!("material {material:?}: picture {name:?} was not found; it goes without"));
+            return Ok(None);
+        };
         let wrap = [if map.clamp { Wrap::Clamp } else { Wrap::Repeat }; 2];
         Ok(Some(TextureSlot { image, uv_set: 0, wrap, transform: transform(map) }))
     }
@@ -204,8 +214,6 @@ impl Pictures<'_, '_> {
                 return Ok(Some(self.found.len() - 1));
             }
         }
-        let name = &map.file;
-        self.context.warn(format!("picture {name:?} was not found; the material goes without it"));
         Ok(None)
     }
 }

@@ -24,7 +24,7 @@ pub(super) fn fill(
     material.metallic = factor(section.metallic, material.metallic);
     if section.roughness_map.is_some() || section.metallic_map.is_some() {
         if let Some(map) = joint_map(section, material.metallic) {
-            material.metallic_roughness_texture = pictures.slot(map, folder)?;
+            material.metallic_roughness_texture = pictures.slot(map, folder, &material.name)?;
             if material.metallic_roughness_texture.is_some() {
                 material.roughness = 1.0;
                 material.metallic = if section.metallic_map.is_some() { 1.0 } else { 0.0 };
@@ -37,7 +37,7 @@ pub(super) fn fill(
         }
     }
     if let Some(map) = &section.emission_map {
-        material.emissive_texture = pictures.slot(map, folder)?;
+        material.emissive_texture = pictures.slot(map, folder, &material.name)?;
     }
     if material.emissive_texture.is_some() {
         material.emissive = [1.0; 3];

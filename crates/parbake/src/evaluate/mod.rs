@@ -4,7 +4,7 @@
 pub mod options;
 
 use crate::error::BakeError;
-use crate::studio::Studio;
+use crate::studio::{Studio, Subject};
 use options::EvaluateOptions;
 use parbake_metric::Rgb;
 use parbake_model::Model;
@@ -65,37 +65,50 @@ pub fn evaluate_before(
     backgrounds: &[&str],
     watcher: &impl Watcher,
 ) -> Result<Vec<Evaluation>, BakeError> {
-    let asked: Vec<EvaluateOptions> = backgrounds
-        .iter()
-        .map(|&name| EvaluateOptions { background: name.into(), ..options.clone() })
-        .collect();
-    let colors: Vec<[f32; 3]> =
-        asked.iter().map(EvaluateOptions::checked_background).collect::<Result<_, _>>()?;
+    let views = evaluate_each(high, &[low], options, backgrounds, watcher)?;
+    let of = |(k, &name): (usize, &&str)| {
+        let views: Vec<ViewFigures> = views.iter().map(|view| view[0][k]).collect();
+        let options = EvaluateOptions { background: name.into(), ..options.clone() };
+        Evaluation { options, mean: mean(&views), views }
+    };
+    Ok(backgrounds.iter().enumerate().map(of).collect())
+}
+
+/// Compares several models with one high-poly, which is rendered once for all of them: for each view the
+/// figures of each model on each background.
+///
+/// # Errors
+/// As of [`evaluate`].
+pub(crate) fn evaluate_each(
+    high: &Model,
+    low: &[&Model],
+    options: &EvaluateOptions,
+    backgrounds: &[&str],
+    watcher: &impl Watcher,
+) -> Result<Vec<Vec<Vec<ViewFigures>>>, BakeError> {
+    let color =
+        |&name: &&str| EvaluateOptions { background: name.into(), ..options.clone() }.checked_background();
+    let colors: Vec<[f32; 3]> = backgrounds.iter().map(color).collect::<Result<_, _>>()?;
     let studio = Studio::new(high, options)?;
-    let (high, low) = (studio.subject(high), studio.subject(low));
+    let high = studio.subject(high);
+    let low: Vec<Subject> = low.iter().map(|low| studio.subject(low)).collect();
     let done = AtomicUsize::new(0);
-    let views: Vec<Vec<ViewFigures>> = fibonacci_sphere(options.views, 0.0)
-        .into_par_iter()
-        .map(|direction| {
-            let shots = [&high, &low].map(|subject| studio.shot(subject, direction));
-            let figures = colors.iter().map(|&color| {
-                let [high, low] = shots.each_ref().map(|shot| studio.develop(shot, color));
-                compare(&high, &low, !options.no_flip)
-            });
-            let figures = figures.collect();
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            watcher.message(Message::Progress { stage: Stage::Evaluate, done, total: options.views });
-            figures
-        })
-        .collect();
-    Ok(asked
-        .into_iter()
-        .enumerate()
-        .map(|(k, options)| {
-            let views: Vec<ViewFigures> = views.iter().map(|view| view[k]).collect();
-            Evaluation { options, mean: mean(&views), views }
-        })
-        .collect())
+    let views = fibonacci_sphere(options.views, 0.0).into_par_iter().map(|direction| {
+        let shot = studio.shot(&high, direction);
+        let high: Vec<Rgb> = colors.iter().map(|&color| studio.develop(&shot, color)).collect();
+        let figures = low.iter().map(|low| {
+            let shot = studio.shot(low, direction);
+            let pairs = colors.iter().zip(&high);
+            pairs
+                .map(|(&color, high)| compare(high, &studio.develop(&shot, color), !options.no_flip))
+                .collect()
+        });
+        let figures = figures.collect();
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        watcher.message(Message::Progress { stage: Stage::Evaluate, done, total: options.views });
+        figures
+    });
+    Ok(views.collect())
 }
 
 /// All figures of one pair of pictures of equal size.

@@ -53,10 +53,10 @@ fn row(index: usize, side: &Side) -> Result<String, BakeError> {
     };
     Ok(format!(
         r#"<section class="side"><h3>{name} <small>{} dB</small></h3><div class="pictures">{high}{}{}{}{}</div></section>"#,
-        change(side.baked_psnr - side.projected_psnr, 2),
-        low("projected", &side.projected, side.projected_psnr)?,
+        change(side.baked_psnr - side.ray_cast_psnr, 2),
+        low("ray-cast", &side.ray_cast, side.ray_cast_psnr)?,
         low("baked", &side.baked, side.baked_psnr)?,
-        difference("projected", &side.projected_difference)?,
+        difference("ray-cast", &side.ray_cast_difference)?,
         difference("baked", &side.baked_difference)?,
     ))
 }

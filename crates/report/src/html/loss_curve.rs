@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 /// What can move in a step: its name in the report, its name for people.
 const MOVES: [(&str, &str); 6] = [
-    ("start", "projected start"),
+    ("start", "projected onto the moved low-poly"),
     ("color", "colours"),
     ("normal", "normals"),
     ("rounding", "rounding to 8 bits"),

@@ -1,8 +1,8 @@
 //! The HTML report of a bake: one page that needs no other file and no network.
 //!
 //! ```text
-//! models ─ scenes ─┬─ figures ── tables, view_chart ─┐
-//!                  └─ pictures ─ gallery ────────────┤
+//! models ─┬──────── figures ─ tables, view_chart ───┐
+//!         └ scenes ─ pictures ─ gallery ─────────────┤
 //! report ─ loss_curve, tables, settings ─────────────┼─ page
 //! textures ─ uv_layout, textures, uv_check, uv_moves ─┘
 //! ```
@@ -43,14 +43,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Runs on rayon's current thread pool, for some seconds; the watcher is told of
 /// progress as [`Stage::Evaluate`] and cannot stop it.
 pub fn html_report(high: &Model, baked: &Baked, watcher: &impl Watcher) -> Result<String, BakeError> {
-    let (done, total) = (AtomicUsize::new(0), figures::VIEWS + pictures::SIDES);
+    let (done, total) = (AtomicUsize::new(0), parbake::COMPARED_VIEWS + pictures::SIDES);
     let tick = || {
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
         watcher.message(Message::Progress { stage: Stage::Evaluate, done, total });
     };
     let scenes = scenes::Scenes::new(high, baked)?;
-    let evaluated = figures::evaluated(&scenes, baked.report.options.convention, tick);
+    let compared = figures::compared(high, baked, tick)?;
     let sides = pictures::sides(&scenes, tick);
     drop(scenes);
-    page::page(high, baked, &evaluated, &sides)
+    page::page(high, baked, &compared, &sides)
 }

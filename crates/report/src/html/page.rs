@@ -1,6 +1,5 @@
 //! The page: its head, what is most important, its sections in order.
 
-use super::figures::{BACKGROUNDS, Evaluated};
 use super::gallery::gallery;
 use super::loss_curve::loss_curve;
 use super::pictures::{AMPLIFIED, Side};
@@ -14,25 +13,25 @@ use crate::page::text::{bytes, change, count, decimal, duration, escape, verdict
 use crate::page::{document, section};
 use parbake::BakeError;
 use parbake::BakeReport;
-use parbake::Baked;
+use parbake::{Baked, BeforeAndAfter, Comparison};
 use parbake_model::Model;
 use std::fmt::Write;
 
 /// Puts everything together.
-pub fn page(high: &Model, baked: &Baked, evaluated: &Evaluated, sides: &[Side]) -> Result<String, BakeError> {
+pub fn page(high: &Model, baked: &Baked, compared: &Comparison, sides: &[Side]) -> Result<String, BakeError> {
     let report = &baked.report;
     let name = match baked.model.name.trim() {
         "" => "a model without a name".into(),
         name => escape(name),
     };
-    let mut out = header(&name, high, report, evaluated);
-    out += &notes(report, evaluated);
+    let mut out = header(&name, high, report, compared);
+    out += &notes(report, compared);
     section(
         &mut out,
         "looks",
         "Before and after",
         &format!(
-            "Projected is {}, baked is the result. Point at a picture, or tap it, to see \
+            "Ray-cast is {}, baked is the result. Point at a picture, or tap it, to see \
              the high-poly in its place. Differences are those of the values on screen, {AMPLIFIED} times as strong. \
              The decibels are PSNR of these very pictures, on dark grey.",
             report.start()
@@ -46,9 +45,9 @@ pub fn page(high: &Model, baked: &Baked, evaluated: &Evaluated, sides: &[Side]) 
         "",
         &format!(
             r#"<div class="pair"><div>{}</div><div><h3>Each view, on {}</h3>{}</div></div>"#,
-            tables::figures(evaluated),
-            BACKGROUNDS[0].0,
-            view_chart(evaluated)
+            tables::figures(compared),
+            compared.options.background,
+            view_chart(compared)
         ),
     );
     section(
@@ -83,19 +82,19 @@ pub fn page(high: &Model, baked: &Baked, evaluated: &Evaluated, sides: &[Side]) 
 }
 
 /// Name, headline figures and facts.
-fn header(name: &str, high: &Model, report: &BakeReport, evaluated: &Evaluated) -> String {
+fn header(name: &str, high: &Model, report: &BakeReport, compared: &Comparison) -> String {
     let mut out =
         format!(r#"<header><p class="kicker">Parbake report</p><h1>{name}</h1><div class="headline">"#);
-    for (k, (background, _)) in BACKGROUNDS.iter().enumerate() {
-        let (before, after) = (evaluated.mean.projected[k].psnr, evaluated.mean.baked[k].psnr);
+    for on in &compared.backgrounds {
+        let (before, after) = (on.mean.ray_cast.psnr, on.mean.baked.psnr);
         let _ = write!(
             out,
             concat!(
                 r#"<div><p class="where"><i class="{background}"></i>PSNR on {background}</p>"#,
                 r#"<p class="numbers"><span class="before">{before}</span> → <span class="after">{after}</span> dB</p>"#,
-                r#"<p class="gain"><span class="{verdict}">{gain} dB</span> <small>projected → baked</small></p></div>"#
+                r#"<p class="gain"><span class="{verdict}">{gain} dB</span> <small>ray-cast → baked</small></p></div>"#
             ),
-            background = background,
+            background = on.background,
             before = decimal(before, 2),
             after = decimal(after, 2),
             verdict = verdict(after - before, 2, true),
@@ -137,19 +136,18 @@ fn header(name: &str, high: &Model, report: &BakeReport, evaluated: &Evaluated) 
 }
 
 /// What a reader must not miss.
-fn notes(report: &BakeReport, evaluated: &Evaluated) -> String {
+fn notes(report: &BakeReport, compared: &Comparison) -> String {
     let mut notes: Vec<String> = report.warnings.iter().map(|w| escape(w)).collect();
     if report.stopped_early {
         notes.push("The run was stopped early; this is the best state it had reached.".into());
     }
+    let is_worse = |mean: &BeforeAndAfter| verdict(mean.baked.psnr - mean.ray_cast.psnr, 2, true) == "worse";
+    let backgrounds = compared.backgrounds.iter();
     let worse: Vec<&str> =
-        (BACKGROUNDS.iter().zip(evaluated.mean.projected.iter().zip(&evaluated.mean.baked)))
-            .filter(|(_, (projected, baked))| verdict(baked.psnr - projected.psnr, 2, true) == "worse")
-            .map(|((name, _), _)| *name)
-            .collect();
-    if worse.len() == BACKGROUNDS.len() {
+        backgrounds.filter(|on| is_worse(&on.mean)).map(|on| on.background.as_str()).collect();
+    if worse.len() == compared.backgrounds.len() {
         notes.push(
-            "The baked textures measure below the projected ones. That happens where training views are too few for \
+            "The baked textures measure below those of a ray-cast bake. That happens where training views are too few for \
              the textures' size: try more <code>--views</code>, a slower <code>--preset</code> or a smaller \
              <code>--texture-size</code>."
                 .into(),
@@ -162,7 +160,7 @@ fn notes(report: &BakeReport, evaluated: &Evaluated) -> String {
             ""
         };
         notes.push(format!(
-            "On {} the baked textures measure below the projected ones.{advice}",
+            "On {} the baked textures measure below those of a ray-cast bake.{advice}",
             worse.join(" and ")
         ));
     }

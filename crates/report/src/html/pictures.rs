@@ -1,7 +1,7 @@
-//! The pictures to look at: four sides of the model, each as the high-poly, with
-//! projected textures, baked, and what is left between them.
+//! The pictures to look at: four sides of the model, each as the high-poly,
+//! ray-cast, baked, and what is left between them.
 //!
-//! Contract: display-referred; the camera comes as near as both shapes allow. The
+//! Contract: display-referred; the camera comes as near as the shapes allow. The
 //! directions belong to no lattice of training or evaluation.
 
 use super::scenes::Scenes;
@@ -38,16 +38,16 @@ pub struct Side {
     pub name: String,
     /// The high-poly.
     pub high: Rgb,
-    /// The low-poly with projected textures.
-    pub projected: Rgb,
+    /// What a ray-cast baker delivers.
+    pub ray_cast: Rgb,
     /// The low-poly with baked textures.
     pub baked: Rgb,
-    /// Projected against high, amplified.
-    pub projected_difference: Rgb,
+    /// Ray-cast against high, amplified.
+    pub ray_cast_difference: Rgb,
     /// Baked against high, amplified.
     pub baked_difference: Rgb,
-    /// Decibels of the projected picture.
-    pub projected_psnr: f64,
+    /// Decibels of the ray-cast picture.
+    pub ray_cast_psnr: f64,
     /// Decibels of the baked picture.
     pub baked_psnr: f64,
 }
@@ -73,25 +73,24 @@ fn side(scenes: &Scenes, direction: Vec3) -> Side {
     let picture = |scene: &Scene| {
         shown(&scene.render(&Lambert, &camera, PIXELS, SUPERSAMPLE), &scenes.display, BACKGROUND)
     };
-    let (high, projected, baked) =
-        (picture(&scenes.high), picture(&scenes.projected), picture(&scenes.baked));
+    let (high, ray_cast, baked) = (picture(&scenes.high), picture(&scenes.ray_cast), picture(&scenes.baked));
     let psnr = |low| psnr_from_mse(mean_squared_error(&high, low).unwrap_or(f64::NAN));
     Side {
         name: name(direction),
-        projected_psnr: psnr(&projected),
+        ray_cast_psnr: psnr(&ray_cast),
         baked_psnr: psnr(&baked),
-        projected_difference: amplified_difference(&high, &projected, AMPLIFIED),
+        ray_cast_difference: amplified_difference(&high, &ray_cast, AMPLIFIED),
         baked_difference: amplified_difference(&high, &baked, AMPLIFIED),
         high,
-        projected,
+        ray_cast,
         baked,
     }
 }
 
-/// A camera whose picture both shapes just fit into.
+/// A camera whose picture all shapes just fit into.
 fn framed(scenes: &Scenes, direction: Vec3) -> Camera {
     let wide = Camera::towards_origin(direction, RADIUS, Projection::Perspective(1.0));
-    let reach = [&scenes.high, &scenes.baked]
+    let reach = [&scenes.high, &scenes.baked, &scenes.ray_cast]
         .iter()
         .flat_map(|scene| {
             scene.mesh().triangles.iter().flatten().map(|&i| scene.mesh().positions[i as usize])

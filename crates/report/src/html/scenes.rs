@@ -11,8 +11,8 @@ use parbake_views::frame::{common_frame, scene};
 pub struct Scenes {
     /// The detailed model.
     pub high: Scene,
-    /// The coarse model with projected textures.
-    pub projected: Scene,
+    /// What a ray-cast baker delivers.
+    pub ray_cast: Scene,
     /// The coarse model with fitted textures.
     pub baked: Scene,
     /// Light strength and display curve of the convention.
@@ -27,7 +27,7 @@ impl Scenes {
         let scene = |model: &Model| scene(model, &frame, convention.interpretation());
         Ok(Self {
             high: scene(high),
-            projected: scene(&baked.projected),
+            ray_cast: scene(&baked.ray_cast),
             baked: scene(&baked.model),
             display: convention.display(),
         })

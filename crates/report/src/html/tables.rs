@@ -1,11 +1,10 @@
 //! The tables of the page: figures, texels, and what each stage took.
 
-use super::figures::{BACKGROUNDS, Evaluated};
 use super::settings::flags;
 use crate::page::text::{NOTHING, change, count, decimal, duration, share, verdict};
-use parbake::BakeReport;
 use parbake::evaluate::ViewFigures;
 use parbake::evaluate::options::EvaluateOptions;
+use parbake::{BakeReport, Comparison};
 use std::fmt::Write;
 
 /// A figure: its name, decimals, whether more is better, and where it stands.
@@ -18,16 +17,16 @@ const METRICS: [Metric; 3] = [
 ];
 
 /// Mean figures before and after, on each background.
-pub fn figures(evaluated: &Evaluated) -> String {
+pub fn figures(compared: &Comparison) -> String {
     let mut out = String::from(concat!(
         r#"<table class="figures"><thead><tr><th scope="col">on</th><th scope="col">figure</th>"#,
-        r#"<th scope="col">projected</th><th scope="col">baked</th><th scope="col">change</th></tr></thead>"#
+        r#"<th scope="col">ray-cast</th><th scope="col">baked</th><th scope="col">change</th></tr></thead>"#
     ));
-    for (k, (background, _)) in BACKGROUNDS.iter().enumerate() {
-        let (projected, baked) = (&evaluated.mean.projected[k], &evaluated.mean.baked[k]);
+    for on in &compared.backgrounds {
+        let background = &on.background;
         out += "<tbody>";
         for (i, (name, decimals, more_is_better, of)) in METRICS.iter().enumerate() {
-            let (before, after) = (of(projected), of(baked));
+            let (before, after) = (of(&on.mean.ray_cast), of(&on.mean.baked));
             let text = |x: Option<f64>| x.map_or(NOTHING.into(), |x| decimal(x, *decimals));
             let gain = before.zip(after).map(|(before, after)| after - before);
             let verdict = gain.map_or("", |gain| verdict(gain, *decimals, *more_is_better));
@@ -57,9 +56,9 @@ pub fn figures(evaluated: &Evaluated) -> String {
             "The same figures by <code>parbake eval HIGH BAKED{}</code>, and with <code>--background grey</code> or ",
             "<code>white</code>.</p>"
         ),
-        evaluated.views.len(),
-        evaluated.options.resolution,
-        flags(&evaluated.options, &EvaluateOptions::default())
+        compared.options.views,
+        compared.options.resolution,
+        flags(&compared.options, &EvaluateOptions::default())
     );
     out
 }

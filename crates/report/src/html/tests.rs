@@ -69,9 +69,9 @@ fn the_page_is_whole() {
 
     assert_elements_are_closed(&page);
 
-    for (model, background) in [(&baked.model, "black"), (&baked.projected, "grey")] {
+    for (model, background) in [(&baked.model, "black"), (&baked.ray_cast, "grey")] {
         let options = EvaluateOptions {
-            views: super::figures::VIEWS,
+            views: parbake::COMPARED_VIEWS,
             background: background.into(),
             no_flip: true,
             ..EvaluateOptions::default()

@@ -1,15 +1,15 @@
 //! Each compared view's decibels before and after, on the first of the backgrounds,
 //! so that no bad view hides behind a mean.
 
-use super::figures::Evaluated;
 use crate::page::Axes;
 use crate::page::text::{change, decimal};
+use parbake::Comparison;
 use std::fmt::Write;
 
 /// The chart with its legend.
-pub fn view_chart(evaluated: &Evaluated) -> String {
+pub fn view_chart(compared: &Comparison) -> String {
     let pairs: Vec<(f64, f64)> =
-        evaluated.views.iter().map(|v| (v.projected[0].psnr, v.baked[0].psnr)).collect();
+        compared.backgrounds[0].views.iter().map(|v| (v.ray_cast.psnr, v.baked.psnr)).collect();
     // A free place at either end keeps the marks off the frame.
     let axes = Axes::new(pairs.len() + 1, pairs.iter().flat_map(|&(a, b)| [a, b]));
     let mut content = String::new();
@@ -18,7 +18,7 @@ pub fn view_chart(evaluated: &Evaluated) -> String {
         let _ = write!(
             content,
             concat!(
-                r#"<g><title>view {}: {} dB projected, {} dB baked ({} dB)</title>"#,
+                r#"<g><title>view {}: {} dB ray-cast, {} dB baked ({} dB)</title>"#,
                 r#"<path class="gain" d="M{:.1} {:.1}V{:.1}"/><circle class="ring" cx="{:.1}" cy="{:.1}" r="5.5"/>"#,
                 r#"<circle class="baked" cx="{:.1}" cy="{:.1}" r="4"/></g>"#
             ),
@@ -39,7 +39,7 @@ pub fn view_chart(evaluated: &Evaluated) -> String {
         (0..=pairs.len()).map(|i| if i == 0 { String::new() } else { i.to_string() }).collect();
     axes.svg("PSNR of each view before and after", ("view", "dB"), &labels, &content)
         + concat!(
-            r#"<ul class="legend"><li><svg viewBox="0 0 14 14" aria-hidden="true"><circle class="ring" cx="7" cy="7" r="5.5"/></svg>projected</li>"#,
+            r#"<ul class="legend"><li><svg viewBox="0 0 14 14" aria-hidden="true"><circle class="ring" cx="7" cy="7" r="5.5"/></svg>ray-cast</li>"#,
             r#"<li><svg viewBox="0 0 14 14" aria-hidden="true"><circle class="baked" cx="7" cy="7" r="4"/></svg>baked</li></ul>"#
         )
 }

@@ -76,6 +76,10 @@ pub struct UnfoldReport {
     pub mended: Vec<String>,
     /// Share of the square that was covered before and after.
     pub utilisation: [f64; 2],
+    /// Least distance between charts in texels that was asked for or chosen; sound layouts that were
+    /// delivered may have less where nobody asked.
+    #[serde(default)]
+    pub gutter: f64,
     /// Steps that texture coordinates took.
     pub steps: usize,
     /// Estimated squared error of the surface's colours relative to that with the
@@ -118,8 +122,13 @@ pub fn unfold(
     let Mended { name, mut mesh, mended } = low;
     let start = Layout::new(&mesh);
     let before = check(&start, options.texture_size).utilisation;
-    let mut report =
-        UnfoldReport { mended, utilisation: [before; 2], relative_error: vec![1.0; 2], ..Default::default() };
+    let mut report = UnfoldReport {
+        mended,
+        utilisation: [before; 2],
+        gutter: options.gutter,
+        relative_error: vec![1.0; 2],
+        ..Default::default()
+    };
     let (mut moves, mut pieces) = (None, Vec::new());
     if options.mode == UvMode::Optimize && options.steps > 0 {
         let mut placed = mesh.clone();
