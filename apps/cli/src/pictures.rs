@@ -15,8 +15,8 @@ use parbake::{
 use parbake_model::glam::Vec3;
 use std::path::Path;
 
-/// Side of one picture in pixels: as large as a file of some 250 kB allows.
-const SIDE: usize = 288;
+/// Side of one picture in pixels: four beside each other take 1024 pixels and some 250 kB.
+const SIDE: usize = 256;
 
 /// Where the camera stands: a little to the side and above.
 const FROM: Vec3 = Vec3::new(0.55, 0.4, 0.75);
