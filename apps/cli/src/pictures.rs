@@ -22,7 +22,7 @@ const SIDE: usize = 256;
 const FROM: Vec3 = Vec3::new(0.55, 0.4, 0.75);
 
 /// Field of view in degrees, in which the models fill most of the picture.
-const FIELD_OF_VIEW: f32 = 34.0;
+const FIELD_OF_VIEW: f32 = 37.0;
 
 /// A light grey, of linear light.
 const BACKGROUND: [f32; 3] = [0.72; 3];
