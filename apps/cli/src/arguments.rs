@@ -11,6 +11,23 @@ use std::path::PathBuf;
 /// Heading of files and messages in `--help`.
 const IO: &str = "Input and output";
 
+/// Options whose defaults in `compress` are not those of a bake.
+const HELP_IN_COMPRESS: [(&str, &str); 3] = [
+    (
+        "gutter",
+        "Padding between charts (UV islands) in texels, 0 to 64 [default: texture size / 256, at least 1, at most 8]",
+    ),
+    (
+        "uv_steps",
+        "Steps of the UV optimiser, 0 to 10000 [default: by preset 80, 240, 480; with --method paper 800]",
+    ),
+    (
+        "outlier",
+        "Scale of the robust (Cauchy) loss of the texture solve on models with a normal map, in display units, \
+0.01 to 1000. Lower it if surfaces look mottled; 1000 is least squares [default: 1, with --method paper 1000]",
+    ),
+];
+
 /// The command with its subcommands. `compress` takes the options of a bake, so that options files serve
 /// both, and shows those that act there; `rules` refuses the others.
 pub fn command() -> Clap {
@@ -21,7 +38,9 @@ pub fn command() -> Clap {
                 argument.hide(true)
             } else if name == "more_triangles" {
                 argument.hide(false)
-            } else if WITH_NORMAL_MAPS.contains(&name.as_str()) && name != "outlier" {
+            } else if let Some((_, help)) = HELP_IN_COMPRESS.iter().find(|(own, _)| *own == name) {
+                argument.help(*help).long_help(*help)
+            } else if WITH_NORMAL_MAPS.contains(&name.as_str()) {
                 argument.help_heading("Models with a normal map")
             } else {
                 argument

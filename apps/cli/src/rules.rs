@@ -26,8 +26,8 @@ pub const NOT_IN_COMPRESS: [&str; 10] = [
 ];
 
 /// Options that act in `compress` on models with a normal map alone, which are baked as a pair is.
-pub const WITH_NORMAL_MAPS: [&str; 8] =
-    ["views", "view_size", "rounds", "convention", "keep_normals", "normal_y", "seed", "outlier"];
+pub const WITH_NORMAL_MAPS: [&str; 7] =
+    ["views", "view_size", "rounds", "convention", "keep_normals", "normal_y", "seed"];
 
 /// Whether an argument was typed; false for one that the command does not have.
 pub fn is_typed(given: &ArgMatches, name: &str) -> bool {
