@@ -21,7 +21,9 @@ fn quick(parallax: Parallax) -> BakeOptions {
 /// With enough to see that what maps gain does not hang on the seed: 0.3 dB and more.
 fn baked(high: &Model, low: &Model, parallax: Parallax, threads: usize) -> Baked {
     let options = BakeOptions { texture_size: 64, views: Some(96), ..quick(parallax) };
-    with_threads(threads, || bake(high, low, &options, &())).unwrap().unwrap()
+    with_threads(threads, || bake(high, low, &options, &()))
+        .expect("threads start")
+        .expect("the pair can be baked")
 }
 
 /// Protects what maps are for: on any background the model looks better with them; and

@@ -68,6 +68,9 @@ impl ViewSet {
     }
 }
 
+/// A set of views with its pictures.
+type KeptViews = (ViewSet, Arc<Vec<Reference>>);
+
 /// A high-poly ready for bakes.
 pub struct HighPoly {
     /// The model's name.
@@ -83,7 +86,7 @@ pub struct HighPoly {
     /// What rays hit.
     pub surface: HighSurface,
     /// Rendered view sets that are kept; none where they are not to be.
-    kept: Option<Mutex<Vec<(ViewSet, Arc<Vec<Reference>>)>>>,
+    kept: Option<Mutex<Vec<KeptViews>>>,
 }
 
 impl HighPoly {
