@@ -1,7 +1,8 @@
 //! `parbake image`.
 
 use crate::arguments::ImageCommand;
-use crate::bake::{check_not_input, check_output, print, write_json, write_model};
+use crate::bake::{check_not_input, check_output, print, write_model};
+use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::progress::{Console, interrupted};
 use parbake::{BakedImage, ImageReport, Limits, bake_image, read_image, with_threads, write_file};
@@ -20,7 +21,9 @@ pub fn run(command: &ImageCommand) -> Result<Ending, Failure> {
         let before = std::fs::metadata(&command.picture).map_or(0, |file| file.len());
         let bytes = [before, write_model(&command.output, &baked.model)?];
         if let Some(path) = &command.json {
-            write_json(path, &baked.report)?;
+            let about =
+                ("image", &[("picture", command.picture.as_path())][..], Some(command.output.as_path()));
+            write_document(path, about, &baked.report, &console)?;
         }
         if let Some(path) = &command.animation {
             write_animation(path, &baked, &console)?;
