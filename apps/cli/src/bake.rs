@@ -1,6 +1,7 @@
 //! `parbake bake`.
 
 use crate::arguments::{BakeCommand, Talk};
+use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::options_file::merged;
 use crate::outputs::{check_beside, check_maps, check_not_input, check_output, is_obj, is_stdout};
@@ -38,7 +39,9 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
             compare(&pair.high, &mut baked, command.report.is_some(), &console)?;
         }
         if let Some(path) = &command.json {
-            write_json(path, &baked.report)?;
+            let files = [("high", command.high.as_path()), ("low", command.low.as_path())];
+            let about = ("bake", &files[..], Some(command.output.as_path()));
+            write_document(path, about, &baked.report, &console)?;
         }
         if let Some(path) = &command.report {
             write_report(path, &pair.high, &baked, &console)?;

@@ -1,9 +1,8 @@
 //! `parbake compress`.
 
 use crate::arguments::CompressCommand;
-use crate::bake::{
-    check_textures, compare, ending, gains, print, read, write_json, write_model, write_report,
-};
+use crate::bake::{check_textures, compare, ending, gains, print, read, write_model, write_report};
+use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::options_file::merged;
 use crate::outputs::{check_beside, check_not_input, check_output, is_stdout};
@@ -38,7 +37,9 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
             compare(&loaded.model, &mut baked, command.report.is_some(), &console)?;
         }
         if let Some(path) = &command.json {
-            write_json(path, &baked.report)?;
+            let about =
+                ("compress", &[("model", command.model.as_path())][..], Some(command.output.as_path()));
+            write_document(path, about, &baked.report, &console)?;
         }
         if let Some(path) = &command.report {
             write_report(path, &loaded.model, &baked, &console)?;

@@ -1,7 +1,8 @@
 //! `parbake demo`: everything from nothing.
 
 use crate::arguments::{DemoCommand, DemoScene};
-use crate::bake::{Pair, bake_and_write, compare, ending, tell, write_json, write_report};
+use crate::bake::{Pair, bake_and_write, compare, ending, tell, write_report};
+use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::outputs::check_place;
 use crate::pictures::write_pictures;
@@ -39,7 +40,10 @@ pub fn run(command: &DemoCommand, given: &ArgMatches) -> Result<Ending, Failure>
         compare(&pair.high, &mut baked, true, &console)?;
         let report = folder.join("demo.html");
         write_report(&report, &pair.high, &baked, &console)?;
-        write_json(&folder.join("demo.json"), &baked.report)?;
+        let [high, low] = ["demo_high.glb", "demo_low.glb"].map(|name| folder.join(name));
+        let files = [("high", high.as_path()), ("low", low.as_path())];
+        let about = ("demo", &files[..], Some(output.as_path()));
+        write_document(&folder.join("demo.json"), about, &baked.report, &console)?;
         if let Some(folder) = &command.pictures {
             write_pictures(&folder.join(PICTURE), &pair, &baked, &console)?;
         }

@@ -1,7 +1,8 @@
 //! `parbake eval`.
 
 use crate::arguments::EvalCommand;
-use crate::bake::{print, read_pair, write_json};
+use crate::bake::{print, read_pair};
+use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::outputs::{check_json, is_stdout};
 use crate::progress::Console;
@@ -18,7 +19,8 @@ pub fn run(command: &EvalCommand) -> Result<Ending, Failure> {
         console.finish();
         let to_stdout = command.json.as_ref().is_some_and(|path| is_stdout(path));
         if let Some(path) = &command.json {
-            write_json(path, &evaluation)?;
+            let files = [("high", command.high.as_path()), ("low", command.low.as_path())];
+            write_document(path, ("eval", &files, None), &evaluation, &console)?;
         }
         if !to_stdout {
             let mut table = String::from("view    PSNR dB   MS-SSIM   FLIP");

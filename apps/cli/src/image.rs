@@ -1,7 +1,8 @@
 //! `parbake image`.
 
 use crate::arguments::ImageCommand;
-use crate::bake::{check_input, print, write_json, write_model};
+use crate::bake::{check_input, print, write_model};
+use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::outputs::{check_beside, check_not_input, check_output, check_place, is_stdout};
 use crate::progress::{Console, interrupted};
@@ -31,7 +32,9 @@ pub fn run(command: &ImageCommand, given: &ArgMatches) -> Result<Ending, Failure
         let before = std::fs::metadata(&command.picture).map_or(0, |file| file.len());
         let bytes = [before, write_model(&command.output, &baked.model)?];
         if let Some(path) = &command.json {
-            write_json(path, &baked.report)?;
+            let about =
+                ("image", &[("picture", command.picture.as_path())][..], Some(command.output.as_path()));
+            write_document(path, about, &baked.report, &console)?;
         }
         if let Some(path) = &command.animation {
             write_animation(path, &baked, &console)?;

@@ -6,6 +6,7 @@ mod bake;
 mod check;
 mod compress;
 mod demo;
+mod document;
 mod evaluate;
 mod failure;
 mod image;

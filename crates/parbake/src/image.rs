@@ -43,7 +43,6 @@ pub struct BakedImage {
 
 /// Figures of a run.
 #[derive(Clone, Debug, Serialize)]
-#[serde(rename_all = "kebab-case")]
 pub struct ImageReport {
     /// What was asked for.
     pub options: ImageOptions,

@@ -23,7 +23,7 @@ pub enum PictureUv {
 /// Options of [`crate::bake_image`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
-#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+#[serde(default, deny_unknown_fields)]
 pub struct ImageOptions {
     /// Side of the square texture in texels, 16 to 4096; 1k, 2k and 4k mean 1024, 2048 and 4096
     #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 256, value_parser = parse_texels, help_heading = heading::QUALITY))]

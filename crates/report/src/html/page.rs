@@ -3,7 +3,7 @@
 use super::gallery::gallery;
 use super::loss_curve::loss_curve;
 use super::pictures::{AMPLIFIED, Side};
-use super::settings::settings;
+use super::settings::{Used, settings};
 use super::tables;
 use super::textures::textures;
 use super::uv_check::uv_check;
@@ -75,7 +75,7 @@ pub fn page(high: &Model, baked: &Baked, compared: &Comparison, sides: &[Side]) 
             ),
             loss_curve(&report.losses),
             tables::stages(report),
-            settings(&report.options, report.work)
+            settings(&report.options, report.work, Used::of(report))
         ),
     );
     Ok(document(&name, &out))

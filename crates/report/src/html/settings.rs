@@ -2,8 +2,8 @@
 //! option can be forgotten.
 
 use crate::page::text::escape;
-use parbake::BakeOptions;
 use parbake::Work;
+use parbake::{BakeOptions, BakeReport};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -44,20 +44,58 @@ pub fn flags<T: Serialize>(options: &T, default: &T) -> String {
     escape(&out)
 }
 
-/// The table of all options, and the command that takes them.
-pub fn settings(options: &BakeOptions, work: Work) -> String {
+/// What a run made of options that say how much at most, or that leave a choice; none where it did not say.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Used {
+    views: Option<usize>,
+    gutter: Option<f64>,
+    uv_steps: Option<usize>,
+    more_triangles: Option<usize>,
+}
+
+impl Used {
+    /// What this run used.
+    pub fn of(report: &BakeReport) -> Self {
+        let unfold = report.unfold.as_ref();
+        let own = report.work == Work::Compress;
+        Self {
+            views: Some(report.views),
+            gutter: unfold.map(|unfold| unfold.gutter),
+            uv_steps: unfold.map(|unfold| unfold.steps).or(Some(0)),
+            more_triangles: Some(if own {
+                report.low_triangles.saturating_sub(report.high_triangles)
+            } else {
+                0
+            }),
+        }
+    }
+}
+
+/// "24 of at most 30", or the number alone where it was reached.
+fn of_at_most(used: Option<usize>, most: usize) -> String {
+    match used {
+        Some(used) if used != most => format!("{used} of at most {most}"),
+        _ => most.to_string(),
+    }
+}
+
+/// The table of all options with the values that were used, and the command that takes them.
+pub fn settings(options: &BakeOptions, work: Work, used: Used) -> String {
     let (plan, default) = (options.plan(), fields(&BakeOptions::default()));
     let mut out = String::from(r#"<table class="settings"><tbody>"#);
     for (name, value) in fields(options) {
         let settled = match name.as_str() {
-            "views" => Some(plan.views.to_string()),
+            "views" => Some(of_at_most(used.views, plan.views)),
             "view_size" => Some(plan.reference.size.to_string()),
             "rounds" => Some(plan.schedule.rounds.to_string()),
-            "gutter" => Some(format!("{} texels", options.gutter_texels())),
+            "gutter" => Some(format!(
+                "{} texels",
+                plain(&used.gutter.unwrap_or_else(|| options.gutter_texels()).into())
+            )),
             "silhouette" => Some(options.silhouette_weight().to_string()),
             "outlier" => Some(plan.schedule.outlier.to_string()),
-            "more_triangles" => Some(options.more_triangles().to_string()),
-            "uv_steps" => Some(options.settled_uv_steps(work).to_string()),
+            "more_triangles" => Some(of_at_most(used.more_triangles, options.more_triangles())),
+            "uv_steps" => Some(of_at_most(used.uv_steps, options.settled_uv_steps(work))),
             "threads" if options.threads == 0 => Some("one a core".into()),
             _ => None,
         };
@@ -111,7 +149,7 @@ mod tests {
     /// Protects the promise that every option is on the page.
     #[test]
     fn no_option_is_missing() {
-        let html = settings(&BakeOptions::default(), Work::Bake);
+        let html = settings(&BakeOptions::default(), Work::Bake, Used::default());
         let views = BakeOptions::default().plan().views;
         assert!(fields(&BakeOptions::default()).len() > 10);
         assert_eq!(html.matches("<tr").count(), fields(&BakeOptions::default()).len());
@@ -119,5 +157,15 @@ mod tests {
             html.contains(&format!("{views} <small>by default")) && html.contains("<td>0.05</td>"),
             "{html}"
         );
+    }
+
+    /// Protects readers from values that were only allowed: what a run used is on the page.
+    #[test]
+    fn values_are_those_that_were_used() {
+        let used = Used { views: Some(284), gutter: Some(16.0), uv_steps: Some(24), more_triangles: Some(0) };
+        let html = settings(&BakeOptions::default(), Work::Bake, used);
+        for text in ["284 of at most 960", "16 texels", "24 of at most 30", "0 of at most 2000"] {
+            assert!(html.contains(text), "{text}: {html}");
+        }
     }
 }

@@ -1,0 +1,53 @@
+//! What the JSON outputs of `bake`, `compress`, `image`, `demo` and `eval` have in common: which command it was,
+//! of which files, and how long it took; the command's own figures follow as fields beside these.
+//!
+//! Contract: `docs/report.schema.json` describes them, and a test holds them to it. [`VERSION`] grows when a
+//! field is renamed, goes, or changes its meaning; new fields leave it.
+
+use crate::bake::write_json;
+use crate::failure::Failure;
+use crate::progress::Console;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The schema's name, as its `$id` has it.
+const SCHEMA: &str = "parbake/report.schema.json";
+/// Of the JSON outputs.
+const VERSION: u32 = 1;
+
+/// A command's JSON output.
+#[derive(Serialize)]
+pub struct Document<'a, T> {
+    schema: &'static str,
+    version: u32,
+    command: &'static str,
+    /// What was read, by its name on the command line.
+    inputs: BTreeMap<&'static str, String>,
+    /// What was written; none where the figures are all that comes of it.
+    output: Option<String>,
+    /// From the command's start to the writing of this.
+    total_seconds: f64,
+    #[serde(flatten)]
+    report: &'a T,
+}
+
+/// Writes a command's figures as JSON, to standard output for "-".
+pub fn write_document(
+    path: &Path,
+    (command, inputs, output): (&'static str, &[(&'static str, &Path)], Option<&Path>),
+    report: &impl Serialize,
+    console: &Console,
+) -> Result<(), Failure> {
+    let shown = |path: &Path| path.display().to_string();
+    let document = Document {
+        schema: SCHEMA,
+        version: VERSION,
+        command,
+        inputs: inputs.iter().map(|(name, path)| (*name, shown(path))).collect(),
+        output: output.map(shown),
+        total_seconds: console.seconds(),
+        report,
+    };
+    write_json(path, &document)
+}

@@ -1,0 +1,143 @@
+//! JSON outputs of real runs against the committed schema, `docs/report.schema.json`.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{SMALL, demo_pair, json, run};
+use serde_json::Value;
+use std::path::Path;
+
+/// What is wrong with a value by a schema; empty where nothing is. Knows the keywords that the committed
+/// schema uses, and fails on any other, so that none is passed over.
+fn faults(value: &Value, schema: &Value, root: &Value, at: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let of = |schema: &Value| faults(value, schema, root, at);
+    for (keyword, rule) in schema.as_object().unwrap() {
+        let is_wrong = match keyword.as_str() {
+            "$schema" | "$id" | "$defs" | "title" | "description" => false,
+            "$ref" => {
+                let target = rule.as_str().unwrap().trim_start_matches('#');
+                found.extend(of(root.pointer(target).unwrap()));
+                false
+            }
+            "type" => match rule.as_str().unwrap() {
+                "object" => !value.is_object(),
+                "array" => !value.is_array(),
+                "string" => !value.is_string(),
+                "boolean" => !value.is_boolean(),
+                "null" => !value.is_null(),
+                "integer" => !(value.is_u64() || value.is_i64()),
+                "number" => !value.is_number(),
+                other => panic!("type {other}"),
+            },
+            "const" => value != rule,
+            "enum" => !rule.as_array().unwrap().contains(value),
+            "anyOf" => !rule.as_array().unwrap().iter().any(|one| of(one).is_empty()),
+            "oneOf" => {
+                let all: Vec<_> = rule.as_array().unwrap().iter().map(of).collect();
+                let fits = all.iter().filter(|faults| faults.is_empty()).count();
+                if fits == 0 {
+                    // The nearest branch says most.
+                    found.extend(all.into_iter().min_by_key(Vec::len).unwrap());
+                }
+                fits > 1
+            }
+            "required" => {
+                let names = rule.as_array().unwrap().iter().map(|name| name.as_str().unwrap());
+                let missing = names.filter(|name| value.get(name).is_none());
+                found.extend(missing.map(|name| format!("{at}: {name} is missing")));
+                false
+            }
+            "properties" => {
+                for (name, rule) in rule.as_object().unwrap() {
+                    let own = value.get(name);
+                    found.extend(own.iter().flat_map(|own| faults(own, rule, root, &format!("{at}/{name}"))));
+                }
+                false
+            }
+            "additionalProperties" => {
+                let known = &schema["properties"];
+                let names = value.as_object().into_iter().flat_map(|object| object.keys());
+                let unknown = names.filter(|name| known.get(name).is_none());
+                found.extend(unknown.map(|name| format!("{at}: {name} is not in the schema")));
+                false
+            }
+            "items" => {
+                let items = value.as_array().into_iter().flatten().enumerate();
+                found.extend(items.flat_map(|(i, own)| faults(own, rule, root, &format!("{at}/{i}"))));
+                false
+            }
+            "minItems" => value.as_array().is_some_and(|a| (a.len() as u64) < rule.as_u64().unwrap()),
+            "maxItems" => value.as_array().is_some_and(|a| (a.len() as u64) > rule.as_u64().unwrap()),
+            other => panic!("keyword {other}"),
+        };
+        if is_wrong {
+            found.push(format!("{at}: {keyword} {rule} does not hold for {value}"));
+        }
+    }
+    found
+}
+
+/// Names in snake_case, all the way down.
+fn assert_snake_case(value: &Value, at: &str) {
+    for (name, value) in value.as_object().into_iter().flatten() {
+        let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+        assert!(name.chars().all(plain), "{at}/{name}");
+        assert_snake_case(value, &format!("{at}/{name}"));
+    }
+    value.as_array().into_iter().flatten().for_each(|value| assert_snake_case(value, at));
+}
+
+/// Protects scripts: every output keeps to the schema that is published, with one style of names.
+#[test]
+fn outputs_keep_to_the_schema() {
+    let schema = json(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/report.schema.json"));
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    let picture = parbake::Picture {
+        name: "checks".into(),
+        width: 32,
+        height: 32,
+        pixels: (0..1024u32).map(|i| [(i * 37 % 251) as u8, (i % 200) as u8, 90, 255]).collect(),
+    };
+    std::fs::write(folder.join("checks.png"), parbake::encode_png(&picture).unwrap()).unwrap();
+    let pair = ["demo_high.glb", "demo_low.glb"];
+    let runs: [(&str, Vec<&str>); 5] = [
+        ("bake", [&pair[..], &SMALL].concat()),
+        ("bake", [&pair[..], &SMALL, &["--parallax", "sh", "--preset", "fast"]].concat()),
+        ("compress", [&pair[..1], &["--texture-size", "32", "--uv-steps", "2"]].concat()),
+        ("image", vec!["checks.png", "--texture-size", "16", "--grid", "8"]),
+        ("eval", [&pair[..], &["--views", "2", "--resolution", "64"]].concat()),
+    ];
+    for (command, arguments) in runs {
+        run(folder, &[&[command, "-q", "--json", "out.json"], &arguments[..]].concat());
+        let out = json(&folder.join("out.json"));
+        let wrong = faults(&out, &schema, &schema, "");
+        assert!(wrong.is_empty(), "{command} {arguments:?}: {wrong:#?}");
+        assert_snake_case(&out, command);
+        assert_eq!((&out["command"], &out["version"]), (&command.into(), &1.into()));
+    }
+}
+
+/// Protects one figure everywhere: what a bake says of itself is what `eval` says of what it wrote.
+#[test]
+fn a_bake_and_eval_agree() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    run(
+        folder,
+        &[&["bake", "demo_high.glb", "demo_low.glb", "-o", "a.glb", "--json", "a.json"], &SMALL[..]].concat(),
+    );
+    let report = json(&folder.join("a.json"));
+    let options = &report["comparison"]["options"];
+    let gain = options["gain"].to_string();
+    let mut eval = vec!["eval", "demo_high.glb", "a.glb", "--views", "8", "--no-flip", "--gain", &gain];
+    eval.extend(options["decode_srgb"].as_bool().unwrap().then_some("--decode-srgb"));
+    run(folder, &[&eval[..], &["--json", "e.json"]].concat());
+    let own = report["comparison"]["backgrounds"][0]["mean"]["baked"]["psnr"].as_f64().unwrap();
+    let evaluated = json(&folder.join("e.json"))["mean"]["psnr"].as_f64().unwrap();
+    assert!((own - evaluated).abs() < 0.005, "{own} {evaluated}");
+}
