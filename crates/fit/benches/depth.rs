@@ -17,8 +17,8 @@ use parbake_model::glam::Vec4;
 use parbake_render::parallax::ShParallax;
 use parbake_render::shade::Lambert;
 use parbake_views::reference::Reference;
-use parbake_views::sighted::sighted_views;
-use parbake_views::view_walk::{Beyond, Walker};
+use parbake_views::view_sample::sample_views;
+use parbake_views::view_sampler::{UncoveredPixels, ViewSampler};
 use scene::{DISPLAY, VIEW_SIZE};
 use std::sync::LazyLock;
 
@@ -31,8 +31,8 @@ fn main() {
     divan::main();
 }
 
-fn walker(low: &Mesh) -> Walker<'_> {
-    Walker::new(low, VIEW_SIZE, &DISPLAY, Beyond::Ignore)
+fn sampler(low: &Mesh) -> ViewSampler<'_> {
+    ViewSampler::new(low, VIEW_SIZE, &DISPLAY, UncoveredPixels::Ignore)
 }
 
 /// What the first steps look at, in all.
@@ -42,7 +42,7 @@ fn looked_at<T>(views: &[Vec<T>], views_per_step: usize) -> ItemsCount {
 
 fn parallax(bencher: Bencher, order: usize, size: usize) {
     let (low, references) = &*SCENE;
-    let views = sighted_views(&walker(low), references);
+    let views = sample_views(&sampler(low), references);
     let options = ParallaxOptions { order, steps: STEPS, ..ParallaxOptions::default() };
     let state = || State {
         map: ShParallax::zeros(order, options.size),
@@ -74,7 +74,7 @@ fn parallax_by_order(bencher: Bencher, order: usize) {
 fn cutout(bencher: Bencher, order: usize) {
     let (low, references) = &*SCENE;
     let options = CutoutOptions { order, steps: STEPS, ..CutoutOptions::default() };
-    let views = examples(&walker(low), references, options.size);
+    let views = examples(&sampler(low), references, options.size);
     bencher
         .counter(looked_at(&views, options.views_per_step))
         .bench_local(|| fit_cutout(&views, &options, &()));

@@ -26,7 +26,7 @@ use parbake_solve::stencil::{Block, Diagonal, Row, Stencil, Symmetric, add_diago
 use parbake_views::chart_labels::Atlas;
 use parbake_views::reference::Reference;
 use parbake_views::samples::{SampleSet, collect_samples};
-use parbake_views::view_walk::{Beyond, Walker};
+use parbake_views::view_sampler::{UncoveredPixels, ViewSampler};
 use scene::{DISPLAY, VIEW_SIZE};
 use std::sync::LazyLock;
 
@@ -66,8 +66,8 @@ static BENCH: LazyLock<Bench> = LazyLock::new(|| {
 });
 
 fn collect(low: &Mesh, references: &[Reference]) -> SampleSet {
-    let beyond = Beyond::Background([0.0; 3], 0.5);
-    collect_samples(&Walker::new(low, VIEW_SIZE, &DISPLAY, beyond), references, TEXTURE_SIZE, &())
+    let beyond = UncoveredPixels::Background([0.0; 3], 0.5);
+    collect_samples(&ViewSampler::new(low, VIEW_SIZE, &DISPLAY, beyond), references, TEXTURE_SIZE, &())
 }
 
 impl Bench {

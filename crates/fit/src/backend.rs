@@ -27,15 +27,15 @@ use parbake_solve::conjugate_gradient::{self, Effort, Outcome};
 use parbake_solve::stencil::{Block, Row, Stencil};
 use parbake_views::reference::Reference;
 use parbake_views::samples::{SampleSet, collect_samples, shifted_samples};
-use parbake_views::sighted::Sighted;
-use parbake_views::view_walk::Walker;
+use parbake_views::view_sample::ViewSample;
+use parbake_views::view_sampler::ViewSampler;
 
 /// What a bake asks of the machine.
 pub trait Backend: Sync {
     /// The samples of all views on a texture of `texture_size`² texels.
     fn view_samples(
         &self,
-        walker: &Walker,
+        sampler: &ViewSampler,
         references: &[Reference],
         texture_size: usize,
         watcher: &impl Watcher,
@@ -45,7 +45,7 @@ pub trait Backend: Sync {
     /// freed once it was read.
     fn shifted_view_samples<M: ShiftMap>(
         &self,
-        views: Vec<Vec<Sighted>>,
+        views: Vec<Vec<ViewSample>>,
         texture_size: usize,
         map: &M,
         watcher: &impl Watcher,
@@ -72,7 +72,7 @@ pub trait Backend: Sync {
     /// Adds the loss of one view's pixels, and its gradient by N maps and the parallax map.
     fn view_gradient<B: Brdf, M: ShiftMap, const N: usize>(
         &self,
-        pixels: &[Sighted],
+        pixels: &[ViewSample],
         map: &M,
         texels: &Texels<N>,
         brdf: &B,
@@ -88,17 +88,17 @@ pub struct Cpu;
 impl Backend for Cpu {
     fn view_samples(
         &self,
-        walker: &Walker,
+        sampler: &ViewSampler,
         references: &[Reference],
         texture_size: usize,
         watcher: &impl Watcher,
     ) -> SampleSet {
-        collect_samples(walker, references, texture_size, watcher)
+        collect_samples(sampler, references, texture_size, watcher)
     }
 
     fn shifted_view_samples<M: ShiftMap>(
         &self,
-        views: Vec<Vec<Sighted>>,
+        views: Vec<Vec<ViewSample>>,
         texture_size: usize,
         map: &M,
         watcher: &impl Watcher,
@@ -128,7 +128,7 @@ impl Backend for Cpu {
 
     fn view_gradient<B: Brdf, M: ShiftMap, const N: usize>(
         &self,
-        pixels: &[Sighted],
+        pixels: &[ViewSample],
         map: &M,
         texels: &Texels<N>,
         brdf: &B,

@@ -19,7 +19,7 @@ use parbake_render::cutout::ShCutout;
 use parbake_solve::adam::{Adam, AdamOptions};
 use parbake_solve::thin_plate::ThinPlate;
 use parbake_views::reference::Reference;
-use parbake_views::view_walk::Walker;
+use parbake_views::view_sampler::ViewSampler;
 use rayon::prelude::*;
 
 /// How a cutout is fitted.
@@ -71,11 +71,11 @@ const FILLED: f32 = 0.5;
 
 /// The examples of each of these views, for a map of `size`² texels: those whose fetch
 /// touches a texel that some view wants left out.
-pub fn examples(walker: &Walker, references: &[Reference], size: usize) -> Vec<Vec<Example>> {
+pub fn examples(sampler: &ViewSampler, references: &[Reference], size: usize) -> Vec<Vec<Example>> {
     let mut views: Vec<Vec<Example>> = (references.par_iter())
         .map(|reference| {
             let mut out = Vec::new();
-            walker.walk_layers(reference, |coverage, layer, uv, direction| {
+            sampler.fragment_layers(reference, |coverage, layer, uv, direction| {
                 let opaque = coverage >= FILLED;
                 if layer == 0 || !opaque {
                     let direction = direction.to_array().map(|x| (x * 32767.0).round_ties_even() as i16);
@@ -148,7 +148,7 @@ const BAND: usize = 4096;
 pub fn fit_cutout(
     views: &[Vec<Example>],
     options: &CutoutOptions,
-    watch: &impl Watcher,
+    watcher: &impl Watcher,
 ) -> (ShCutout, [f64; 2]) {
     let mut map = ShCutout::opaque(options.order, options.size);
     let before = wrong(views, &map);
@@ -165,8 +165,8 @@ pub fn fit_cutout(
     let mut gradient = vec![0.0; map.coefficients.len()];
     let mut parts = vec![gradient.clone(); options.views_per_step.div_ceil(together)];
     for step in 0..options.steps {
-        watch.progress(Stage::Cutout, step, options.steps);
-        if views.iter().all(Vec::is_empty) || watch.stopped() {
+        watcher.progress(Stage::Cutout, step, options.steps);
+        if views.iter().all(Vec::is_empty) || watcher.stopped() {
             break;
         }
         let chosen: Vec<&[Example]> = (0..options.views_per_step)
@@ -192,7 +192,7 @@ pub fn fit_cutout(
             four.copy_from_slice(&moved.to_array()[..four.len()]);
         }
     }
-    watch.progress(Stage::Cutout, options.steps, options.steps);
+    watcher.progress(Stage::Cutout, options.steps, options.steps);
     let after = wrong(views, &map);
     (map, [before, after])
 }

@@ -17,6 +17,7 @@
 
 pub(crate) mod assemble;
 pub mod backend;
+pub mod chart_ownership;
 pub mod cutout;
 pub mod membrane;
 pub mod outliers;
@@ -25,6 +26,5 @@ pub mod parallax_maps;
 pub mod problem;
 pub mod schedule;
 pub mod step;
-pub mod territory;
 pub mod texels;
 pub mod view_gradient;

@@ -25,7 +25,7 @@ use parbake_render::parallax::ShParallax;
 use parbake_render::parallax_variants::shift_map::ShiftMap;
 use parbake_render::shade::Brdf;
 use parbake_solve::adam::{Adam, AdamOptions, rate_at};
-use parbake_views::sighted::Sighted;
+use parbake_views::view_sample::ViewSample;
 use plate::MapPlate;
 use rayon::prelude::*;
 
@@ -44,7 +44,7 @@ pub struct ParallaxOptions {
     pub rate: f32,
     /// Adam's ε for coefficients, as a gradient a pixel: where a shift would better so little,
     /// nothing moves. Without it a map that nobody needs would wander about as far as any.
-    pub indifference: f32,
+    pub epsilon: f32,
     /// How much coefficients resist to bend away from a ramp through their neighbouring texels: a
     /// bend by one texture width weighs as much as this many times the mean squared difference to
     /// begin with. It keeps lines whole where shifts are far, and gives way to details where
@@ -62,7 +62,7 @@ impl Default for ParallaxOptions {
             steps: 240,
             views_per_step: 12,
             rate: 5e-4,
-            indifference: 3e-4,
+            epsilon: 3e-4,
             bending: 400.0,
             texture_rate: 0.01,
         }
@@ -106,7 +106,7 @@ macro_rules! for_each_count {
 /// The mean squared difference of these views as they are.
 pub fn mean_square<B: Brdf, M: ShiftMap, K: Backend>(
     backend: &K,
-    views: &[Vec<Sighted>],
+    views: &[Vec<ViewSample>],
     state: &State<M>,
     brdf: &B,
     display: &DisplayTable,
@@ -116,13 +116,13 @@ pub fn mean_square<B: Brdf, M: ShiftMap, K: Backend>(
 
 fn mean_square_of<B: Brdf, M: ShiftMap, K: Backend, const N: usize>(
     backend: &K,
-    views: &[Vec<Sighted>],
+    views: &[Vec<ViewSample>],
     state: &State<M>,
     brdf: &B,
     display: &DisplayTable,
 ) -> f64 {
     let texels = Texels::<N>::new(&state.maps);
-    let loss_of = |pixels: &Vec<Sighted>| {
+    let loss_of = |pixels: &Vec<ViewSample>| {
         let mut sums = Sums::zeros(&state.map, &texels);
         backend.view_gradient(pixels, &state.map, &texels, brdf, display, &mut sums);
         sums.loss
@@ -135,7 +135,7 @@ fn mean_square_of<B: Brdf, M: ShiftMap, K: Backend, const N: usize>(
 /// Moves parallax map and maps; returns the mean squared difference of each step's views.
 pub fn fit_parallax<B: Brdf, M: ShiftMap, K: Backend>(
     backend: &K,
-    views: &[Vec<Sighted>],
+    views: &[Vec<ViewSample>],
     state: &mut State<M>,
     brdf: &B,
     display: &DisplayTable,
@@ -147,7 +147,7 @@ pub fn fit_parallax<B: Brdf, M: ShiftMap, K: Backend>(
 
 fn descend<B: Brdf, M: ShiftMap, K: Backend, const N: usize>(
     backend: &K,
-    views: &[Vec<Sighted>],
+    views: &[Vec<ViewSample>],
     state: &mut State<M>,
     brdf: &B,
     display: &DisplayTable,
@@ -158,16 +158,16 @@ fn descend<B: Brdf, M: ShiftMap, K: Backend, const N: usize>(
     let mut texels = Texels::<N>::new(maps);
     let at_rate = |rate| AdamOptions { rate, ..AdamOptions::default() };
     // Adam sees parameters in units of their strides, and moves all of those alike.
-    let strides = map.strides();
+    let parameter_scales = map.parameter_scales();
     let in_strides = |mut lanes: Vec<Vec4>| {
-        lanes.iter_mut().zip(&strides).for_each(|(lane, stride)| *lane /= *stride);
+        lanes.iter_mut().zip(&parameter_scales).for_each(|(lane, stride)| *lane /= *stride);
         lanes
     };
     let mut moving = in_strides(map.parameters());
     let mean_size = views.iter().map(Vec::len).sum::<usize>() as f32 / views.len().max(1) as f32;
     let map_options = AdamOptions {
-        epsilon: options.indifference * mean_size * options.views_per_step as f32,
-        ..at_rate(options.rate * map.pace())
+        epsilon: options.epsilon * mean_size * options.views_per_step as f32,
+        ..at_rate(options.rate * map.rate_scale())
     };
     let mut adam_map = Adam::new(moving.len(), map_options);
     let mut adam_texels = Adam::new(N * texels.texels.len(), at_rate(options.texture_rate));
@@ -182,7 +182,7 @@ fn descend<B: Brdf, M: ShiftMap, K: Backend, const N: usize>(
             break;
         }
         // The pool's every prefix is well spread, and so is every run of it.
-        let chosen: Vec<&[Sighted]> = (0..options.views_per_step)
+        let chosen: Vec<&[ViewSample]> = (0..options.views_per_step)
             .map(|i| views[(step * options.views_per_step + i) % views.len()].as_slice())
             .collect();
         sums.par_iter_mut().zip(chosen.par_chunks(together)).for_each(|(sums, views)| {
@@ -202,7 +202,7 @@ fn descend<B: Brdf, M: ShiftMap, K: Backend, const N: usize>(
         let bending = options.bending * losses.first().copied().unwrap_or(0.0) as f32;
         let mut to_maps: Vec<Vec<Vec4>> = sums.iter().map(|s| s.map.parameters()).collect();
         to_maps.extend(plate.as_ref().map(|plate| plate.pull(map, bending * count as f32)));
-        let stride = |i: usize| strides.get(i).copied().unwrap_or(Vec4::ONE);
+        let stride = |i: usize| parameter_scales.get(i).copied().unwrap_or(Vec4::ONE);
         let to_map: Vec<Vec4> = (0..moving.len())
             .into_par_iter()
             .map(|i| stride(i) * to_maps.iter().map(|m| m[i]).sum::<Vec4>())

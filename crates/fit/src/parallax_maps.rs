@@ -16,10 +16,10 @@
 //! Contract: maps are as they come back from 8 bits.
 
 use crate::backend::Cpu;
+use crate::chart_ownership::{ChartOwnership, clamp_to_chart};
 use crate::cutout::{CutoutOptions, examples, fit_cutout};
 use crate::parallax::{ParallaxOptions, State, fit_parallax, mean_square};
 use crate::schedule::{Comparison, Schedule, fit_textures};
-use crate::territory::{Territory, keep_at_home};
 use parbake_image::MapSet;
 use parbake_image::display_table::DisplayTable;
 use parbake_image::quantise::from_image;
@@ -36,8 +36,8 @@ use parbake_views::low_poly::LowPoly;
 use parbake_views::projection::{ProjectedMaps, project};
 use parbake_views::reference::Reference;
 use parbake_views::samples::shifted_samples;
-use parbake_views::sighted::{Sighted, sighted_views};
-use parbake_views::view_walk::Walker;
+use parbake_views::view_sample::{ViewSample, sample_views};
+use parbake_views::view_sampler::ViewSampler;
 use serde::{Deserialize, Serialize};
 
 /// What is asked for.
@@ -112,7 +112,7 @@ pub struct FittedMaps {
     pub maps: ParallaxMaps,
     /// What the first views of the pool show of the low-poly, with the cutout: those that maps were
     /// fitted to.
-    pub views: Vec<Vec<Sighted>>,
+    pub views: Vec<Vec<ViewSample>>,
     /// What was done; none for maps that were given.
     pub report: Option<ParallaxReport>,
 }
@@ -144,7 +144,7 @@ const JUDGED: usize = 12;
 const REPORTED: usize = 10;
 
 /// Fits the maps of a low-poly; `own` is what was prepared and projected for the texture that is to be
-/// written, `walker` looks at the low-poly without a cutout.
+/// written, `sampler` looks at the low-poly without a cutout.
 ///
 /// # Errors
 /// Where its texture coordinates have no area.
@@ -153,22 +153,22 @@ pub fn fit_parallax_maps(
     own: (&LowPoly, &ProjectedMaps),
     high: &HighPoly,
     references: &[Reference],
-    walker: &Walker,
+    sampler: &ViewSampler,
     plan: &ParallaxPlan,
-    watch: &impl Watcher,
+    watcher: &impl Watcher,
 ) -> Result<FittedMaps, PrepareError> {
     let references = &references[..references.len().min(plan.views)];
     let mut report = ParallaxReport::default();
     let cutout = plan.cutout.map(|options| {
-        let (map, misplaced) = fit_cutout(&examples(walker, references, options.size), &options, watch);
+        let (map, misplaced) = fit_cutout(&examples(sampler, references, options.size), &options, watcher);
         report.misplaced = Some(misplaced);
         map.as_stored()
     });
-    let walker = walker.clone().with_cutout(cutout.as_ref());
+    let sampler = sampler.clone().with_cutout(cutout.as_ref());
 
     let Conventions { display, .. } = high.conventions;
     let comparison = Comparison { backend: &Cpu, brdf: &Lambert, display, srgb: high.conventions.srgb() };
-    let views = sighted_views(&walker, references);
+    let views = sample_views(&sampler, references);
     let display = DisplayTable::new(&display);
     let mut map = ShParallax::zeros(plan.parallax.order, plan.parallax.size);
     let mut losses = Vec::new();
@@ -177,7 +177,7 @@ pub fn fit_parallax_maps(
     let judged: Vec<_> = views.iter().step_by(JUDGED).cloned().collect();
     for pass in plan.passes.iter().filter(|pass| pass.steps > 0) {
         // Later passes only better what the first one found.
-        if coarser.is_some() && watch.stopped() {
+        if coarser.is_some() && watcher.stopped() {
             break;
         }
         let made;
@@ -191,9 +191,9 @@ pub fn fit_parallax_maps(
         };
         let solved_with = |map: ShParallax| {
             let some = &views[..views.len().min(BEGIN_VIEWS)];
-            let samples = shifted_samples(some, pass.texture_size, &map, watch);
+            let samples = shifted_samples(some, pass.texture_size, &map, watcher);
             let schedule = Schedule { rounds: ROUNDS, final_steps: 0, ..Schedule::default() };
-            let begin = fit_textures(&samples, &own.atlas, &start.maps, &comparison, &schedule, watch);
+            let begin = fit_textures(&samples, &own.atlas, &start.maps, &comparison, &schedule, watcher);
             let mut maps = MapSet::new(pass.texture_size);
             for (kind, image) in &begin.images {
                 maps.insert(*kind, from_image(*kind, image, comparison.srgb));
@@ -206,13 +206,13 @@ pub fn fit_parallax_maps(
             let [with, without] =
                 [&state, &anew].map(|state| mean_square(&Cpu, &judged, state, &Lambert, &display));
             // Textures of a solve that was cut short say nothing of the map.
-            if with > WORTH_KEEPING * without && !watch.stopped() {
+            if with > WORTH_KEEPING * without && !watcher.stopped() {
                 state = anew;
                 report.begun_anew += 1;
             }
         }
         let options = ParallaxOptions { steps: pass.steps, rate: pass.rate, ..plan.parallax };
-        losses.push(fit_parallax(&Cpu, &views, &mut state, &Lambert, &display, &options, watch));
+        losses.push(fit_parallax(&Cpu, &views, &mut state, &Lambert, &display, &options, watcher));
         coarser = Some(pass.texture_size);
         map = state.map;
         textures = Some(state.maps);
@@ -225,8 +225,8 @@ pub fn fit_parallax_maps(
     report.steps = losses.iter().map(Vec::len).sum();
     report.mean_square = losses.iter().map(ends).collect();
     let LowPoly { placed, map: texels, .. } = LowPoly::new(low, &high.frame, TERRITORY)?;
-    let territory = Territory::new(&Atlas::new(&texels, &charts(&placed), TERRITORY));
-    report.strayed = keep_at_home(&views, &territory, &mut map);
+    let chart_ownership = ChartOwnership::new(&Atlas::new(&texels, &charts(&placed), TERRITORY));
+    report.strayed = clamp_to_chart(&views, &chart_ownership, &mut map);
     let parallax = map.as_stored();
     if let Some(maps) = textures {
         let mut state = State { map, maps };

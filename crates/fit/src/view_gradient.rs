@@ -16,9 +16,9 @@ use parbake_image::display_table::DisplayTable;
 use parbake_image::pyramid::Taps;
 use parbake_model::glam::{Vec2, Vec4};
 use parbake_render::frame::TangentLight;
-use parbake_render::parallax_variants::shift_map::{ShiftMap, Vantage};
+use parbake_render::parallax_variants::shift_map::{ShiftMap, TangentView};
 use parbake_render::shade::{Brdf, Jacobian};
-use parbake_views::sighted::Sighted;
+use parbake_views::view_sample::ViewSample;
 
 /// Pixels of a group.
 const GROUP: usize = 16;
@@ -42,14 +42,14 @@ impl<M: ShiftMap, const N: usize> Sums<M, N> {
 
 /// Adds what one view says.
 pub(crate) fn add_view<B: Brdf, M: ShiftMap, const N: usize>(
-    pixels: &[Sighted],
+    pixels: &[ViewSample],
     map: &M,
     texels: &Texels<N>,
     brdf: &B,
     display: &DisplayTable,
     sums: &mut Sums<M, N>,
 ) {
-    let mut from = [Vantage::default(); GROUP];
+    let mut from = [TangentView::default(); GROUP];
     let mut light = [TangentLight::default(); GROUP];
     let mut at = [Taps::default(); GROUP];
     let mut fetched = [Fetched::<N>::default(); GROUP];
@@ -58,7 +58,7 @@ pub(crate) fn add_view<B: Brdf, M: ShiftMap, const N: usize>(
     for group in pixels.chunks(GROUP) {
         for (i, pixel) in group.iter().enumerate() {
             light[i] = pixel.light();
-            from[i] = Vantage::under_headlight(pixel.sight(), &light[i]);
+            from[i] = TangentView::under_headlight(pixel.sight(), &light[i]);
             at[i] = texels.taps(pixel.uv + map.shift(pixel.uv, &from[i]));
         }
         for i in 0..group.len() {
@@ -82,7 +82,7 @@ pub(crate) fn add_view<B: Brdf, M: ShiftMap, const N: usize>(
 /// The weighted squared difference of one pixel, and half its gradient by each map.
 #[inline]
 fn compare<B: Brdf, const N: usize>(
-    pixel: &Sighted,
+    pixel: &ViewSample,
     light: &TangentLight,
     value: &Texel<N>,
     texels: &Texels<N>,

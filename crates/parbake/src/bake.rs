@@ -25,13 +25,13 @@ use parbake_progress::{Clock, Message, ProgressScope, Stage, Watcher};
 use parbake_render::camera::Projection;
 use parbake_render::shade::Lambert;
 use parbake_uv::moves::UvMoves;
-use parbake_uv::surface::{Mended, UnfoldOptions, mend};
+use parbake_uv::surface::{RepairedLowPoly, UvStageOptions, repair_uvs};
 use parbake_views::high_poly::{Conventions, HighPoly, ViewSet};
 use parbake_views::low_poly::{LowPoly, lit};
 use parbake_views::pool::Rig;
 use parbake_views::projection::project;
-use parbake_views::sighted::sighted_views;
-use parbake_views::view_walk::Walker;
+use parbake_views::view_sample::sample_views;
+use parbake_views::view_sampler::ViewSampler;
 use std::time::Instant;
 
 /// The training cameras: the paper's distance, and the field of view at which a
@@ -168,12 +168,12 @@ fn run(
     let views = references.len();
     clock.lap(Stage::Reference);
 
-    let walker = Walker::new(&prepared.placed, plan.reference.size, &display, options.beyond());
+    let sampler = ViewSampler::new(&prepared.placed, plan.reference.size, &display, options.beyond());
     let parallax = match options.parallax_plan().filter(|_| !same) {
         Some(plan) => {
             let share = scope.share(shares::PARALLAX);
             let own = (&prepared, &projected);
-            let fitted = fit_parallax_maps(low, own, high, &references, &walker, &plan, &share)?;
+            let fitted = fit_parallax_maps(low, own, high, &references, &sampler, &plan, &share)?;
             clock.lap(Stage::Parallax);
             Some(fitted)
         }
@@ -181,15 +181,15 @@ fn run(
     };
     let (samples, maps, parallax_report) = match parallax {
         None => {
-            let samples = Cpu.view_samples(&walker, &references, size, &scope);
+            let samples = Cpu.view_samples(&sampler, &references, size, &scope);
             drop(references);
             (samples, None, None)
         }
-        Some(FittedMaps { maps, views: mut sighted, report }) => {
-            let walker = walker.with_cutout(maps.cutout.as_ref());
-            sighted.extend(sighted_views(&walker, &references[sighted.len()..]));
+        Some(FittedMaps { maps, views: mut view_samples, report }) => {
+            let sampler = sampler.with_cutout(maps.cutout.as_ref());
+            view_samples.extend(sample_views(&sampler, &references[view_samples.len()..]));
             drop(references);
-            (Cpu.shifted_view_samples(sighted, size, &maps.parallax, &scope), Some(maps), report)
+            (Cpu.shifted_view_samples(view_samples, size, &maps.parallax, &scope), Some(maps), report)
         }
     };
     if samples.is_empty() {
@@ -267,8 +267,8 @@ fn other_baseline(
     }
     let mode = if options.uv == UvMode::Keep { UvMode::Keep } else { UvMode::Repair };
     // A gutter that was asked for is no reason to pack anew what is sound.
-    let asked = UnfoldOptions { gutter_required: false, ..options.unfold_as(mode) };
-    let Mended { name, mut mesh, .. } = mend(delivered, &asked).ok()?;
+    let asked = UvStageOptions { gutter_required: false, ..options.uv_stage_as(mode) };
+    let RepairedLowPoly { name, mut mesh, .. } = repair_uvs(delivered, &asked).ok()?;
     if same(&mesh) {
         return None;
     }

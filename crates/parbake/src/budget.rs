@@ -68,7 +68,7 @@ pub(crate) fn stage_weights(options: &BakeOptions) -> Vec<(Stage, f64)> {
     let million = texels(options.texture_size) / 1e6;
     let pixels = (plan.views * plan.reference.size * plan.reference.size) as f64 / 1e6;
     let parallax = options.parallax_plan();
-    let algorithm = options.algorithm_plan().is_some();
+    let algorithm = options.paper_joint_plan().is_some();
     let mut stages = Vec::new();
     if let Some(shape) = options.shape_plan() {
         let pixels = (shape.views * shape.view_size * shape.view_size) as f64 / 1e6;

@@ -21,13 +21,14 @@ use crate::error::BakeError;
 use crate::options::{BakeOptions, Convention, Parallax, UvMode};
 use crate::report::{BakeReport, LossStep, Work, layout_warning};
 use parbake_atlas::{check_mesh, in_one_tile};
-use parbake_mesh::{HighSurface, exposures};
+use parbake_mesh::{HighSurface, visibilities};
 use parbake_model::glam::DVec2;
 use parbake_model::{Image, Material, Mesh, Model, Placement, TextureSlot, Wrap};
 use parbake_progress::{Clock, Message, ProgressScope, Stage, Watcher};
 use parbake_render::scene::Scene;
 use parbake_uv::surface::{
-    Mended, Source, SurfaceSignal, SurfaceTexture, UnfoldOptions, Unfolded, mend, unfold,
+    RepairedLowPoly, Source, SurfaceSamples, SurfaceTexture, UvStageOptions, UvStageResult, optimise_uvs,
+    repair_uvs,
 };
 use parbake_views::PrepareError;
 use parbake_views::frame::{common_frame, placed};
@@ -52,8 +53,8 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     }
     options.check()?;
     check_budget(options)?;
-    let as_it_is = options.unfold_as(UvMode::Keep);
-    let delivered = mend(model, &as_it_is)?;
+    let as_it_is = options.uv_stage_as(UvMode::Keep);
+    let delivered = repair_uvs(model, &as_it_is)?;
     if options.uv == UvMode::Keep && delivered.mesh.uvs.is_empty() {
         return Err(PrepareError::NoTextureCoordinates { model: model.name.clone() }.into());
     }
@@ -72,17 +73,17 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     // Colours are read as they are stored.
     let interpretation = Convention::Paper.interpretation();
     let scene = Scene::new(surface.clone(), &model.materials, &model.images, interpretation);
-    let exposures = exposures(&surface, &HighSurface::new(&surface));
+    let visibilities = visibilities(&surface, &HighSurface::new(&surface));
     let stored = Source {
         scene: &scene,
         surface: None,
-        exposures: &exposures,
+        visibilities: &visibilities,
         reach: 0.0,
         brightened: 0.0,
         normals: false,
         pixel: sample_width(&surface, options.texture_size),
     };
-    let signal = SurfaceSignal::new(&surface, &stored, options.texture_size)
+    let signal = SurfaceSamples::new(&surface, &stored, options.texture_size)
         .ok_or_else(|| PrepareError::FlatTextureCoordinates { model: model.name.clone() })?;
     let own = OwnSurface { model, frame: &frame, stored, signal, options };
     clock.lap(Stage::Prepare);
@@ -90,11 +91,11 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     let delivered = in_the_square(delivered, slack)
         .map(|delivered| own.textured(own.unmoved(delivered, &as_it_is, watcher)));
     clock.lap(Stage::Solve);
-    let asked = options.unfold_for(Work::Compress);
-    let mended = mend(model, &asked)?;
+    let asked = options.uv_stage_for(Work::Compress);
+    let mended = repair_uvs(model, &asked)?;
     let unmoved = own.unmoved(mended.clone(), &asked, watcher);
     let shown = Source { brightened: BRIGHTENED, ..stored };
-    let moved = unfold(mended, &frame, &shown, &asked, watcher);
+    let moved = optimise_uvs(mended, &frame, &shown, &asked, watcher);
     clock.lap(Stage::Unfold);
     let begun = match &delivered {
         Some(same) if same.low.model.mesh.uvs == unmoved.model.mesh.uvs => {
@@ -140,7 +141,7 @@ fn is_in_the_square(mesh: &Mesh, slack: f64) -> bool {
 
 /// Delivered coordinates as a texture that does not repeat can be read with them: charts in other tiles
 /// are brought home. None where one reaches across a tile's border by more than `slack`.
-fn in_the_square(mut delivered: Mended, slack: f64) -> Option<Mended> {
+fn in_the_square(mut delivered: RepairedLowPoly, slack: f64) -> Option<RepairedLowPoly> {
     if !is_in_the_square(&delivered.mesh, slack) {
         delivered.mesh.uvs = in_one_tile(&delivered.mesh, slack)?;
     }
@@ -154,14 +155,14 @@ struct OwnSurface<'a> {
     /// Its colours as they are stored.
     stored: Source<'a>,
     /// What its texture is solved for.
-    signal: SurfaceSignal,
+    signal: SurfaceSamples,
     options: &'a BakeOptions,
 }
 
 /// Coordinates and the texture that was solved for them.
 #[derive(Clone)]
 struct Solved {
-    low: Unfolded,
+    low: UvStageResult,
     solved: SurfaceTexture,
 }
 
@@ -174,12 +175,17 @@ impl Solved {
 
 impl OwnSurface<'_> {
     /// Coordinates as they are.
-    fn unmoved(&self, mended: Mended, options: &UnfoldOptions, watcher: &impl Watcher) -> Unfolded {
-        unfold(mended, self.frame, &self.stored, &UnfoldOptions { steps: 0, ..*options }, watcher)
+    fn unmoved(
+        &self,
+        mended: RepairedLowPoly,
+        options: &UvStageOptions,
+        watcher: &impl Watcher,
+    ) -> UvStageResult {
+        optimise_uvs(mended, self.frame, &self.stored, &UvStageOptions { steps: 0, ..*options }, watcher)
     }
 
-    fn textured(&self, low: Unfolded) -> Solved {
-        let solved = self.signal.best_texture(&low);
+    fn textured(&self, low: UvStageResult) -> Solved {
+        let solved = self.signal.least_squares_texture(&low);
         Solved { low, solved }
     }
 

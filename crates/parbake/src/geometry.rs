@@ -15,16 +15,16 @@ use crate::report::Work;
 use parbake_model::Model;
 use parbake_progress::{Clock, ProgressScope, Stage, Watcher};
 use parbake_render::parallax::ShParallax;
-use parbake_shape::paper_stage::algorithm_one;
+use parbake_shape::paper_joint_fit::paper_joint_fit;
 use parbake_shape::stage::{ShapeReport, shape};
-use parbake_uv::surface::{Source, Unfolded, mend_with_room, unfold};
+use parbake_uv::surface::{Source, UvStageResult, optimise_uvs, repair_uvs_with_room};
 use parbake_views::high_poly::HighPoly;
 
 /// What moved.
 #[derive(Default)]
 pub struct Geometry {
     /// The low-poly with its coordinates; none where nothing was to move.
-    pub unfolded: Option<Unfolded>,
+    pub unfolded: Option<UvStageResult>,
     /// How vertices moved, where they did.
     pub shape: Option<ShapeReport>,
     /// The map of the paper's method, where it was asked for.
@@ -46,13 +46,13 @@ pub fn move_geometry<W: Watcher>(
 ) -> Result<Geometry, BakeError> {
     let same = work == Work::Compress;
     let shape_plan = options.shape_plan().filter(|_| !same);
-    let algorithm_plan = options.algorithm_plan().filter(|_| !same);
+    let paper_joint_plan = options.paper_joint_plan().filter(|_| !same);
     let mut geometry = Geometry::default();
-    if options.uv == UvMode::Keep && shape_plan.is_none() && algorithm_plan.is_none() {
+    if options.uv == UvMode::Keep && shape_plan.is_none() && paper_joint_plan.is_none() {
         return Ok(geometry);
     }
-    let mut unfold_options = options.unfold_for(work);
-    let mut low = mend_with_room(low, &mut unfold_options)?;
+    let mut uv_options = options.uv_stage_for(work);
+    let mut low = repair_uvs_with_room(low, &mut uv_options)?;
     clock.lap(Stage::Prepare);
     if let Some(plan) = &shape_plan {
         let share = scope.share(shares::SHAPE);
@@ -62,17 +62,17 @@ pub fn move_geometry<W: Watcher>(
     let source = Source {
         scene: &high.scene,
         surface: (!same).then_some(&high.surface),
-        exposures: &[],
+        visibilities: &[],
         reach: high.conventions.max_distance,
         brightened: if high.conventions.srgb() { 1.0 } else { 0.0 },
         normals: true,
         pixel: Source::PIXEL,
     };
-    let mut unfolded = unfold(low, &high.frame, &source, &unfold_options, &scope.share(shares::UV));
+    let mut unfolded = optimise_uvs(low, &high.frame, &source, &uv_options, &scope.share(shares::UV));
     clock.lap(Stage::Unfold);
-    if let Some(plan) = &algorithm_plan {
+    if let Some(plan) = &paper_joint_plan {
         let share = scope.share(shares::PARALLAX);
-        let outcome = algorithm_one(&mut unfolded.model, high, plan, options.seed, &share)?;
+        let outcome = paper_joint_fit(&mut unfolded.model, high, plan, options.seed, &share)?;
         (geometry.shape, geometry.map) = (outcome.report, outcome.map);
         clock.lap(Stage::Shape);
     }

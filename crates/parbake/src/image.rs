@@ -25,7 +25,7 @@ use parbake_uv::picture::balance::best_share;
 use parbake_uv::picture::coarse_to_fine::optimised;
 use parbake_uv::picture::plane::Plane;
 use parbake_uv::picture::rounding::as_written;
-use parbake_uv::picture::showings::{Picture, showings};
+use parbake_uv::picture::signal_scales::{Picture, signal_scales};
 use parbake_uv::picture::texture::{decibels, errors, written_texture};
 use parbake_uv::picture::{Moves, as_f64, paper};
 use serde::Serialize;
@@ -83,7 +83,7 @@ pub fn bake_image(
     let picture = Picture::new(image);
     let contact = ContactOptions { texture_size: size as u32, border: Border::Slide, ..Default::default() };
     let finest = Plane { cells: options.settled_grid() };
-    let all = showings(&picture, finest, usize::MAX);
+    let all = signal_scales(&picture, finest, usize::MAX);
     let start = finest.layout(as_f64(&finest.points()));
     let kept_texture = written_texture(&start, &all[..1], FloatImage::solid(size, Vec4::splat(0.5)));
     let kept_errors = errors(&start, &all, &kept_texture);

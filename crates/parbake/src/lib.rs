@@ -60,7 +60,7 @@ pub use parbake_progress::{Estimate, Message, ProgressScope, Stage, StageTime, W
 pub use parbake_shape::stage::ShapeReport;
 pub use parbake_uv::convergence::Convergence;
 pub use parbake_uv::moves::UvMoves;
-pub use parbake_uv::surface::UnfoldReport;
+pub use parbake_uv::surface::UvStageReport;
 pub use parbake_views::PrepareError;
 pub use parbake_views::high_poly::HighPoly;
 pub use plan::Plan;

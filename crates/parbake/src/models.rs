@@ -6,7 +6,7 @@ use parbake_mesh::demo::{demo_low, demo_model, wall_low, wall_model};
 use parbake_mesh::simplify::{SimplifyOptions, simplify};
 use parbake_mesh::subdivide::subdivide;
 use parbake_model::{Material, Mesh, Model};
-use parbake_uv::surface::{Mended, mend};
+use parbake_uv::surface::{RepairedLowPoly, repair_uvs};
 
 /// A coarser copy of about this many triangles, with the same materials.
 pub fn simplified(model: &Model, triangles: usize) -> Model {
@@ -21,7 +21,7 @@ pub fn simplified(model: &Model, triangles: usize) -> Model {
 /// Where charts do not fit into the texture.
 pub fn laid_out(low: &Model, mode: UvMode, texture_size: usize) -> Result<Model, BakeError> {
     let options = BakeOptions { texture_size, ..BakeOptions::default() };
-    let Mended { name, mut mesh, .. } = mend(low, &options.unfold_as(mode))?;
+    let RepairedLowPoly { name, mut mesh, .. } = repair_uvs(low, &options.uv_stage_as(mode))?;
     mesh.triangle_materials.fill(0);
     Ok(Model { name, mesh, materials: vec![Material::default()], images: Vec::new() })
 }

@@ -382,10 +382,10 @@ mod tests {
         assert!(options.check().is_err());
         options.method = Method::Paper;
         assert!(options.check().is_ok());
-        assert_eq!(options.unfold().guide, Guide::ImageLoss);
-        assert_eq!(options.unfold().steps, 800);
+        assert_eq!(options.uv_stage().guide, Guide::ImageLoss);
+        assert_eq!(options.uv_stage().steps, 800);
         options.uv_steps = Some(7);
-        assert_eq!(options.unfold().steps, 7);
+        assert_eq!(options.uv_stage().steps, 7);
         let picture = crate::ImageOptions { no_content_aware: true, ..crate::ImageOptions::default() };
         assert!(picture.check().is_err());
     }

@@ -7,14 +7,14 @@ use parbake_fit::cutout::CutoutOptions;
 use parbake_fit::parallax::ParallaxOptions;
 use parbake_fit::parallax_maps::{ParallaxPass, ParallaxPlan};
 use parbake_fit::schedule::Schedule;
-use parbake_shape::paper::PaperOptions as AlgorithmOptions;
-use parbake_shape::paper_stage::AlgorithmPlan;
+use parbake_shape::paper::PaperOptions as PaperJointOptions;
+use parbake_shape::paper_joint_fit::PaperJointPlan;
 use parbake_shape::stage::ShapePlan;
 use parbake_shape::{Motion, ShapeOptions};
 use parbake_uv::paper::PaperOptions;
-use parbake_uv::surface::UnfoldOptions;
+use parbake_uv::surface::UvStageOptions;
 use parbake_views::reference::Sampling;
-use parbake_views::view_walk::Beyond;
+use parbake_views::view_sampler::UncoveredPixels;
 
 /// Options with every number settled.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,10 +122,10 @@ impl BakeOptions {
     }
 
     /// The paper's optimiser for vertices and parallax; none where neither is asked for.
-    pub(crate) fn algorithm_plan(&self) -> Option<AlgorithmPlan> {
-        let (own, paper) = (AlgorithmOptions::default(), PaperOptions::default());
+    pub(crate) fn paper_joint_plan(&self) -> Option<PaperJointPlan> {
+        let (own, paper) = (PaperJointOptions::default(), PaperOptions::default());
         let rounds = self.uv_steps.unwrap_or(paper.rounds);
-        let fit = AlgorithmOptions {
+        let fit = PaperJointOptions {
             motion: (self.shape != ShapeMode::Keep).then_some(Motion::Normal),
             parallax: (self.parallax == Parallax::Sh).then_some((self.parallax_order, self.parallax_size)),
             texture_size: self.texture_size.min(256),
@@ -133,7 +133,7 @@ impl BakeOptions {
             ..own
         };
         let moves = fit.motion.is_some() || fit.parallax.is_some();
-        (self.method == Method::Paper && moves).then_some(AlgorithmPlan {
+        (self.method == Method::Paper && moves).then_some(PaperJointPlan {
             views: self.at_most_views(256),
             view_size: self.at_most_pixels(ALGORITHM_VIEW_SIZE),
             fit,
@@ -146,10 +146,10 @@ impl BakeOptions {
     }
 
     /// What pixels beyond the high-poly's silhouette ask of the textures.
-    pub(crate) fn beyond(&self) -> Beyond {
+    pub(crate) fn beyond(&self) -> UncoveredPixels {
         match self.silhouette_weight() {
-            0.0 => Beyond::Ignore,
-            weight => Beyond::Background(self.backdrop.light(), weight),
+            0.0 => UncoveredPixels::Ignore,
+            weight => UncoveredPixels::Background(self.backdrop.light(), weight),
         }
     }
 
@@ -166,19 +166,19 @@ impl BakeOptions {
     }
 
     /// What to do with texture coordinates in another mode.
-    pub(crate) fn unfold_as(&self, mode: UvMode) -> UnfoldOptions {
-        UnfoldOptions { mode, ..self.unfold() }
+    pub(crate) fn uv_stage_as(&self, mode: UvMode) -> UvStageOptions {
+        UvStageOptions { mode, ..self.uv_stage() }
     }
 
     /// What to do with texture coordinates.
-    pub(crate) fn unfold(&self) -> UnfoldOptions {
+    pub(crate) fn uv_stage(&self) -> UvStageOptions {
         let steps = match (self.method, self.preset) {
             (Method::Paper, _) => PaperOptions::default().rounds,
             (Method::Fit, Preset::Fast) => 10,
             (Method::Fit, Preset::Balanced) => 30,
             (Method::Fit, Preset::Best) => 60,
         };
-        UnfoldOptions {
+        UvStageOptions {
             mode: if self.hurried() && self.uv == UvMode::Optimize { UvMode::Repair } else { self.uv },
             method: self.method,
             guide: Method::guide(self.no_content_aware),
@@ -193,14 +193,14 @@ impl BakeOptions {
 
     /// Steps in which texture coordinates are moved: as asked, or as preset, method and command say.
     pub fn settled_uv_steps(&self, work: Work) -> usize {
-        self.unfold_for(work).steps
+        self.uv_stage_for(work).steps
     }
 
     /// What to do with texture coordinates in this work.
-    pub(crate) fn unfold_for(&self, work: Work) -> UnfoldOptions {
-        let own = self.unfold();
+    pub(crate) fn uv_stage_for(&self, work: Work) -> UvStageOptions {
+        let own = self.uv_stage();
         let factor = if (self.method, work) == (Method::Fit, Work::Compress) { OWN_STEPS } else { 1 };
-        UnfoldOptions { steps: self.uv_steps.unwrap_or(factor * own.steps), ..own }
+        UvStageOptions { steps: self.uv_steps.unwrap_or(factor * own.steps), ..own }
     }
 
     /// Settles what the preset leaves open.

@@ -8,7 +8,7 @@ use parbake_fit::schedule::{LossPoint, Move};
 use parbake_image::MapKind;
 use parbake_progress::StageTime;
 use parbake_shape::stage::ShapeReport;
-use parbake_uv::surface::UnfoldReport;
+use parbake_uv::surface::UvStageReport;
 use serde::{Deserialize, Serialize};
 
 /// The loss after a step of the fit.
@@ -79,7 +79,7 @@ pub struct BakeReport {
     #[serde(default)]
     pub depth: Option<ParallaxReport>,
     /// What was done with texture coordinates; none where they were kept.
-    pub unfold: Option<UnfoldReport>,
+    pub unfold: Option<UvStageReport>,
     /// What was asked.
     pub options: BakeOptions,
     /// Triangles of the high-poly.

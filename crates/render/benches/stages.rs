@@ -27,7 +27,7 @@ use parbake_render::interpolate::{
     Barycentrics, barycentrics, barycentrics_adjoint, footprint_adjoint, interpolate,
 };
 use parbake_render::loss::{Comparison, ImageLoss, Reference, compare};
-use parbake_render::parallax::{ShParallax, Sight};
+use parbake_render::parallax::{ShParallax, ViewDirection};
 use parbake_render::pipeline::{self, Gradients, View};
 use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 use parbake_render::scatter::{Fetch, Scatter};
@@ -254,13 +254,13 @@ fn interpolate_attributes(bencher: Bencher) {
 }
 
 /// Where each sample falls, and from where it is seen.
-fn sights(b: &Bench) -> Vec<(Vec2, Sight)> {
+fn sights(b: &Bench) -> Vec<(Vec2, ViewDirection)> {
     let sight = |&(t, x, y): &(usize, f64, f64)| {
         let weights = barycentrics(&b.screen.triangles[t], x, y).weights;
         let corners = b.triangles[t].map(|i| i as usize);
         let direction = b.camera.view_direction(interpolate(corners.map(|i| b.positions[i]), weights));
         let normal = interpolate(corners.map(|i| b.normals[i]), weights).normalize();
-        let sight = Sight { direction, cosine: normal.dot(direction) };
+        let sight = ViewDirection { direction, cosine: normal.dot(direction) };
         (interpolate(corners.map(|i| b.uvs[i]), weights), sight)
     };
     b.samples.iter().map(sight).collect()

@@ -40,7 +40,7 @@ pub struct ShParallax {
 
 /// From where a point is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sight {
+pub struct ViewDirection {
     /// Unit vector to the viewer.
     pub direction: Vec3,
     /// Cosine between that and the vertex normal, −1 … 1.
@@ -114,7 +114,7 @@ impl ShParallax {
     }
 
     #[inline]
-    fn factors(&self, uv: Vec2, sight: &Sight) -> Factors {
+    fn factors(&self, uv: Vec2, sight: &ViewDirection) -> Factors {
         let steepness = 1.0 / sight.cosine.abs().max(self.limit);
         let depth =
             self.depth.as_ref().map_or(1.0, |map| map.fetch(&taps(uv, map.width, map.height, self.wrap))[0]);
@@ -145,7 +145,7 @@ impl ShParallax {
 
     /// How far the coordinate moves, in texture widths.
     #[inline]
-    pub fn shift(&self, uv: Vec2, sight: &Sight) -> Vec2 {
+    pub fn shift(&self, uv: Vec2, sight: &ViewDirection) -> Vec2 {
         let Factors { steepness, depth } = self.factors(uv, sight);
         self.sum(&self.taps(uv), sight.direction) * (steepness * depth)
     }
@@ -153,7 +153,7 @@ impl ShParallax {
     /// The part of [`ShParallax::adjoint`] that goes to the maps: all that a fit needs whose
     /// surface stands still.
     #[inline]
-    pub fn adjoint_of_maps(&self, uv: Vec2, sight: &Sight, to_shift: Vec2, into: &mut Self) {
+    pub fn adjoint_of_maps(&self, uv: Vec2, sight: &ViewDirection, to_shift: Vec2, into: &mut Self) {
         let at = self.taps(uv);
         let Factors { steepness, depth } = self.factors(uv, sight);
         if let (Some(map), Some(into)) = (&self.depth, &mut into.depth) {
@@ -183,7 +183,7 @@ impl ShParallax {
     }
 
     /// The part of [`ShParallax::adjoint`] that goes to the point and to the direction.
-    pub fn sight_adjoint(&self, uv: Vec2, sight: &Sight, to_shift: Vec2) -> ShiftGradient {
+    pub fn sight_adjoint(&self, uv: Vec2, sight: &ViewDirection, to_shift: Vec2) -> ShiftGradient {
         let mut values = [0.0; MOST_FUNCTIONS];
         evaluate(self.order, sight.direction, &mut values);
         let count = functions(self.order);
@@ -220,7 +220,7 @@ impl ShParallax {
 
     /// Adjoint of [`ShParallax::shift`]: adds to the maps' gradients (`into` has this map's
     /// shape) and returns those of the rest.
-    pub fn adjoint(&self, uv: Vec2, sight: &Sight, to_shift: Vec2, into: &mut Self) -> ShiftGradient {
+    pub fn adjoint(&self, uv: Vec2, sight: &ViewDirection, to_shift: Vec2, into: &mut Self) -> ShiftGradient {
         self.adjoint_of_maps(uv, sight, to_shift, into);
         self.sight_adjoint(uv, sight, to_shift)
     }
@@ -251,11 +251,11 @@ mod tests {
         let to_shift = Vec2::new(0.7, -1.3);
         for with_depth in [false, true] {
             let map = map(with_depth);
-            let value = |map: &ShParallax, uv, sight: &Sight| map.shift(uv, sight).dot(to_shift);
+            let value = |map: &ShParallax, uv, sight: &ViewDirection| map.shift(uv, sight).dot(to_shift);
             for i in 0..40 {
                 let uv = Vec2::new(0.5 + 0.4 * noise(7 * i), 0.5 + 0.4 * noise(11 * i + 5));
                 let direction = Vec3::new(noise(i), noise(2 * i + 3), 1.5 * noise(i + 8)).normalize();
-                let sight = Sight { direction, cosine: noise(13 * i + 1) };
+                let sight = ViewDirection { direction, cosine: noise(13 * i + 1) };
                 let mut into = map.clone();
                 into.coefficients.fill(Vec2::ZERO);
                 into.depth.iter_mut().for_each(|d| d.texels.fill([0.0]));
@@ -286,11 +286,11 @@ mod tests {
                     close(got.uv.y, along(&|h| value(&map, uv + Vec2::Y * h, &sight)));
                 }
                 if (sight.cosine.abs() - map.limit).abs() > h {
-                    let at = |h: f32| Sight { cosine: sight.cosine + h, ..sight };
+                    let at = |h: f32| ViewDirection { cosine: sight.cosine + h, ..sight };
                     close(got.cosine, along(&|h| value(&map, uv, &at(h))));
                 }
                 let across = direction.any_orthonormal_vector();
-                let at = |h: f32| Sight { direction: (direction + across * h).normalize(), ..sight };
+                let at = |h: f32| ViewDirection { direction: (direction + across * h).normalize(), ..sight };
                 close(got.direction.dot(across), along(&|h| value(&map, uv, &at(h))));
             }
         }
@@ -301,7 +301,7 @@ mod tests {
     fn grazing_views_are_limited() {
         let mut map = ShParallax::zeros(0, 1);
         map.coefficients[0] = Vec2::new(1.0, 0.0);
-        let shift = |cosine| map.shift(Vec2::splat(0.5), &Sight { direction: Vec3::Z, cosine }).x;
+        let shift = |cosine| map.shift(Vec2::splat(0.5), &ViewDirection { direction: Vec3::Z, cosine }).x;
         assert_eq!(shift(0.0), shift(0.25));
         assert!((shift(0.25) / shift(1.0) - 4.0).abs() < 1e-5);
         assert_eq!(shift(-0.5), shift(0.5));

@@ -68,7 +68,7 @@ impl ShParallax {
 mod tests {
     use super::*;
     use crate::cutout::ShCutout;
-    use crate::parallax::Sight;
+    use crate::parallax::ViewDirection;
     use crate::spherical_harmonics::{MOST_FUNCTIONS, evaluate};
     use parbake_model::glam::Vec3;
     use parbake_model::{CutoutMap, Wrap};
@@ -155,8 +155,8 @@ mod tests {
         };
         let uv = Vec2::new(0.4, 0.5);
         let sights = [
-            Sight { direction: Vec3::new(0.48, -0.6, 0.64), cosine: 0.64 },
-            Sight { direction: Vec3::new(0.6, 0.8, 0.0), cosine: 0.0 },
+            ViewDirection { direction: Vec3::new(0.48, -0.6, 0.64), cosine: 0.64 },
+            ViewDirection { direction: Vec3::new(0.6, 0.8, 0.0), cosine: 0.0 },
         ];
         let close = |have: Vec2, want: Vec2| assert!(have.distance(want) < 2e-6, "{have} {want}");
         let shift = |map: &ShParallaxMap, images: &[Image]| {

@@ -12,7 +12,7 @@
 use crate::camera::{Camera, Projection};
 use crate::frame::{TangentLight, tangent_light, tangent_light_adjoint};
 use crate::interpolate::{Barycentrics, barycentrics, footprint_adjoint, interpolate, planes_adjoint};
-use crate::parallax::{ShParallax, Sight};
+use crate::parallax::{ShParallax, ViewDirection};
 use crate::raster::ScreenTriangle;
 use crate::scatter::Fetch;
 use crate::shade::{Brdf, BrdfGradient};
@@ -57,7 +57,7 @@ struct Sample {
     uv: Vec2,
     /// Where textures are fetched.
     fetched: Vec2,
-    sight: Sight,
+    sight: ViewDirection,
     per_x: Vec2,
     per_y: Vec2,
     to_light: Vec3,
@@ -74,7 +74,7 @@ struct Sample {
 #[derive(Clone, Copy, Debug)]
 pub struct ShiftUse {
     uv: Vec2,
-    sight: Sight,
+    sight: ViewDirection,
     to_shift: Vec2,
 }
 
@@ -152,7 +152,7 @@ impl<'a> Patch<'a> {
         };
         let (uv, per_x, per_y) = (along(at.weights), along(at.per_x), along(at.per_y));
         let Textures { color, normal: map, parallax, .. } = self.textures;
-        let mut sight = Sight { direction: to_light, cosine: 1.0 };
+        let mut sight = ViewDirection { direction: to_light, cosine: 1.0 };
         let mut fetched = uv;
         if let Some(parallax) = parallax {
             sight.cosine = normal.normalize_or_zero().dot(to_light);

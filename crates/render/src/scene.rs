@@ -14,7 +14,7 @@ use crate::cutout::rasterise_cut;
 use crate::frame::tangent_light;
 use crate::interpolate::{barycentrics, interpolate};
 use crate::interpretation::Interpretation;
-use crate::parallax::Sight;
+use crate::parallax::ViewDirection;
 use crate::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 pub use crate::scene_textures::unpack;
 use crate::scene_textures::{Builder, Map, Surface, Textures};
@@ -160,7 +160,7 @@ impl Scene {
         let (textures, shift) = match &surface.shifted {
             Some(shifted) => {
                 let cosine = normal.normalize_or_zero().dot(to_viewer);
-                let sight = Sight { direction: to_viewer, cosine };
+                let sight = ViewDirection { direction: to_viewer, cosine };
                 (&shifted.textures, shifted.at(mesh, corners, b.weights, &sight))
             }
             None => (&surface.plain, Vec2::ZERO),

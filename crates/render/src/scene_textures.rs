@@ -8,7 +8,7 @@
 use crate::cutout::ShCutout;
 use crate::interpolate::interpolate;
 use crate::interpretation::Interpretation;
-use crate::parallax::{ShParallax, Sight};
+use crate::parallax::{ShParallax, ViewDirection};
 use parbake_image::display::encode_srgb;
 use parbake_image::maps::KINDS;
 use parbake_image::material_maps::{factors, shifted_texture_slot, texture_slot};
@@ -56,7 +56,7 @@ impl Shifted {
     }
 
     /// How far coordinates move at a point of a triangle, seen from there.
-    pub fn at(&self, mesh: &Mesh, corners: [usize; 3], weights: [f32; 3], sight: &Sight) -> Vec2 {
+    pub fn at(&self, mesh: &Mesh, corners: [usize; 3], weights: [f32; 3], sight: &ViewDirection) -> Vec2 {
         self.anchor(mesh, corners, weights).map_or(Vec2::ZERO, |uv| self.parallax.shift(uv, sight))
     }
 

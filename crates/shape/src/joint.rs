@@ -12,13 +12,13 @@
 //! a black background, where nobody would see it, is seen here.
 //!
 //! How far vertices go depends on how far outlines are apart at first: the step, what holds a
-//! vertex near its home, and the discount on overhang all follow that one length. A mesh whose
+//! vertex near its rest, and the discount on overhang all follow that one length. A mesh whose
 //! outlines fit already stays as it is, and so does one whose outlines did not come closer. Where
 //! outlines are more than a pixel apart, steps begin with views of half the size, which show the
 //! way as well and take a third of the time.
 //!
 //! Contract: the mesh has texture coordinates and lies in the common frame; triangles stay
-//! sane (`guard.rs`), vertices at one position stay together. The result does not depend on
+//! sane (`triangle_quality.rs`), vertices at one position stay together. The result does not depend on
 //! the number of threads.
 
 use crate::laplacian::Laplacian;
@@ -158,10 +158,10 @@ pub fn fit_shape(
     size: usize,
     display: Display,
     options: &ShapeOptions,
-    watch: &impl Watcher,
+    watcher: &impl Watcher,
 ) -> Shaped {
     let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
-    let laplacian = Laplacian::new(points.home.len(), &points.triangles);
+    let laplacian = Laplacian::new(points.rest.len(), &points.triangles);
     let comparison = Comparison { coverage: options.coverage, ..Comparison::default() };
     let count = mesh.positions.len();
     let mut fit = Fit {
@@ -172,7 +172,7 @@ pub fn fit_shape(
         views: Views { references, size, display, comparison, background: options.background },
     };
     let measured: Vec<(usize, u64)> = (0..references.len().min(MEASURED)).map(|i| (i, i as u64)).collect();
-    let before = fit.look(&points.home, &start, &measured);
+    let before = fit.look(&points.rest, &start, &measured);
     let gap_in_pixels = before.outline.gap().max(LEAST_GAP);
     let discount = options.overhang_discount * (gap_in_pixels / WIDE_GAP).min(1.0) as f32;
     fit.views.comparison.overhang_discount = discount;
@@ -192,8 +192,8 @@ pub fn fit_shape(
     let fine = fit.views;
     let coarse = Views { references: &halved, size: size / 2, ..fine };
     for step in 0..options.steps {
-        watch.progress(Stage::Shape, step, options.steps);
-        if references.is_empty() || watch.stopped() {
+        watcher.progress(Stage::Shape, step, options.steps);
+        if references.is_empty() || watcher.stopped() {
             break;
         }
         // The pool's every prefix is well spread, and so is every run of it.
@@ -214,12 +214,12 @@ pub fn fit_shape(
         moving.step(&gradients.positions, &smoothing, held * summed, share);
         provisional.step(&gradients, share);
     }
-    watch.progress(Stage::Shape, options.steps, options.steps);
+    watcher.progress(Stage::Shape, options.steps, options.steps);
     fit.views = fine;
     let mut after = fit.look(moving.at(), &provisional.texture, &measured).outline;
     let cost = |outline: &Outline| f64::from(1.0 - discount) * outline.overhang + outline.underhang;
     if cost(&after) > WORTH_MOVING * cost(&before.outline) {
-        moving.go_home();
+        moving.reset();
         after = before.outline;
     }
     let outline = [before.outline, after];

@@ -2,7 +2,7 @@
 //! NV* in Knodt et al. 2023, Table 11): vertices may go anywhere, but what their
 //! neighbourhood looks like is held.
 //!
-//! With Δ the uniform Laplacian, `(Δ p)_i = p_i − mean of i's neighbours`, and d = p − home,
+//! With Δ the uniform Laplacian, `(Δ p)_i = p_i − mean of i's neighbours`, and d = p − rest,
 //! the energy is the mean over points of `‖(Δ d)_i‖²`. Adjoint: `2 Δᵀ Δ d / P`.
 //!
 //! Contract: neighbours are those of the welded points; a point without any has no term.

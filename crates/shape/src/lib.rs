@@ -14,16 +14,16 @@
 //! paper_stage   its stage of a bake
 //! ```
 
-pub mod guard;
 pub mod joint;
 pub mod laplacian;
 pub mod moving_points;
 pub mod normals;
 pub mod paper;
-pub mod paper_stage;
+pub mod paper_joint_fit;
 pub mod points;
 pub mod provisional;
 pub mod stage;
+pub mod triangle_quality;
 pub mod views;
 
 pub use joint::{ShapeOptions, Shaped, fit_shape};

@@ -1,13 +1,13 @@
 //! Points that follow the gradient of their vertices by Adam, on a mesh that stays sane.
 //!
-//! A step: the adjoint of where vertices are ([`Points`]), a spring that pulls points home, Adam,
-//! and what the [`Guard`] leaves of where that leads.
+//! A step: the adjoint of where vertices are ([`Points`]), a spring that pulls points rest, Adam,
+//! and what the [`TriangleQuality`] leaves of where that leads.
 //!
 //! Contract: after every step each triangle is as sane as the guard asks, and the values that Adam
 //! sees are those of where the points are.
 
-use crate::guard::Guard;
 use crate::points::{Motion, Points};
+use crate::triangle_quality::TriangleQuality;
 use glam::{Vec3, Vec4};
 use parbake_solve::adam::{Adam, AdamOptions};
 
@@ -15,7 +15,7 @@ use parbake_solve::adam::{Adam, AdamOptions};
 pub struct MovingPoints<'a> {
     points: &'a Points,
     motion: Motion,
-    guard: Guard,
+    quality: TriangleQuality,
     /// P values of four lanes, as [`Points`] has them.
     values: Vec<Vec4>,
     /// P positions.
@@ -24,15 +24,15 @@ pub struct MovingPoints<'a> {
 }
 
 impl<'a> MovingPoints<'a> {
-    /// At home; `rate` is how far a point moves in a step at first, at most.
+    /// At rest; `rate` is how far a point moves in a step at first, at most.
     pub fn new(points: &'a Points, motion: Motion, rate: f32) -> Self {
         Self {
             points,
             motion,
-            guard: Guard::new(&points.home, &points.triangles),
-            values: vec![Vec4::ZERO; points.home.len()],
-            at: points.home.clone(),
-            adam: Adam::new(points.home.len(), AdamOptions { rate, ..AdamOptions::default() }),
+            quality: TriangleQuality::new(&points.rest, &points.triangles),
+            values: vec![Vec4::ZERO; points.rest.len()],
+            at: points.rest.clone(),
+            adam: Adam::new(points.rest.len(), AdamOptions { rate, ..AdamOptions::default() }),
         }
     }
 
@@ -41,14 +41,14 @@ impl<'a> MovingPoints<'a> {
         &self.at
     }
 
-    /// P ways from home.
+    /// P ways from rest.
     pub fn ways(&self) -> Vec<Vec3> {
-        self.at.iter().zip(&self.points.home).map(|(at, home)| *at - *home).collect()
+        self.at.iter().zip(&self.points.rest).map(|(at, rest)| *at - *rest).collect()
     }
 
     /// Moves against the gradients of the V vertices and, if there are any, of the P points
     /// besides, at `share` of the first rate. The spring weighs the mean of the squared ways from
-    /// home, in what the gradients are of.
+    /// rest, in what the gradients are of.
     pub fn step(&mut self, to_vertices: &[Vec3], to_points: &[Vec3], spring: f32, share: f32) {
         let mut gradient = self.points.adjoint(self.motion, to_vertices);
         let pull = 2.0 * spring / self.values.len().max(1) as f32;
@@ -60,21 +60,21 @@ impl<'a> MovingPoints<'a> {
         }
         self.adam.step(&mut self.values, &gradient, share);
         let mut next = self.points.displaced(self.motion, &self.values);
-        if self.guard.hold(&self.at, &mut next) > 0 {
+        if self.quality.revert(&self.at, &mut next) > 0 {
             self.values = self.points.values(self.motion, &next);
         }
         self.at = next;
     }
 
     /// Takes all steps back.
-    pub fn go_home(&mut self) {
+    pub fn reset(&mut self) {
         self.values.fill(Vec4::ZERO);
-        self.at.clone_from(&self.points.home);
+        self.at.clone_from(&self.points.rest);
     }
 
-    /// Mean and longest way from home.
+    /// Mean and longest way from rest.
     pub fn moved(&self) -> [f32; 2] {
-        let ways = || self.at.iter().zip(&self.points.home).map(|(at, home)| at.distance(*home));
+        let ways = || self.at.iter().zip(&self.points.rest).map(|(at, rest)| at.distance(*rest));
         [ways().sum::<f32>() / self.at.len().max(1) as f32, ways().fold(0.0, f32::max)]
     }
 }
@@ -89,7 +89,7 @@ mod tests {
     }
 
     /// Protects the fit: points go against the gradient, the spring alone brings them back, and
-    /// what is taken back is home to the bit.
+    /// what is taken back is rest to the bit.
     #[test]
     fn points_follow_and_the_spring_pulls_them_home() {
         let points = square();
@@ -104,8 +104,8 @@ mod tests {
                 moving.step(&[Vec3::ZERO; 4], &[], 1.0, 0.5);
             }
             assert!(moving.moved()[1] < 0.5 * longest, "{:?}", moving.moved());
-            moving.go_home();
-            assert_eq!(moving.at(), points.home);
+            moving.reset();
+            assert_eq!(moving.at(), points.rest);
         }
     }
 
@@ -116,7 +116,7 @@ mod tests {
         let mut moving = MovingPoints::new(&points, Motion::Free, 0.1);
         for _ in 0..50 {
             moving.step(&[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ZERO], &[], 0.0, 1.0);
-            assert_eq!(moving.guard.spoilt(&moving.at).count(), 0);
+            assert_eq!(moving.quality.invalid(&moving.at).count(), 0);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Vertex normals that turn with the faces around them.
 //!
-//! A vertex's faces have a mean normal, weighted by their angles at the vertex, at home and
+//! A vertex's faces have a mean normal, weighted by their angles at the vertex, at rest and
 //! after the move; `n' = n + (mean after − mean before)`, made unit. A vertex whose faces
 //! stayed keeps its normal to the bit, hard edges stay hard, and what an artist set by hand
 //! turns along.
@@ -28,18 +28,18 @@ fn means(positions: &[Vec3], triangles: &[[u32; 3]], groups: &[usize]) -> Vec<Ve
 }
 
 /// For each vertex the first one with its position and its normal.
-fn groups(home: &[Vec3], normals: &[Vec3]) -> Vec<usize> {
+fn groups(rest: &[Vec3], normals: &[Vec3]) -> Vec<usize> {
     let mut first = BTreeMap::new();
     let bits = |v: Vec3| v.to_array().map(|x| (x + 0.0).to_bits());
-    (home.iter().zip(normals).enumerate())
+    (rest.iter().zip(normals).enumerate())
         .map(|(vertex, (&p, &n))| *first.entry((bits(p), bits(n))).or_insert(vertex))
         .collect()
 }
 
-/// V normals of a mesh whose vertices moved from `home` to `now`.
-pub fn turned_normals(home: &[Vec3], now: &[Vec3], normals: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
-    let groups = groups(home, normals);
-    let (before, after) = (means(home, triangles, &groups), means(now, triangles, &groups));
+/// V normals of a mesh whose vertices moved from `rest` to `now`.
+pub fn turned_normals(rest: &[Vec3], now: &[Vec3], normals: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let groups = groups(rest, normals);
+    let (before, after) = (means(rest, triangles, &groups), means(now, triangles, &groups));
     (normals.iter().zip(before.iter().zip(&after)))
         .map(
             |(&normal, (&before, &after))| {
@@ -56,12 +56,12 @@ mod tests {
     /// Protects shading: normals follow a turn, and stay where nothing moved.
     #[test]
     fn normals_turn_with_their_faces() {
-        let home = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let rest = [Vec3::ZERO, Vec3::X, Vec3::Y];
         let normals = [Vec3::Z; 3];
-        assert_eq!(turned_normals(&home, &home, &normals, &[[0, 1, 2]]), normals);
-        let tilted = home.map(|p| Vec3::new(p.x, p.y, 0.3 * p.x));
+        assert_eq!(turned_normals(&rest, &rest, &normals, &[[0, 1, 2]]), normals);
+        let tilted = rest.map(|p| Vec3::new(p.x, p.y, 0.3 * p.x));
         let want = Vec3::new(-0.3, 0.0, 1.0).normalize();
-        for n in turned_normals(&home, &tilted, &normals, &[[0, 1, 2]]) {
+        for n in turned_normals(&rest, &tilted, &normals, &[[0, 1, 2]]) {
             assert!(n.distance(want) < 1e-6);
         }
     }

@@ -139,7 +139,7 @@ pub fn paper_fit(
     views: &Views,
     seed: u64,
     options: &PaperOptions,
-    watch: &impl Watcher,
+    watcher: &impl Watcher,
 ) -> PaperResult {
     let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
     let edges = EdgeAdjacency::new(&mesh.positions, &mesh.triangles);
@@ -153,8 +153,8 @@ pub fn paper_fit(
     let mut losses = Vec::new();
     let total = options.steps + options.last_steps;
     for step in 0..total {
-        watch.progress(Stage::Shape, step, total);
-        if views.references.is_empty() || watch.stopped() {
+        watcher.progress(Stage::Shape, step, total);
+        if views.references.is_empty() || watcher.stopped() {
             break;
         }
         let first = step * options.views_per_step;
@@ -186,7 +186,7 @@ pub fn paper_fit(
             moving.step(&gradients.positions, &[], options.displacement * chosen.len() as f32, share);
         }
     }
-    watch.progress(Stage::Shape, total, total);
+    watcher.progress(Stage::Shape, total, total);
     PaperResult {
         positions: points.vertices(moving.at()),
         map: map.map(|m| m.map),

@@ -1,7 +1,7 @@
 //! What moves: points, each being all vertices at one position, so that seams stay closed.
 //!
-//! Forward: `v = home + δ n` along the normal (Knodt et al. 2023, section 4.3), or
-//! `v = home + (δ_x, δ_y, δ_z)` for free motion. Adjoint: a point's gradient is the sum of
+//! Forward: `v = rest + δ n` along the normal (Knodt et al. 2023, section 4.3), or
+//! `v = rest + (δ_x, δ_y, δ_z)` for free motion. Adjoint: a point's gradient is the sum of
 //! its vertices', projected on n where it may only move along it.
 //!
 //! Contract: one value of four lanes a point; the lanes that a motion does not use are 0.
@@ -25,7 +25,7 @@ pub struct Points {
     /// V entries: each vertex's point.
     pub of_vertex: Vec<u32>,
     /// P positions before anything moved.
-    pub home: Vec<Vec3>,
+    pub rest: Vec<Vec3>,
     /// P unit normals: the direction of the mean of the vertices' normals.
     pub normals: Vec<Vec3>,
     /// F triangles of points.
@@ -41,8 +41,8 @@ impl Points {
         for (vertex, &first) in first.iter().enumerate() {
             let point = &mut index[first as usize];
             if *point == u32::MAX {
-                *point = out.home.len() as u32;
-                out.home.push(positions[vertex]);
+                *point = out.rest.len() as u32;
+                out.rest.push(positions[vertex]);
                 out.normals.push(Vec3::ZERO);
             }
             out.normals[*point as usize] += normals[vertex];
@@ -61,18 +61,18 @@ impl Points {
             Motion::Normal => self.normals[i] * value.x,
             Motion::Free => value.truncate(),
         };
-        values.iter().enumerate().map(|(i, value)| self.home[i] + way(i, value)).collect()
+        values.iter().enumerate().map(|(i, value)| self.rest[i] + way(i, value)).collect()
     }
 
     /// The values that bring the points there, as far as the motion can.
     pub fn values(&self, motion: Motion, points: &[Vec3]) -> Vec<Vec4> {
-        let ways: Vec<Vec3> = points.iter().zip(&self.home).map(|(point, home)| *point - *home).collect();
+        let ways: Vec<Vec3> = points.iter().zip(&self.rest).map(|(point, rest)| *point - *rest).collect();
         self.lanes(motion, &ways)
     }
 
     /// Adjoint of [`Points::displaced`] and [`Points::vertices`] together.
     pub fn adjoint(&self, motion: Motion, to_vertices: &[Vec3]) -> Vec<Vec4> {
-        let mut to_points = vec![Vec3::ZERO; self.home.len()];
+        let mut to_points = vec![Vec3::ZERO; self.rest.len()];
         for (&point, gradient) in self.of_vertex.iter().zip(to_vertices) {
             to_points[point as usize] += *gradient;
         }
@@ -126,8 +126,8 @@ mod tests {
                 .collect();
             let weights: Vec<Vec3> = (0..6).map(|i| Vec3::new(1.0, i as f32, -0.5 * i as f32)).collect();
             let moved = points.vertices(&points.displaced(motion, &values));
-            let home = points.vertices(&points.home);
-            let left: f32 = moved.iter().zip(&home).zip(&weights).map(|((m, h), w)| (*m - *h).dot(*w)).sum();
+            let rest = points.vertices(&points.rest);
+            let left: f32 = moved.iter().zip(&rest).zip(&weights).map(|((m, h), w)| (*m - *h).dot(*w)).sum();
             let right: f32 =
                 points.adjoint(motion, &weights).iter().zip(&values).map(|(g, v)| g.dot(*v)).sum();
             assert!((left - right).abs() < 1e-4, "{left} {right}");

@@ -36,7 +36,7 @@ fn pairs(positions: &[Vec3]) -> Vec<(usize, usize)> {
 fn split_vertices_stay_together() {
     let (positions, normals, triangles) = cube();
     let points = Points::new(&positions, &normals, &triangles);
-    assert_eq!((points.home.len(), points.of_vertex.len()), (8, 24));
+    assert_eq!((points.rest.len(), points.of_vertex.len()), (8, 24));
     let pairs = pairs(&positions);
     assert_eq!(pairs.len(), 24);
     for motion in [Motion::Normal, Motion::Free] {
@@ -59,17 +59,17 @@ fn split_vertices_stay_together() {
 fn a_corner_moves_along_the_mean_of_its_normals() {
     let (positions, normals, triangles) = cube();
     let points = Points::new(&positions, &normals, &triangles);
-    for (home, normal) in points.home.iter().zip(&points.normals) {
-        assert!(normal.distance(home.normalize()) < 1e-6, "{home} {normal}");
+    for (rest, normal) in points.rest.iter().zip(&points.normals) {
+        assert!(normal.distance(rest.normalize()) < 1e-6, "{rest} {normal}");
     }
     let mut moving = MovingPoints::new(&points, Motion::Normal, 0.01);
     for _ in 0..10 {
         moving.step(&[-Vec3::X; 24], &[], 0.0, 1.0);
     }
-    for (at, home) in moving.at().iter().zip(&points.home) {
+    for (at, rest) in moving.at().iter().zip(&points.rest) {
         // Against the gradient: corners at +x go out, those at -x go in.
-        let way = *at - *home;
-        assert!(way.x > 0.01 && way.cross(*home).length() < 1e-6, "{home} {at}");
+        let way = *at - *rest;
+        assert!(way.x > 0.01 && way.cross(*rest).length() < 1e-6, "{rest} {at}");
     }
 }
 
@@ -77,11 +77,11 @@ fn a_corner_moves_along_the_mean_of_its_normals() {
 #[test]
 fn odd_meshes_have_points() {
     let none = Points::new(&[], &[], &[]);
-    assert!(none.home.is_empty());
+    assert!(none.rest.is_empty());
     let mut moving = MovingPoints::new(&none, Motion::Free, 0.1);
     moving.step(&[], &[], 1.0, 1.0);
     assert_eq!(moving.moved(), [0.0, 0.0]);
     // The two sides of a sheet: the first vertex's normal has to do.
     let sheet = Points::new(&[Vec3::ONE; 2], &[Vec3::Z, -Vec3::Z], &[]);
-    assert_eq!((sheet.home.len(), sheet.normals[0]), (1, Vec3::Z));
+    assert_eq!((sheet.rest.len(), sheet.normals[0]), (1, Vec3::Z));
 }

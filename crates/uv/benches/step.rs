@@ -26,7 +26,7 @@ fn main() {
 }
 
 /// Stripes that get finer from left to right, as samples of every triangle.
-fn showing(layout: &Layout, samples: usize) -> Signal {
+fn signal_scale(layout: &Layout, samples: usize) -> Signal {
     let each = samples / layout.triangles.len();
     let all: Vec<(u32, Sample)> = (0..layout.triangles.len())
         .flat_map(|t| (0..each).map(move |i| (t, i)))
@@ -55,15 +55,16 @@ fn prepared() -> (Layout, Vec<Signal>, ContactOptions) {
             DMat2::from_cols(b - a, c - a)
         })
         .collect();
-    let showings = vec![showing(&layout, SAMPLES), showing(&layout, SAMPLES / 4)];
+    let signal_scales = vec![signal_scale(&layout, SAMPLES), signal_scale(&layout, SAMPLES / 4)];
     let contact = ContactOptions { texture_size: 1024, ..ContactOptions::default() };
-    (layout, showings, contact)
+    (layout, signal_scales, contact)
 }
 
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn ten_steps_of_the_start(bencher: Bencher) {
-    let (layout, showings, contact) = prepared();
-    let problem = Problem { rest: &layout.rest, showings: &showings, texture_size: 1024, contact: &contact };
+    let (layout, signal_scales, contact) = prepared();
+    let problem =
+        Problem { rest: &layout.rest, signal_scales: &signal_scales, texture_size: 1024, contact: &contact };
     let tensors = tensors(&problem, &layout);
     let options = UvOptions { shape_steps: STEPS, ..UvOptions::default() };
     bencher.bench_local(|| {
@@ -80,8 +81,9 @@ fn ten_steps_of_the_start(bencher: Bencher) {
 
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn ten_steps_of_variable_projection(bencher: Bencher) {
-    let (layout, showings, contact) = prepared();
-    let problem = Problem { rest: &layout.rest, showings: &showings, texture_size: 1024, contact: &contact };
+    let (layout, signal_scales, contact) = prepared();
+    let problem =
+        Problem { rest: &layout.rest, signal_scales: &signal_scales, texture_size: 1024, contact: &contact };
     let (balance, texture) = Balance::new(&problem, &layout);
     let options = UvOptions { refine_steps: STEPS, tolerance: 0.0, ..UvOptions::default() };
     bencher.bench_local(|| {

@@ -17,7 +17,6 @@
 //! mode, moves, convergence            what is asked for, and what became of it
 //! ```
 
-pub mod best_texture;
 pub mod contact;
 pub mod convergence;
 pub mod curvature;
@@ -28,6 +27,7 @@ pub mod gauss_seidel;
 pub mod inversion;
 pub mod laplacian;
 pub mod lbfgs;
+pub mod least_squares_texture;
 pub mod metric;
 pub mod mode;
 pub mod moves;
@@ -41,9 +41,9 @@ pub mod pyramid;
 pub mod region;
 pub mod residual;
 pub(crate) mod rounding;
-pub mod runs;
-pub mod shown;
 pub mod signal;
 pub mod stiffness;
 pub mod surface;
+pub mod triangle_batches;
+pub mod trilinear_error;
 pub mod variable_projection;

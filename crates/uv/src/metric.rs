@@ -6,9 +6,9 @@
 //! texture coordinates: a linear map J from rest shape to texture turns the derivative in
 //! the texture, g, into `Jᵀ g` on the triangle.
 
-use crate::best_texture::Mapped;
 use crate::distortion::{Distortion, Element, has_area, total_area};
 use crate::footprint::Footprint;
+use crate::least_squares_texture::ParameterizedSignal;
 use glam::Vec4;
 use glam::{DMat2, dvec2};
 use parbake_image::FloatImage;
@@ -16,9 +16,13 @@ use rayon::prelude::*;
 
 /// Structure tensors of the F triangles, each times what a sample of it counts relative to the mean;
 /// zero where a triangle has no samples or area.
-pub fn structure_tensors(mapped: &Mapped, texture: &FloatImage<Vec4>, rest: &[DMat2]) -> Vec<DMat2> {
+pub fn structure_tensors(
+    mapped: &ParameterizedSignal,
+    texture: &FloatImage<Vec4>,
+    rest: &[DMat2],
+) -> Vec<DMat2> {
     let total = total_area(rest);
-    let Some(signal) = mapped.showings.first() else { return vec![DMat2::ZERO; rest.len()] };
+    let Some(signal) = mapped.signal_scales.first() else { return vec![DMat2::ZERO; rest.len()] };
     let all = signal.samples.len() as f64 / signal.weight().max(f64::MIN_POSITIVE);
     (0..mapped.triangles.len())
         .into_par_iter()
@@ -36,11 +40,11 @@ pub fn structure_tensors(mapped: &Mapped, texture: &FloatImage<Vec4>, rest: &[DM
         .collect()
 }
 
-fn tensor_in_texture(mapped: &Mapped, texture: &FloatImage<Vec4>, t: usize) -> DMat2 {
+fn tensor_in_texture(mapped: &ParameterizedSignal, texture: &FloatImage<Vec4>, t: usize) -> DMat2 {
     let size = texture.width;
     let place = Footprint::new(mapped.points, mapped.triangles[t]).on(size);
     let mut sum = DMat2::ZERO;
-    let samples = mapped.showings[0].of(t);
+    let samples = mapped.signal_scales[0].of(t);
     for sample in samples {
         let ([x, y], [fx, fy], _) = place.place(sample);
         let texel = |i: usize, j: usize| texture.texels[(y + j) * size + x + i];
@@ -58,11 +62,11 @@ fn tensor_in_texture(mapped: &Mapped, texture: &FloatImage<Vec4>, t: usize) -> D
 
 /// How steep the texture is where the first showing's samples fall: `Σₛ ωₛ Σ_channels |∇T|²`, Gauss and
 /// Newton's half of the error's second derivative for a common motion, with the texture held.
-pub fn steepness(mapped: &Mapped, texture: &FloatImage<Vec4>) -> f64 {
+pub fn steepness(mapped: &ParameterizedSignal, texture: &FloatImage<Vec4>) -> f64 {
     let by_triangle: Vec<f64> = (0..mapped.triangles.len())
         .into_par_iter()
         .map(|t| {
-            let samples = mapped.showings.first().map_or(&[][..], |signal| signal.of(t));
+            let samples = mapped.signal_scales.first().map_or(&[][..], |signal| signal.of(t));
             if samples.is_empty() {
                 return 0.0;
             }

@@ -1,5 +1,5 @@
 //! The normal equations `A x = b` of the best texture for given texture coordinates
-//! (`best_texture.rs` has the problem): `A = Σ_l Dˡᵀ Aˡ Dˡ` is kept as one nine-point matrix a mip
+//! (`least_squares_texture.rs` has the problem): `A = Σ_l Dˡᵀ Aˡ Dˡ` is kept as one nine-point matrix a mip
 //! level and is never multiplied out.
 //!
 //! Contract: all channels share the matrix; sums are made run by run in order, so that they do not
@@ -7,7 +7,7 @@
 
 use crate::footprint::{Footprint, OnLevel, shares};
 use crate::normal_matrix::{NormalMatrix, Patch};
-use crate::parameterized::Mapped;
+use crate::parameterized::ParameterizedSignal;
 use crate::pyramid::{gather, halve, level_count};
 use glam::{DVec2, Vec4};
 use rayon::prelude::*;
@@ -26,7 +26,7 @@ pub(crate) struct NormalEquations {
 
 impl NormalEquations {
     /// The sums over all samples of all showings.
-    pub fn assemble(mapped: &Mapped, size: usize, smoothness: f32) -> Self {
+    pub fn assemble(mapped: &ParameterizedSignal, size: usize, smoothness: f32) -> Self {
         let count = level_count(size);
         let runs: Vec<Vec<Patch>> =
             (0..mapped.runs.count()).into_par_iter().map(|run| patches(mapped, run, size, count)).collect();
@@ -98,13 +98,13 @@ pub(crate) struct Room {
 }
 
 /// What a run of triangles adds to the matrices of the `count` levels.
-fn patches(mapped: &Mapped, run: usize, size: usize, count: usize) -> Vec<Patch> {
+fn patches(mapped: &ParameterizedSignal, run: usize, size: usize, count: usize) -> Vec<Patch> {
     let corners = mapped.runs.own_points(run).points.iter().map(|&i| mapped.points[i as usize]);
     let [low, high] = corners.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[l, h], p| [l.min(p), h.max(p)]);
     let mut patches = vec![Patch::default(); count];
     for t in mapped.runs.triangles(run) {
         let footprint = Footprint::new(mapped.points, mapped.triangles[t]);
-        for signal in mapped.showings {
+        for signal in mapped.signal_scales {
             let samples = signal.of(t);
             if samples.is_empty() {
                 continue;

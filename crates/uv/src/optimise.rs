@@ -9,18 +9,18 @@
 //!
 //! Contract: from a sound layout to a sound layout (`region.rs`); deterministic.
 
-use crate::best_texture::{Mapped, Solve, best_texture};
 use crate::contact::ContactOptions;
 use crate::curvature::Curvature;
 use crate::descent::{Descent, DescentOptions, Objective, Reach, Region, descend};
 use crate::distortion::{Distortion, total_area};
 use crate::laplacian::Laplacian;
+use crate::least_squares_texture::{ParameterizedSignal, Solve, least_squares_texture};
 use crate::metric::{signal_specialised, structure_tensors};
 use crate::region::Feasible;
 use crate::residual::residual;
-use crate::runs::Runs;
 use crate::signal::Signal;
 use crate::stiffness::Stiffness;
+use crate::triangle_batches::TriangleBatches;
 use crate::variable_projection::{Best, VariableProjection};
 use glam::{DMat2, DVec2, Vec4};
 use parbake_atlas::Layout;
@@ -32,7 +32,7 @@ pub struct Problem<'a> {
     /// F rest shapes: what a triangle's distortion is measured against.
     pub rest: &'a [DMat2],
     /// The surface's signal at full size, then minified; samples lie on the same triangles.
-    pub showings: &'a [Signal],
+    pub signal_scales: &'a [Signal],
     /// Texels along a side.
     pub texture_size: usize,
     /// How near charts may come.
@@ -126,30 +126,31 @@ const FIRST_WEIGHT: f64 = 0.1;
 impl Balance {
     /// Baselines of a start's layout; also returns its best texture.
     pub fn new(problem: &Problem, layout: &Layout) -> (Self, FloatImage<Vec4>) {
-        let runs = Runs::new(&layout.points, &layout.triangles, &problem.showings[0]);
-        let whole = Mapped {
+        let runs = TriangleBatches::new(&layout.points, &layout.triangles, &problem.signal_scales[0]);
+        let whole = ParameterizedSignal {
             points: &layout.points,
             triangles: &layout.triangles,
-            showings: problem.showings,
+            signal_scales: problem.signal_scales,
             runs: &runs,
         };
-        let first = Mapped { showings: &problem.showings[..1], ..whole };
+        let first = ParameterizedSignal { signal_scales: &problem.signal_scales[..1], ..whole };
         let start = FloatImage::solid(problem.texture_size, Vec4::splat(0.5));
-        let texture = best_texture(&first, start, &Solve { steps: 60, tolerance: 1e-4, ..Solve::ROUGH });
+        let texture =
+            least_squares_texture(&first, start, &Solve { steps: 60, tolerance: 1e-4, ..Solve::ROUGH });
         let mut unused = vec![DVec2::ZERO; layout.points.len()];
         let left = residual(&whole, &texture, &mut unused);
         // A picture that fits perfectly leaves nothing to gain; 8 bits leave more than this.
         let least: f64 = 1e-7;
         let baseline: Vec<f64> =
-            left.iter().zip(problem.showings).map(|(r, s)| r.max(least * s.weight())).collect();
+            left.iter().zip(problem.signal_scales).map(|(r, s)| r.max(least * s.weight())).collect();
         let mut weights = vec![FIRST_WEIGHT; baseline.len()];
         weights[0] = 1.0;
         (Self { baseline, weights }, texture)
     }
 
     /// Showings whose samples count as this balance says.
-    pub fn weighted(&self, showings: &[Signal]) -> Vec<Signal> {
-        let mut weighted = showings.to_vec();
+    pub fn weighted(&self, signal_scales: &[Signal]) -> Vec<Signal> {
+        let mut weighted = signal_scales.to_vec();
         for ((signal, weight), baseline) in weighted.iter_mut().zip(&self.weights).zip(&self.baseline) {
             let factor = (weight / baseline) as f32;
             signal.samples.iter_mut().for_each(|s| s.weight *= factor);
@@ -195,13 +196,17 @@ fn tensor_texture_size(signal: &Signal, texture_size: usize) -> usize {
 
 /// How fast the first showing changes on each triangle of a layout.
 pub fn tensors(problem: &Problem, layout: &Layout) -> Vec<DMat2> {
-    let signal = &problem.showings[..1];
+    let signal = &problem.signal_scales[..1];
     let size = tensor_texture_size(&signal[0], problem.texture_size);
-    let runs = Runs::new(&layout.points, &layout.triangles, &signal[0]);
-    let mapped =
-        Mapped { points: &layout.points, triangles: &layout.triangles, showings: signal, runs: &runs };
+    let runs = TriangleBatches::new(&layout.points, &layout.triangles, &signal[0]);
+    let mapped = ParameterizedSignal {
+        points: &layout.points,
+        triangles: &layout.triangles,
+        signal_scales: signal,
+        runs: &runs,
+    };
     let start = FloatImage::solid(size, Vec4::splat(0.5));
-    let texture = best_texture(&mapped, start, &Solve { smoothness: 1e-3, ..Solve::ROUGH });
+    let texture = least_squares_texture(&mapped, start, &Solve { smoothness: 1e-3, ..Solve::ROUGH });
     structure_tensors(&mapped, &texture, problem.rest)
 }
 
@@ -259,10 +264,15 @@ pub fn refine(
     // No distortion is a copy of the rest shapes at the layout's mean scale.
     let scale = (total_area(problem.rest) / layout_area(layout)).sqrt();
     let distortion = Distortion::symmetric_dirichlet(problem.rest, scale, |_| 1.0);
-    let showings = balance.weighted(problem.showings);
+    let signal_scales = balance.weighted(problem.signal_scales);
     let start = layout.points.clone();
-    let runs = Runs::new(&start, &layout.triangles, &showings[0]);
-    let mapped = Mapped { points: &start, triangles: &layout.triangles, showings: &showings, runs: &runs };
+    let runs = TriangleBatches::new(&start, &layout.triangles, &signal_scales[0]);
+    let mapped = ParameterizedSignal {
+        points: &start,
+        triangles: &layout.triangles,
+        signal_scales: &signal_scales,
+        runs: &runs,
+    };
     let mut objective = VariableProjection {
         mapped,
         texture,
@@ -296,7 +306,7 @@ pub fn refine(
         }
     };
     let texture = objective.texture;
-    let mapped = Mapped { points, ..mapped };
+    let mapped = ParameterizedSignal { points, ..mapped };
     let mut unused = vec![DVec2::ZERO; points.len()];
     let left = residual(&mapped, &texture, &mut unused);
     let relative = left.iter().zip(&balance.weights).map(|(r, weight)| r / weight).collect();

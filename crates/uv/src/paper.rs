@@ -20,10 +20,10 @@
 mod energy;
 pub mod texture_loss;
 
-use crate::best_texture::Mapped;
 use crate::contact::Contact;
 use crate::descent::{Place, Reach, Region, Step};
 use crate::lbfgs::{Identity, Lbfgs};
+use crate::least_squares_texture::ParameterizedSignal;
 use crate::signal::{Pixels, Signal};
 use parbake_image::FloatImage;
 use parbake_solve::adam::{Adam, AdamOptions};
@@ -154,22 +154,22 @@ pub struct PaperResult {
 }
 
 /// Runs Algorithm 1 from `mapped.points` for a texture of `size`² texels (at least 2²),
-/// shown without mip levels: of `mapped.showings` the first one counts. `rest` are the F rest
+/// shown without mip levels: of `mapped.signal_scales` the first one counts. `rest` are the F rest
 /// shapes. `watch` sees every round and may end the alternation by returning false.
 pub fn paper_method(
-    mapped: &Mapped,
+    mapped: &ParameterizedSignal,
     rest: &[DMat2],
     size: usize,
     region: &impl Region,
     contact: Option<&Contact>,
     options: &PaperOptions,
-    mut watch: impl FnMut(&PaperProgress) -> bool,
+    mut watcher: impl FnMut(&PaperProgress) -> bool,
 ) -> PaperResult {
-    let signal = match mapped.showings.first() {
+    let signal = match mapped.signal_scales.first() {
         Some(signal) => Signal { pixels: Pixels::Sizeless, ..signal.clone() },
         None => Signal::new(mapped.triangles.len(), &[]),
     };
-    let mapped = Mapped { showings: std::slice::from_ref(&signal), ..*mapped };
+    let mapped = ParameterizedSignal { signal_scales: std::slice::from_ref(&signal), ..*mapped };
     let size = size.max(2);
     let problem = Problem::new(mapped, &signal, rest, contact, size, options);
     let mut texture = FloatImage::solid(size, Vec4::splat(0.5));
@@ -207,15 +207,15 @@ pub fn paper_method(
         let step = place.step(&mut memory, &mut energy, region, &Identity, &reach);
         rounds += 1;
         let still = step != Step::Forgot && longest(&from, &place.points) < options.threshold;
-        stopped = !watch(&PaperProgress { round: rounds, error, points: &place.points });
+        stopped = !watcher(&PaperProgress { round: rounds, error, points: &place.points });
         if stopped || (still && changed < options.threshold) {
             break;
         }
     }
 
     let mut points = place.points;
-    if let Some((_, best_points, best_texture)) = best {
-        (points, texture) = (best_points, best_texture);
+    if let Some((_, best_points, least_squares_texture)) = best {
+        (points, texture) = (best_points, least_squares_texture);
     }
     let mut painter = Painter::new(&texture, options);
     painter.steps(
@@ -264,12 +264,12 @@ impl Painter {
         loss: &TextureLoss,
         steps: usize,
         rate: Rate,
-        mut watch: impl FnMut(usize, &FloatImage<Vec4>),
+        mut watcher: impl FnMut(usize, &FloatImage<Vec4>),
     ) -> f64 {
         let start = texture.texels.clone();
         let mut before = Vec::new();
         for step in 0..steps {
-            watch(step, texture);
+            watcher(step, texture);
             let mut share = 1.0;
             if rate == Rate::Falling {
                 let angle = std::f32::consts::PI * step as f32 / steps as f32;

@@ -2,13 +2,13 @@
 //! coordinates.
 //!
 //! Forward: `R = Σ ωₛ ((1 − f) |rˡ|² + f |rˡ⁺¹|²)`, r the difference of a fetch and its target
-//! on two mip levels (`best_texture.rs`). Adjoint for a triangle's points: through the place
+//! on two mip levels (`least_squares_texture.rs`). Adjoint for a triangle's points: through the place
 //! of each sample, `2 ωₛ r · ∂T/∂uv` on either level, and through the level itself,
 //! `Σ ωₛ (|rˡ⁺¹|² − |rˡ|²) · ∂λ/∂uv`. At the best texture this is the whole derivative
 //! (variable projection).
 
-use crate::best_texture::Mapped;
 use crate::footprint::{Footprint, OnLevel, shares};
+use crate::least_squares_texture::ParameterizedSignal;
 use crate::pyramid::{level_count, levels};
 use crate::signal::Sample;
 use glam::{DVec2, Vec2, Vec4};
@@ -17,7 +17,11 @@ use rayon::prelude::*;
 
 /// The residual of each showing, and the derivative of their sum, which is added to
 /// `gradient`.
-pub fn residual(mapped: &Mapped, texture: &FloatImage<Vec4>, gradient: &mut [DVec2]) -> Vec<f64> {
+pub fn residual(
+    mapped: &ParameterizedSignal,
+    texture: &FloatImage<Vec4>,
+    gradient: &mut [DVec2],
+) -> Vec<f64> {
     let pyramid = levels(&texture.texels, texture.width, level_count(texture.width));
     // For each run the derivatives for its points, and the errors of each showing.
     let parts: Vec<(Vec<DVec2>, Vec<f64>)> = (0..mapped.runs.count())
@@ -25,7 +29,7 @@ pub fn residual(mapped: &Mapped, texture: &FloatImage<Vec4>, gradient: &mut [DVe
         .map(|run| {
             let own = mapped.runs.own_points(run);
             let mut slopes = vec![DVec2::ZERO; own.points.len()];
-            let mut errors = vec![0.0; mapped.showings.len()];
+            let mut errors = vec![0.0; mapped.signal_scales.len()];
             for (t, corners) in mapped.runs.triangles(run).zip(&own.corners) {
                 let found = triangle(mapped, &pyramid, texture.width, t, &mut errors);
                 for (corner, slope) in corners.iter().zip(found) {
@@ -35,7 +39,7 @@ pub fn residual(mapped: &Mapped, texture: &FloatImage<Vec4>, gradient: &mut [DVe
             (slopes, errors)
         })
         .collect();
-    let mut residuals = vec![0.0; mapped.showings.len()];
+    let mut residuals = vec![0.0; mapped.signal_scales.len()];
     for (run, (slopes, errors)) in parts.iter().enumerate() {
         residuals.iter_mut().zip(errors).for_each(|(sum, error)| *sum += error);
         for (point, slope) in mapped.runs.own_points(run).points.iter().zip(slopes) {
@@ -46,22 +50,28 @@ pub fn residual(mapped: &Mapped, texture: &FloatImage<Vec4>, gradient: &mut [DVe
 }
 
 /// The residual of all showings by triangle (F).
-pub fn residual_by_triangle(mapped: &Mapped, texture: &FloatImage<Vec4>) -> Vec<f64> {
+pub fn residual_by_triangle(mapped: &ParameterizedSignal, texture: &FloatImage<Vec4>) -> Vec<f64> {
     let pyramid = levels(&texture.texels, texture.width, level_count(texture.width));
     let of = |errors: &mut Vec<f64>, t: usize| {
         errors.fill(0.0);
         triangle(mapped, &pyramid, texture.width, t, errors);
         errors.iter().sum()
     };
-    let room = || vec![0.0; mapped.showings.len()];
+    let room = || vec![0.0; mapped.signal_scales.len()];
     (0..mapped.triangles.len()).into_par_iter().map_init(room, of).collect()
 }
 
 /// Adds one triangle's share to each showing's error; gives its derivatives for the three corners.
-fn triangle(mapped: &Mapped, pyramid: &[Vec<Vec4>], size: usize, t: usize, errors: &mut [f64]) -> [DVec2; 3] {
+fn triangle(
+    mapped: &ParameterizedSignal,
+    pyramid: &[Vec<Vec4>],
+    size: usize,
+    t: usize,
+    errors: &mut [f64],
+) -> [DVec2; 3] {
     let footprint = Footprint::new(mapped.points, mapped.triangles[t]);
     let (mut whole, mut second, mut third) = (DVec2::ZERO, DVec2::ZERO, DVec2::ZERO);
-    for (signal, sum) in mapped.showings.iter().zip(errors) {
+    for (signal, sum) in mapped.signal_scales.iter().zip(errors) {
         let samples = signal.of(t);
         if samples.is_empty() {
             continue;

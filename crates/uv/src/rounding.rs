@@ -98,10 +98,12 @@ impl<'a> Rounding<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::best_texture::{Mapped, Solve, best_texture_in_box, best_texture_in_bytes};
-    use crate::runs::Runs;
-    use crate::shown::shown_errors;
+    use crate::least_squares_texture::{
+        ParameterizedSignal, Solve, least_squares_texture_in_box, least_squares_texture_in_bytes,
+    };
     use crate::signal::{Pixels, Sample, Signal};
+    use crate::triangle_batches::TriangleBatches;
+    use crate::trilinear_error::trilinear_errors;
     use glam::{DMat2, dvec2};
 
     /// The square as two triangles, of a dark pattern, seen with pixels a few texels wide too.
@@ -130,17 +132,24 @@ mod tests {
     /// at all mip levels, and is made of bytes.
     #[test]
     fn texels_rounded_together_leave_less() {
-        let (points, triangles, showings) = dark_square();
-        let runs = Runs::new(&points, &triangles, &showings[0]);
-        let mapped = Mapped { points: &points, triangles: &triangles, showings: &showings, runs: &runs };
+        let (points, triangles, signal_scales) = dark_square();
+        let runs = TriangleBatches::new(&points, &triangles, &signal_scales[0]);
+        let mapped = ParameterizedSignal {
+            points: &points,
+            triangles: &triangles,
+            signal_scales: &signal_scales,
+            runs: &runs,
+        };
         let start = || FloatImage::solid(32, Vec4::splat(0.5));
-        let mut apart = best_texture_in_box(&mapped, start(), &Solve::FINAL);
+        let mut apart = least_squares_texture_in_box(&mapped, start(), &Solve::FINAL);
         apart.texels.iter_mut().for_each(|t| *t = (*t * WHITE).round() / WHITE);
-        let together = best_texture_in_bytes(&mapped, start(), &Solve::FINAL);
+        let together = least_squares_texture_in_bytes(&mapped, start(), &Solve::FINAL);
         assert!(together.texels.iter().all(|t| {
             t.cmpge(Vec4::ZERO).all() && t.cmple(Vec4::ONE).all() && (*t * WHITE).round() / WHITE == *t
         }));
-        for (together, apart) in shown_errors(&mapped, &together).iter().zip(shown_errors(&mapped, &apart)) {
+        for (together, apart) in
+            trilinear_errors(&mapped, &together).iter().zip(trilinear_errors(&mapped, &apart))
+        {
             assert!(*together < 0.9 * apart, "{together} of {apart}");
         }
     }
@@ -148,9 +157,14 @@ mod tests {
     /// Protects what is kept up to date while texels change: it is the product with the texture.
     #[test]
     fn products_follow_the_texels() {
-        let (points, triangles, showings) = dark_square();
-        let runs = Runs::new(&points, &triangles, &showings[0]);
-        let mapped = Mapped { points: &points, triangles: &triangles, showings: &showings, runs: &runs };
+        let (points, triangles, signal_scales) = dark_square();
+        let runs = TriangleBatches::new(&points, &triangles, &signal_scales[0]);
+        let mapped = ParameterizedSignal {
+            points: &points,
+            triangles: &triangles,
+            signal_scales: &signal_scales,
+            runs: &runs,
+        };
         let equations = NormalEquations::assemble(&mapped, 32, 1e-6);
         assert!(equations.levels.len() > 1);
         let mut rounding = Rounding::new(&equations, FloatImage::solid(32, Vec4::splat(0.0123)));

@@ -14,9 +14,9 @@
 //! Applied by a sweep of Gauss-Seidel (`gauss_seidel.rs`), made anew for each step: pictures at 128²
 //! on 200 cells gain 0.4 to 1.0 dB over the Laplacian alone, on 400 cells 1.6 to 2.4 dB.
 
-use crate::best_texture::Mapped;
 use crate::distortion::Distortion;
 use crate::gauss_seidel::{GaussSeidel, Pattern};
+use crate::least_squares_texture::ParameterizedSignal;
 use crate::metric::steepness;
 use glam::Vec4;
 use glam::{DMat2, DVec2};
@@ -46,7 +46,7 @@ impl<'a> Stiffness<'a> {
     /// For an objective `scale · R + distortion_weight · D` whose error R the layout `mapped` leaves
     /// with `texture`.
     pub fn new(
-        mapped: &Mapped<'a>,
+        mapped: &ParameterizedSignal<'a>,
         texture: &FloatImage<Vec4>,
         scale: f64,
         (distortion, distortion_weight): (&'a Distortion, f64),

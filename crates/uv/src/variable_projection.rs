@@ -14,10 +14,10 @@
 //! start, since with the texture of a step that went too far a shorter one would look bad too;
 //! its error tells what next to nothing is. It decides how long a solve takes, not what it finds.
 
-use crate::best_texture::{Mapped, Solve, best_texture};
 use crate::contact::Contact;
 use crate::descent::Objective;
 use crate::distortion::Distortion;
+use crate::least_squares_texture::{ParameterizedSignal, Solve, least_squares_texture};
 use crate::residual::residual;
 use glam::DVec2;
 use glam::Vec4;
@@ -26,7 +26,7 @@ use parbake_image::FloatImage;
 /// The objective.
 pub struct VariableProjection<'a> {
     /// What is mapped; its points are those of the start.
-    pub mapped: Mapped<'a>,
+    pub mapped: ParameterizedSignal<'a>,
     /// The best place's texture.
     pub texture: FloatImage<Vec4>,
     /// Holds triangles open.
@@ -67,10 +67,10 @@ const SETTLED: f64 = 3e-4;
 impl Objective for VariableProjection<'_> {
     fn evaluate(&mut self, points: &[DVec2], gradient: &mut [DVec2]) -> f64 {
         gradient.fill(DVec2::ZERO);
-        let mapped = Mapped { points, ..self.mapped };
+        let mapped = ParameterizedSignal { points, ..self.mapped };
         let known = if self.best.error.is_finite() { self.best.error } else { 0.0 };
         let solve = Solve { least_gain: SETTLED * known, ..self.solve };
-        let texture = best_texture(&mapped, self.texture.clone(), &solve);
+        let texture = least_squares_texture(&mapped, self.texture.clone(), &solve);
         let left = residual(&mapped, &texture, gradient);
         let error = left.iter().sum::<f64>();
         for g in gradient.iter_mut() {

@@ -10,14 +10,14 @@ use common::{Random, quarters, signal};
 use glam::{DMat2, DVec2, Vec4, dvec2, vec4};
 use parbake_atlas::Layout;
 use parbake_image::FloatImage;
-use parbake_uv::best_texture::{Mapped, Solve, best_texture};
 use parbake_uv::contact::{Contact, ContactOptions};
 use parbake_uv::descent::Objective;
 use parbake_uv::distortion::Distortion;
+use parbake_uv::least_squares_texture::{ParameterizedSignal, Solve, least_squares_texture};
 use parbake_uv::metric::{signal_specialised, structure_tensors};
 use parbake_uv::residual::residual;
-use parbake_uv::runs::Runs;
 use parbake_uv::signal::{Pixels, Signal};
+use parbake_uv::triangle_batches::TriangleBatches;
 use parbake_uv::variable_projection::{Best, VariableProjection};
 
 const SIZE: usize = 16;
@@ -65,7 +65,7 @@ fn compare(points: &[DVec2], gradient: &[DVec2], tolerance: f64, mut value: impl
     }
 }
 
-fn sum(mapped: &Mapped, texture: &FloatImage<Vec4>) -> f64 {
+fn sum(mapped: &ParameterizedSignal, texture: &FloatImage<Vec4>) -> f64 {
     let mut unused = vec![DVec2::ZERO; mapped.points.len()];
     residual(mapped, texture, &mut unused).iter().sum()
 }
@@ -73,18 +73,24 @@ fn sum(mapped: &Mapped, texture: &FloatImage<Vec4>) -> f64 {
 /// Protects the explicit derivative for a given texture, by place and by mip level.
 #[test]
 fn residual_for_a_fixed_texture() {
-    let (layout, showings) = scene();
-    let runs = Runs::new(&layout.points, &layout.triangles, &showings[0]);
-    let mapped =
-        Mapped { points: &layout.points, triangles: &layout.triangles, showings: &showings, runs: &runs };
+    let (layout, signal_scales) = scene();
+    let runs = TriangleBatches::new(&layout.points, &layout.triangles, &signal_scales[0]);
+    let mapped = ParameterizedSignal {
+        points: &layout.points,
+        triangles: &layout.triangles,
+        signal_scales: &signal_scales,
+        runs: &runs,
+    };
     let mut random = Random(3);
     let mut texture = FloatImage::solid(SIZE, Vec4::ZERO);
     texture.texels.fill_with(|| (Vec4::splat(random.next() as f32) + random.next() as f32) * 0.5);
-    for only in [&showings[..1], &showings[1..], &showings[..]] {
-        let mapped = Mapped { showings: only, ..mapped };
+    for only in [&signal_scales[..1], &signal_scales[1..], &signal_scales[..]] {
+        let mapped = ParameterizedSignal { signal_scales: only, ..mapped };
         let mut gradient = vec![DVec2::ZERO; layout.points.len()];
         residual(&mapped, &texture, &mut gradient);
-        compare(&layout.points, &gradient, 0.02, |points| sum(&Mapped { points, ..mapped }, &texture));
+        compare(&layout.points, &gradient, 0.02, |points| {
+            sum(&ParameterizedSignal { points, ..mapped }, &texture)
+        });
     }
 }
 
@@ -92,16 +98,20 @@ fn residual_for_a_fixed_texture() {
 /// one, mip levels included.
 #[test]
 fn residual_of_the_best_texture() {
-    let (layout, showings) = scene();
-    let runs = Runs::new(&layout.points, &layout.triangles, &showings[0]);
-    let mapped =
-        Mapped { points: &layout.points, triangles: &layout.triangles, showings: &showings, runs: &runs };
-    let texture = best_texture(&mapped, FloatImage::solid(SIZE, Vec4::splat(0.5)), &EXACT);
+    let (layout, signal_scales) = scene();
+    let runs = TriangleBatches::new(&layout.points, &layout.triangles, &signal_scales[0]);
+    let mapped = ParameterizedSignal {
+        points: &layout.points,
+        triangles: &layout.triangles,
+        signal_scales: &signal_scales,
+        runs: &runs,
+    };
+    let texture = least_squares_texture(&mapped, FloatImage::solid(SIZE, Vec4::splat(0.5)), &EXACT);
     let mut gradient = vec![DVec2::ZERO; layout.points.len()];
     residual(&mapped, &texture, &mut gradient);
     compare(&layout.points, &gradient, 0.03, |points| {
-        let mapped = Mapped { points, ..mapped };
-        sum(&mapped, &best_texture(&mapped, texture.clone(), &EXACT))
+        let mapped = ParameterizedSignal { points, ..mapped };
+        sum(&mapped, &least_squares_texture(&mapped, texture.clone(), &EXACT))
     });
 }
 
@@ -109,11 +119,15 @@ fn residual_of_the_best_texture() {
 /// near enough to repel each other. Each of the latter two is also looked at alone.
 #[test]
 fn the_whole_objective() {
-    let (layout, showings) = scene();
-    let runs = Runs::new(&layout.points, &layout.triangles, &showings[0]);
-    let mapped =
-        Mapped { points: &layout.points, triangles: &layout.triangles, showings: &showings, runs: &runs };
-    let start = best_texture(&mapped, FloatImage::solid(SIZE, Vec4::splat(0.5)), &EXACT);
+    let (layout, signal_scales) = scene();
+    let runs = TriangleBatches::new(&layout.points, &layout.triangles, &signal_scales[0]);
+    let mapped = ParameterizedSignal {
+        points: &layout.points,
+        triangles: &layout.triangles,
+        signal_scales: &signal_scales,
+        runs: &runs,
+    };
+    let start = least_squares_texture(&mapped, FloatImage::solid(SIZE, Vec4::splat(0.5)), &EXACT);
     let distortion =
         signal_specialised(&structure_tensors(&mapped, &start, &layout.rest), &layout.rest, 1e-3);
     let options =
@@ -145,10 +159,14 @@ fn the_whole_objective() {
 /// gradient still looks better than the place it starts from, though textures are not exact.
 #[test]
 fn a_short_step_looks_better_after_a_bad_one() {
-    let (layout, showings) = scene();
-    let runs = Runs::new(&layout.points, &layout.triangles, &showings[0]);
-    let mapped =
-        Mapped { points: &layout.points, triangles: &layout.triangles, showings: &showings, runs: &runs };
+    let (layout, signal_scales) = scene();
+    let runs = TriangleBatches::new(&layout.points, &layout.triangles, &signal_scales[0]);
+    let mapped = ParameterizedSignal {
+        points: &layout.points,
+        triangles: &layout.triangles,
+        signal_scales: &signal_scales,
+        runs: &runs,
+    };
     let distortion = Distortion::symmetric_dirichlet(&layout.rest, 1.0, |_| 1.0);
     let mut objective = VariableProjection {
         mapped,

@@ -13,8 +13,8 @@ const SIZE: usize = 32;
 
 /// Moves a layout; `see` gets every layout on the way.
 fn moved(start: &Layout, contact: &ContactOptions, mut see: impl FnMut(&[DVec2])) -> (Layout, Refined) {
-    let showings = [signal(start, 12, checkered_corner)];
-    let problem = Problem { rest: &start.rest, showings: &showings, texture_size: SIZE, contact };
+    let signal_scales = [signal(start, 12, checkered_corner)];
+    let problem = Problem { rest: &start.rest, signal_scales: &signal_scales, texture_size: SIZE, contact };
     let options = UvOptions { shape_steps: 12, refine_steps: 12, ..UvOptions::default() };
     let (balance, texture) = Balance::new(&problem, start);
     let mut layout = start.clone();
@@ -92,8 +92,9 @@ fn charts_grow_into_what_is_free() {
     // Smaller, and not in the middle.
     start.points.iter_mut().for_each(|p| *p = (*p * 0.7 + 0.02).as_vec2().as_dvec2());
     assert_sound(&start, SIZE, contact.gutter_texels);
-    let showings = [signal(&start, 12, checkered_corner)];
-    let problem = Problem { rest: &start.rest, showings: &showings, texture_size: SIZE, contact: &contact };
+    let signal_scales = [signal(&start, 12, checkered_corner)];
+    let problem =
+        Problem { rest: &start.rest, signal_scales: &signal_scales, texture_size: SIZE, contact: &contact };
     let found = tensors(&problem, &start);
     let mut layout = start.clone();
     shape(&problem, &mut layout, &found, &UvOptions::default(), |_, _| true);

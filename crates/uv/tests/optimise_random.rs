@@ -7,15 +7,15 @@ use common::{Random, assert_sound, quarters, signal};
 use glam::{DVec2, Vec4};
 use parbake_atlas::Layout;
 use parbake_image::FloatImage;
-use parbake_uv::best_texture::{Mapped, Solve};
 use parbake_uv::contact::{Border, ContactOptions};
 use parbake_uv::descent::{DescentOptions, Reach, descend};
 use parbake_uv::distortion::Distortion;
 use parbake_uv::laplacian::Laplacian;
+use parbake_uv::least_squares_texture::{ParameterizedSignal, Solve};
 use parbake_uv::optimise::{Balance, Problem, RefineBy, UvOptions, refine, shape, tensors};
 use parbake_uv::region::Feasible;
-use parbake_uv::runs::Runs;
 use parbake_uv::signal::Signal;
+use parbake_uv::triangle_batches::TriangleBatches;
 use parbake_uv::variable_projection::{Best, VariableProjection};
 use proptest::prelude::*;
 
@@ -82,9 +82,9 @@ proptest! {
     /// Protects the default way under settings that nobody should choose.
     #[test]
     fn the_default_way_stays_sound(start in layouts(), settings in settings()) {
-        let showings = [noisy(&start, settings.noise)];
+        let signal_scales = [noisy(&start, settings.noise)];
         let contact = contact(settings);
-        let problem = Problem { rest: &start.rest, showings: &showings, texture_size: SIZE, contact: &contact };
+        let problem = Problem { rest: &start.rest, signal_scales: &signal_scales, texture_size: SIZE, contact: &contact };
         let options = UvOptions {
             shape_steps: 20,
             refine_steps: STEPS,
@@ -107,14 +107,14 @@ proptest! {
     /// Protects the feasible set alone: nothing but it bounds a step here.
     #[test]
     fn steps_of_any_length_stay_sound(start in layouts(), settings in settings()) {
-        let showings = [noisy(&start, settings.noise)];
+        let signal_scales = [noisy(&start, settings.noise)];
         let contact = contact(settings);
         let region = Feasible::new(&start, &contact);
-        let runs = Runs::new(&start.points, &start.triangles, &showings[0]);
+        let runs = TriangleBatches::new(&start.points, &start.triangles, &signal_scales[0]);
         let distortion = Distortion::symmetric_dirichlet(&start.rest, 1.0, |_| 1.0);
         let triangles = &start.triangles;
         let mut objective = VariableProjection {
-            mapped: Mapped { points: &start.points, triangles, showings: &showings, runs: &runs },
+            mapped: ParameterizedSignal { points: &start.points, triangles, signal_scales: &signal_scales, runs: &runs },
             texture: FloatImage::solid(SIZE, Vec4::ZERO),
             distortion: &distortion,
             distortion_weight: settings.distortion_weight,

@@ -3,15 +3,15 @@
 use glam::{DMat2, DVec2, Vec4, dvec2};
 use parbake_atlas::Layout;
 use parbake_image::FloatImage;
-use parbake_uv::best_texture::Mapped;
 use parbake_uv::contact::{Border, Contact, ContactOptions};
 use parbake_uv::descent::Region;
 use parbake_uv::inversion;
+use parbake_uv::least_squares_texture::ParameterizedSignal;
 use parbake_uv::paper::texture_loss::TextureLoss;
 use parbake_uv::paper::{Guide, PaperOptions, PaperResult, paper_method};
 use parbake_uv::residual::residual;
-use parbake_uv::runs::Runs;
 use parbake_uv::signal::{Sample, Signal};
+use parbake_uv::triangle_batches::TriangleBatches;
 
 /// Cells along a side of the plane.
 const CELLS: u32 = 4;
@@ -20,7 +20,7 @@ const CELLS: u32 = 4;
 struct Plane {
     layout: Layout,
     signal: Signal,
-    runs: Runs,
+    runs: TriangleBatches,
 }
 
 impl Plane {
@@ -48,7 +48,7 @@ impl Plane {
             }
         }
         let signal = Signal::new(triangles.len(), &samples);
-        let runs = Runs::new(&points, &triangles, &signal);
+        let runs = TriangleBatches::new(&points, &triangles, &signal);
         let rest = triangles
             .iter()
             .map(|t| {
@@ -61,11 +61,11 @@ impl Plane {
         Self { layout: Layout { points, triangles, rest, charts, point_of_vertex }, signal, runs }
     }
 
-    fn mapped(&self) -> Mapped<'_> {
-        Mapped {
+    fn mapped(&self) -> ParameterizedSignal<'_> {
+        ParameterizedSignal {
             points: &self.layout.points,
             triangles: &self.layout.triangles,
-            showings: std::slice::from_ref(&self.signal),
+            signal_scales: std::slice::from_ref(&self.signal),
             runs: &self.runs,
         }
     }
@@ -186,8 +186,8 @@ fn stops_when_asked_and_takes_empty_signals() {
     let stopped = paper_method(&plane.mapped(), rest, 8, &bounds, None, &options, |p| p.round < 3);
     assert_eq!(stopped.rounds, 3);
     let signal = Signal::new(plane.layout.triangles.len(), &[]);
-    let runs = Runs::new(&plane.layout.points, &plane.layout.triangles, &signal);
-    let empty = Mapped { showings: &[signal], runs: &runs, ..plane.mapped() };
+    let runs = TriangleBatches::new(&plane.layout.points, &plane.layout.triangles, &signal);
+    let empty = ParameterizedSignal { signal_scales: &[signal], runs: &runs, ..plane.mapped() };
     let result = paper_method(&empty, rest, 0, &bounds, None, &options, |_| true);
     assert!(result.error == 0.0 && bounds.is_feasible(&result.points));
 }

@@ -20,7 +20,7 @@ pub mod pool;
 pub mod projection;
 pub mod reference;
 pub mod samples;
-pub mod sighted;
-pub mod view_walk;
+pub mod view_sample;
+pub mod view_sampler;
 
 pub use error::PrepareError;

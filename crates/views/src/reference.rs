@@ -66,19 +66,19 @@ pub fn render_references(
     pool: &[View],
     sampling: &Sampling,
     at_least: usize,
-    watch: &impl Watcher,
+    watcher: &impl Watcher,
 ) -> Vec<Reference> {
     let done = AtomicUsize::new(0);
     // Small groups in order, so that an early stop keeps a well-spread prefix.
     let group = rayon::current_num_threads().max(1) * 2;
     let mut out = Vec::with_capacity(pool.len());
     for (index, views) in pool.chunks(group).enumerate() {
-        if index * group >= at_least && watch.stopped() {
+        if index * group >= at_least && watcher.stopped() {
             break;
         }
         out.par_extend(views.par_iter().map(|view| {
             let picture = render(high, brdf, view, sampling);
-            watch.progress(Stage::Reference, done.fetch_add(1, Ordering::Relaxed) + 1, pool.len());
+            watcher.progress(Stage::Reference, done.fetch_add(1, Ordering::Relaxed) + 1, pool.len());
             picture
         }));
     }

@@ -1,8 +1,8 @@
 //! Where each pixel of the training views falls on the low-poly's texture, how the
 //! light meets it there, and what the high-poly shows in its place.
 //!
-//! Forward: a walk over the views' pixels (`view_walk.rs`), or those of an earlier walk and the
-//! shift of the coordinate where there is a parallax map (`sighted.rs`); what is left for the solvers
+//! Forward: a walk over the views' pixels (`view_sampler.rs`), or those of an earlier walk and the
+//! shift of the coordinate where there is a parallax map (`view_sample.rs`); what is left for the solvers
 //! is a bilinear fetch and the shading. Samples are binned by texture tile (a stable counting sort a
 //! view, then views in order within a tile), so that bands of the texture can be summed by many
 //! threads without atomics and always in the same order, and each band's texels stay in cache.
@@ -12,12 +12,12 @@
 
 use crate::packing::{packed, unpacked};
 use crate::reference::Reference;
-use crate::sighted::Sighted;
-use crate::view_walk::Walker;
+use crate::view_sample::ViewSample;
+use crate::view_sampler::ViewSampler;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_progress::{Stage, Watcher};
 use parbake_render::frame::TangentLight;
-use parbake_render::parallax_variants::shift_map::{ShiftMap, Vantage};
+use parbake_render::parallax_variants::shift_map::{ShiftMap, TangentView};
 use parbake_solve::grid::{BAND, bands};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -161,13 +161,13 @@ struct Sorted {
 
 /// Collects the samples of all references on a texture of `texture_size`².
 pub fn collect_samples(
-    walker: &Walker,
+    sampler: &ViewSampler,
     references: &[Reference],
     texture_size: usize,
-    watch: &impl Watcher,
+    watcher: &impl Watcher,
 ) -> SampleSet {
-    collect(references.par_iter(), texture_size, watch, |reference, out| {
-        walker.walk(reference, |seen| {
+    collect(references.par_iter(), texture_size, watcher, |reference, out| {
+        sampler.fragments(reference, |seen| {
             out.push(Sample::at(seen.uv, texture_size, packed(&seen.light), seen.target, seen.weight));
         });
     })
@@ -175,15 +175,15 @@ pub fn collect_samples(
 
 /// The same of views that were walked before, their coordinates shifted by a map. Views that are
 /// handed over rather than lent are gone as soon as they were read.
-pub fn shifted_samples<V: AsRef<[Sighted]>>(
+pub fn shifted_samples<V: AsRef<[ViewSample]>>(
     views: impl IntoParallelIterator<Item = V, Iter: IndexedParallelIterator>,
     texture_size: usize,
     map: &impl ShiftMap,
-    watch: &impl Watcher,
+    watcher: &impl Watcher,
 ) -> SampleSet {
-    collect(views.into_par_iter(), texture_size, watch, |view, out| {
+    collect(views.into_par_iter(), texture_size, watcher, |view, out| {
         out.extend(view.as_ref().iter().map(|seen| {
-            let from = Vantage::under_headlight(seen.sight(), &seen.light());
+            let from = TangentView::under_headlight(seen.sight(), &seen.light());
             let uv = seen.uv + map.shift(seen.uv, &from);
             Sample::at(uv, texture_size, seen.light, seen.target, seen.weight)
         }));
@@ -193,7 +193,7 @@ pub fn shifted_samples<V: AsRef<[Sighted]>>(
 fn collect<V>(
     views: impl IndexedParallelIterator<Item = V>,
     texture_size: usize,
-    watch: &impl Watcher,
+    watcher: &impl Watcher,
     of_view: impl Fn(V, &mut Vec<Sample>) + Sync,
 ) -> SampleSet {
     let layout = Layout { size: texture_size, tiles_across: texture_size.div_ceil(TILE) };
@@ -202,7 +202,7 @@ fn collect<V>(
         .map(|view| {
             let mut samples = Vec::new();
             of_view(view, &mut samples);
-            watch.progress(Stage::Sampling, done.fetch_add(1, Ordering::Relaxed) + 1, all);
+            watcher.progress(Stage::Sampling, done.fetch_add(1, Ordering::Relaxed) + 1, all);
             sort(samples, &layout)
         })
         .collect();

@@ -9,7 +9,7 @@ use parbake_model::Wrap;
 use parbake_model::glam::Vec4;
 use parbake_render::parallax_variants::shift_map::ShiftMap;
 use parbake_solve::thin_plate::ThinPlate;
-use parbake_views::sighted::Sighted;
+use parbake_views::view_sample::ViewSample;
 use rayon::prelude::*;
 
 /// A plate on the texels that views fetch.
@@ -20,10 +20,10 @@ pub(super) struct MapPlate {
 
 impl MapPlate {
     /// None where the map's parameters lie on no texels.
-    pub fn new<M: ShiftMap>(views: &[Vec<Sighted>], map: &M) -> Option<Self> {
+    pub fn new<M: ShiftMap>(views: &[Vec<ViewSample>], map: &M) -> Option<Self> {
         let [width, height] = map.texels()?;
         let texels = width * height;
-        let fetched_by = |samples: &Vec<Sighted>| {
+        let fetched_by = |samples: &Vec<ViewSample>| {
             let mut fetched = vec![false; texels];
             for sample in samples {
                 let at = taps(sample.uv, width, height, [Wrap::Clamp; 2]);
@@ -56,9 +56,9 @@ mod tests {
     use parbake_render::parallax_variants::shift_map::Unshifted;
 
     /// A pixel that fetches the texel in this column and row of three.
-    fn at(u: usize, v: usize) -> Sighted {
+    fn at(u: usize, v: usize) -> ViewSample {
         let uv = Vec2::new(u as f32 + 0.5, v as f32 + 0.5) / 3.0;
-        Sighted::at(uv)
+        ViewSample::at(uv)
     }
 
     /// Protects maps whose last lane is padding, and texels that no view fetches: a bump in the
@@ -67,7 +67,7 @@ mod tests {
     fn a_bump_is_pulled_flat_where_views_look() {
         let mut map = ShParallax::zeros(0, 3);
         map.coefficients[4] = Vec2::new(1.0, -2.0);
-        let row: Vec<Sighted> = (0..3).map(|u| at(u, 1)).collect();
+        let row: Vec<ViewSample> = (0..3).map(|u| at(u, 1)).collect();
         let pull = MapPlate::new(&[row], &map).unwrap().pull(&map, 9.0);
         assert_eq!(pull.len(), map.parameters().len());
         let values: Vec<f32> = pull.iter().flat_map(|lane| lane.to_array()).collect();

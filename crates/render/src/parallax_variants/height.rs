@@ -15,7 +15,7 @@
 
 use super::heights::Heights;
 use super::march::March;
-use super::shift_map::{ShiftMap, Vantage};
+use super::shift_map::{ShiftMap, TangentView};
 use parbake_image::FloatImage;
 use parbake_model::Wrap;
 use parbake_model::glam::{Vec2, Vec4};
@@ -62,7 +62,7 @@ impl HeightParallax {
 
     /// Where a height of 1 is met: away from the viewer, in texture widths.
     #[inline]
-    fn lean(&self, from: &Vantage) -> Vec2 {
+    fn lean(&self, from: &TangentView) -> Vec2 {
         let v = from.tangent;
         let divisor = match self.variant {
             Variant::OffsetLimited => 1.0,
@@ -72,7 +72,7 @@ impl HeightParallax {
         Vec2::new(-v.x, v.y) * (self.scale / divisor)
     }
 
-    fn march(&self, uv: Vec2, from: &Vantage) -> March {
+    fn march(&self, uv: Vec2, from: &TangentView) -> March {
         March::new(&self.heights, uv, self.lean(from), self.variant == Variant::Occlusion)
     }
 }
@@ -86,7 +86,7 @@ impl Variant {
 
 impl ShiftMap for HeightParallax {
     #[inline]
-    fn shift(&self, uv: Vec2, from: &Vantage) -> Vec2 {
+    fn shift(&self, uv: Vec2, from: &TangentView) -> Vec2 {
         match self.variant.marches() {
             true => self.march(uv, from).shift(),
             false => self.lean(from) * self.heights.at(uv),
@@ -94,7 +94,7 @@ impl ShiftMap for HeightParallax {
     }
 
     #[inline]
-    fn adjoint_of_maps(&self, uv: Vec2, from: &Vantage, to_shift: Vec2, into: &mut Self) {
+    fn adjoint_of_maps(&self, uv: Vec2, from: &TangentView, to_shift: Vec2, into: &mut Self) {
         match self.variant.marches() {
             true => self.march(uv, from).adjoint(&self.heights, to_shift, &mut into.heights.level),
             false => into.heights.level.scatter(&self.heights.taps(uv), &[self.lean(from).dot(to_shift)]),
@@ -122,7 +122,7 @@ impl ShiftMap for HeightParallax {
         }
     }
 
-    fn pace(&self) -> f32 {
+    fn rate_scale(&self) -> f32 {
         1.0 / self.scale
     }
 }
@@ -131,7 +131,7 @@ impl ShiftMap for HeightParallax {
 mod tests {
     use super::super::shift_map::tests::{noise, vantage, worst_gradient};
     use super::*;
-    use crate::parallax::Sight;
+    use crate::parallax::ViewDirection;
     use parbake_model::glam::Vec3;
 
     fn map(variant: Variant) -> HeightParallax {
@@ -164,7 +164,7 @@ mod tests {
     fn what_is_deep_recedes() {
         let from = |x: f32, z: f32| {
             let direction = Vec3::new(x, 0.0, z);
-            Vantage { sight: Sight { direction, cosine: z }, tangent: direction }
+            TangentView { sight: ViewDirection { direction, cosine: z }, tangent: direction }
         };
         for variant in [Variant::Parallax, Variant::OffsetLimited, Variant::Steep, Variant::Occlusion] {
             let mut map = HeightParallax::flat(variant, 1, SCALE);

@@ -8,7 +8,7 @@
 //! Adjoint: of the weights, by back-propagation; the rectifier's kink has the slope of its
 //! upper side.
 
-use super::shift_map::{ShiftMap, Vantage};
+use super::shift_map::{ShiftMap, TangentView};
 use parbake_model::glam::{Vec2, Vec4};
 use std::f32::consts::TAU;
 
@@ -84,7 +84,7 @@ impl NeuralParallax {
     /// Numbers that a file would have to hold.
     pub const NUMBERS: usize = 4 * WEIGHTS - 2;
 
-    fn input(uv: Vec2, from: &Vantage) -> [f32; INPUTS] {
+    fn input(uv: Vec2, from: &TangentView) -> [f32; INPUTS] {
         let mut input = [1.0; INPUTS];
         input[..3].copy_from_slice(&from.tangent.to_array());
         let ((mut su, mut cu), (mut sv, mut cv)) = ((uv.x * TAU).sin_cos(), (uv.y * TAU).sin_cos());
@@ -113,7 +113,7 @@ impl NeuralParallax {
         sum.map(rectified)
     }
 
-    fn pass(&self, uv: Vec2, from: &Vantage) -> Passed {
+    fn pass(&self, uv: Vec2, from: &TangentView) -> Passed {
         let input = Self::input(uv, from);
         let first = self.layer(0, input.into_iter());
         let second = self.layer(SECOND, with_constant(&first));
@@ -124,7 +124,7 @@ impl NeuralParallax {
         Passed { input, first, second, output: Vec2::new(row(0) + constants.x, row(1) + constants.y) }
     }
 
-    fn steepness(&self, from: &Vantage) -> f32 {
+    fn steepness(&self, from: &TangentView) -> f32 {
         self.scale / from.sight.cosine.abs().max(self.limit)
     }
 }
@@ -144,11 +144,11 @@ fn add_outer(into: &mut [Vec4], input: impl Iterator<Item = f32>, to_sum: &Hidde
 }
 
 impl ShiftMap for NeuralParallax {
-    fn shift(&self, uv: Vec2, from: &Vantage) -> Vec2 {
+    fn shift(&self, uv: Vec2, from: &TangentView) -> Vec2 {
         self.pass(uv, from).output * self.steepness(from)
     }
 
-    fn adjoint_of_maps(&self, uv: Vec2, from: &Vantage, to_shift: Vec2, into: &mut Self) {
+    fn adjoint_of_maps(&self, uv: Vec2, from: &TangentView, to_shift: Vec2, into: &mut Self) {
         let Passed { input, first, second, .. } = self.pass(uv, from);
         let to_output = to_shift * self.steepness(from);
         let [row_u, row_v] = [0, 1].map(|r| Self::column(&self.weights, THIRD, r));
@@ -187,7 +187,7 @@ impl ShiftMap for NeuralParallax {
 
     /// Many weights move an output together, so that each moves little: at the usual rate of
     /// 3e-4 texture widths by 3e-3, a usual rate for networks.
-    fn pace(&self) -> f32 {
+    fn rate_scale(&self) -> f32 {
         0.1 / self.scale
     }
 }

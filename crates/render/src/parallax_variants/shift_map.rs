@@ -7,23 +7,23 @@
 //! on the number of threads.
 
 use crate::frame::TangentLight;
-use crate::parallax::{ShParallax, Sight};
+use crate::parallax::{ShParallax, ViewDirection};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 
 /// From where a point is seen, in the mesh's axes and in the surface's own.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Vantage {
+pub struct TangentView {
     /// Direction to the viewer in the mesh's axes, and its cosine.
-    pub sight: Sight,
+    pub sight: ViewDirection,
     /// Direction to the viewer along tangent, bitangent and vertex normal; about of unit length.
     pub tangent: Vec3,
 }
 
-impl Vantage {
+impl TangentView {
     /// Where the light stands with the viewer, shading knows the direction in the tangent frame
     /// already, but flipped on faces that are seen from behind: this turns it back.
     #[inline]
-    pub fn under_headlight(sight: Sight, light: &TangentLight) -> Self {
+    pub fn under_headlight(sight: ViewDirection, light: &TangentLight) -> Self {
         let flipped = (light.light.z < 0.0) != (sight.cosine < 0.0);
         Self { sight, tangent: if flipped { -light.light } else { light.light } }
     }
@@ -32,10 +32,10 @@ impl Vantage {
 /// A map that shifts texture coordinates and can be fitted by its gradient.
 pub trait ShiftMap: Clone + Send + Sync {
     /// How far the coordinate moves, in texture widths.
-    fn shift(&self, uv: Vec2, from: &Vantage) -> Vec2;
+    fn shift(&self, uv: Vec2, from: &TangentView) -> Vec2;
 
     /// Adds the gradients of the parameters to `into`, which has this map's shape.
-    fn adjoint_of_maps(&self, uv: Vec2, from: &Vantage, to_shift: Vec2, into: &mut Self);
+    fn adjoint_of_maps(&self, uv: Vec2, from: &TangentView, to_shift: Vec2, into: &mut Self);
 
     /// Zeros in this map's shape.
     fn zeros_like(&self) -> Self;
@@ -55,13 +55,13 @@ pub trait ShiftMap: Clone + Send + Sync {
 
     /// How far each parameter moves in a step beside the others, in the lanes of
     /// [`ShiftMap::parameters`]; empty where all move alike.
-    fn strides(&self) -> Vec<Vec4> {
+    fn parameter_scales(&self) -> Vec<Vec4> {
         Vec::new()
     }
 
     /// About how far a parameter has to move for a shift to move by one texture width: fits of
     /// different maps then keep the same pace.
-    fn pace(&self) -> f32;
+    fn rate_scale(&self) -> f32;
 }
 
 /// No shift at all: textures as they are without parallax.
@@ -70,11 +70,11 @@ pub struct Unshifted;
 
 impl ShiftMap for Unshifted {
     #[inline]
-    fn shift(&self, _: Vec2, _: &Vantage) -> Vec2 {
+    fn shift(&self, _: Vec2, _: &TangentView) -> Vec2 {
         Vec2::ZERO
     }
 
-    fn adjoint_of_maps(&self, _: Vec2, _: &Vantage, _: Vec2, _: &mut Self) {}
+    fn adjoint_of_maps(&self, _: Vec2, _: &TangentView, _: Vec2, _: &mut Self) {}
 
     fn zeros_like(&self) -> Self {
         *self
@@ -86,7 +86,7 @@ impl ShiftMap for Unshifted {
 
     fn set_parameters(&mut self, _: &[Vec4]) {}
 
-    fn pace(&self) -> f32 {
+    fn rate_scale(&self) -> f32 {
         1.0
     }
 }
@@ -94,12 +94,12 @@ impl ShiftMap for Unshifted {
 /// Coefficients are fitted; a depth map stays as it is, since it could only scale them.
 impl ShiftMap for ShParallax {
     #[inline]
-    fn shift(&self, uv: Vec2, from: &Vantage) -> Vec2 {
+    fn shift(&self, uv: Vec2, from: &TangentView) -> Vec2 {
         ShParallax::shift(self, uv, &from.sight)
     }
 
     #[inline]
-    fn adjoint_of_maps(&self, uv: Vec2, from: &Vantage, to_shift: Vec2, into: &mut Self) {
+    fn adjoint_of_maps(&self, uv: Vec2, from: &TangentView, to_shift: Vec2, into: &mut Self) {
         ShParallax::adjoint_of_maps(self, uv, &from.sight, to_shift, into);
     }
 
@@ -129,7 +129,7 @@ impl ShiftMap for ShParallax {
 
     /// Short for functions of high order: there are many, and steps in all of them at once would
     /// throw a shift about farther than they can turn it.
-    fn strides(&self) -> Vec<Vec4> {
+    fn parameter_scales(&self) -> Vec<Vec4> {
         let by_function: Vec<f32> =
             (0..=self.order).flat_map(|l| std::iter::repeat_n(stride(l), 2 * l + 1)).collect();
         let of = |i: usize| by_function[i % by_function.len()];
@@ -142,7 +142,7 @@ impl ShiftMap for ShParallax {
             .collect()
     }
 
-    fn pace(&self) -> f32 {
+    fn rate_scale(&self) -> f32 {
         1.0
     }
 }
@@ -162,14 +162,14 @@ pub(super) mod tests {
     #[test]
     fn strides_follow_their_functions() {
         let map = ShParallax::zeros(3, 5);
-        let strides = map.strides();
-        assert_eq!(strides.len(), map.parameters().len());
-        let flat: Vec<f32> = strides.iter().flat_map(|lane| lane.to_array()).collect();
+        let parameter_scales = map.parameter_scales();
+        assert_eq!(parameter_scales.len(), map.parameters().len());
+        let flat: Vec<f32> = parameter_scales.iter().flat_map(|lane| lane.to_array()).collect();
         for (coefficient, pair) in flat.chunks(2).take(16 * 25).enumerate() {
             let whole = coefficient % 16 < 9;
             assert_eq!(pair, [if whole { 1.0 } else { 0.625 }; 2], "{coefficient}");
         }
-        assert!(ShParallax::zeros(2, 4).strides().iter().all(|lane| *lane == Vec4::ONE));
+        assert!(ShParallax::zeros(2, 4).parameter_scales().iter().all(|lane| *lane == Vec4::ONE));
     }
 
     use crate::frame::tangent_light;
@@ -179,9 +179,9 @@ pub(super) mod tests {
     }
 
     /// A vantage above the surface, in the mesh's axes as in the surface's.
-    pub(crate) fn vantage(i: usize) -> Vantage {
+    pub(crate) fn vantage(i: usize) -> TangentView {
         let direction = Vec3::new(noise(i), noise(2 * i + 3), 0.3 + noise(3 * i + 8).abs()).normalize();
-        Vantage { sight: Sight { direction, cosine: direction.z }, tangent: direction }
+        TangentView { sight: ViewDirection { direction, cosine: direction.z }, tangent: direction }
     }
 
     /// How far the gradient of a map's parameters is off central differences of `step`, at the
@@ -189,7 +189,7 @@ pub(super) mod tests {
     pub(crate) fn worst_gradient<M: ShiftMap>(
         map: &M,
         uv: Vec2,
-        from: &Vantage,
+        from: &TangentView,
         step: f32,
         smooth: impl Fn(&M, &M) -> bool,
     ) -> f32 {
@@ -235,8 +235,8 @@ pub(super) mod tests {
     fn a_flipped_light_is_turned_back() {
         for direction in [Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.6, 0.0, -0.8)] {
             let light = tangent_light(Vec3::Z, Vec3::X, 1.0, direction, direction.z.signum());
-            let sight = Sight { direction, cosine: direction.z };
-            assert_eq!(Vantage::under_headlight(sight, &light).tangent, direction);
+            let sight = ViewDirection { direction, cosine: direction.z };
+            assert_eq!(TangentView::under_headlight(sight, &light).tangent, direction);
         }
     }
 }

@@ -28,8 +28,8 @@ use parbake_views::pool::Rig;
 use parbake_views::projection::{ProjectedMaps, project};
 use parbake_views::reference::Reference;
 use parbake_views::samples::shifted_samples;
-use parbake_views::sighted::{Sighted, sighted_views};
-use parbake_views::view_walk::{Beyond, Walker};
+use parbake_views::view_sample::{ViewSample, sample_views};
+use parbake_views::view_sampler::{UncoveredPixels, ViewSampler};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -38,7 +38,7 @@ const RIG: Rig = Rig { radius: 3.5, projection: Projection::Perspective(0.4) };
 /// How far projection looks to either side in the common frame: as a bake by default.
 const REACH: f32 = 0.1;
 /// Silhouettes are treated as a bake by default treats them.
-const BEYOND: Beyond = Beyond::Background([0.0; 3], 0.5);
+const BEYOND: UncoveredPixels = UncoveredPixels::Background([0.0; 3], 0.5);
 /// Sides to look at: azimuth from +Z towards +X and height in degrees, and half the width of
 /// the view at unit depth.
 const SIDES: [([f32; 2], f32); 2] = [([25.0, 12.0], 0.36), ([62.0, 24.0], 0.17)];
@@ -98,9 +98,9 @@ impl Subject {
         let set = ViewSet { count: options.views, seed: options.seed, jitter: true, sampling };
         let references = high.references(&set, watcher);
         let made = Self { high, low: ready, start, small, references, heights };
-        let walker = made.walker(options);
+        let sampler = made.sampler(options);
         let mut seen = 0;
-        made.references.iter().for_each(|reference| walker.walk(reference, |_| seen += 1));
+        made.references.iter().for_each(|reference| sampler.fragments(reference, |_| seen += 1));
         match seen {
             0 => Err(BakeError::OutOfView { low: low.name.clone(), high: made.high.name.clone() }),
             _ => Ok(made),
@@ -113,8 +113,8 @@ impl Subject {
         Comparison { backend: &Cpu, brdf: &Lambert, display: conventions.display, srgb: conventions.srgb() }
     }
 
-    fn walker(&self, options: &VariantsOptions) -> Walker<'_> {
-        Walker::new(&self.low.placed, options.view_size, &self.high.conventions.display, BEYOND)
+    fn sampler(&self, options: &VariantsOptions) -> ViewSampler<'_> {
+        ViewSampler::new(&self.low.placed, options.view_size, &self.high.conventions.display, BEYOND)
     }
 }
 
@@ -122,7 +122,7 @@ impl Subject {
 pub struct Ground<'a> {
     subject: &'a Subject,
     options: &'a VariantsOptions,
-    views: Vec<Vec<Sighted>>,
+    views: Vec<Vec<ViewSample>>,
     /// Small textures that were solved for without parallax.
     begin: MapSet,
     evaluate: EvaluateOptions,
@@ -132,13 +132,14 @@ pub struct Ground<'a> {
 
 impl<'a> Ground<'a> {
     /// Collects samples and renders the held-out views.
-    pub fn new(subject: &'a Subject, options: &'a VariantsOptions, watch: &impl Watcher) -> Self {
-        let walker = subject.walker(options);
+    pub fn new(subject: &'a Subject, options: &'a VariantsOptions, watcher: &impl Watcher) -> Self {
+        let sampler = subject.sampler(options);
         let (low, start) = &subject.small;
-        let views = sighted_views(&walker, &subject.references);
-        let samples = shifted_samples(&views, options.fitted_texels(), &Unshifted, watch);
+        let views = sample_views(&sampler, &subject.references);
+        let samples = shifted_samples(&views, options.fitted_texels(), &Unshifted, watcher);
         let comparison = subject.comparison();
-        let begin = fit_textures(&samples, &low.atlas, &start.maps, &comparison, &options.schedule(), watch);
+        let begin =
+            fit_textures(&samples, &low.atlas, &start.maps, &comparison, &options.schedule(), watcher);
         let mut maps = MapSet::new(options.fitted_texels());
         for (kind, image) in &begin.images {
             maps.insert(*kind, from_image(*kind, image, comparison.srgb));
@@ -171,14 +172,19 @@ impl<'a> Ground<'a> {
         &self,
         name: &str,
         map: impl FnOnce() -> M,
-        watch: &impl Watcher,
+        watcher: &impl Watcher,
     ) -> Option<(VariantFigures, Vec<Rgb>)> {
-        let variant = (!watch.stopped()).then(|| self.variant(name, map(), watch));
-        variant.filter(|_| !watch.stopped())
+        let variant = (!watcher.stopped()).then(|| self.variant(name, map(), watcher));
+        variant.filter(|_| !watcher.stopped())
     }
 
     /// Fits a map, keeps it, solves for textures, and looks at the result.
-    pub fn variant<M: Stored>(&self, name: &str, map: M, watch: &impl Watcher) -> (VariantFigures, Vec<Rgb>) {
+    pub fn variant<M: Stored>(
+        &self,
+        name: &str,
+        map: M,
+        watcher: &impl Watcher,
+    ) -> (VariantFigures, Vec<Rgb>) {
         let (since, options) = (Instant::now(), self.options);
         let Subject { low, start, .. } = self.subject;
         let comparison = self.subject.comparison();
@@ -195,12 +201,13 @@ impl<'a> Ground<'a> {
                 &Lambert,
                 &DisplayTable::new(display),
                 &fit,
-                watch,
+                watcher,
             ),
         };
         let (map, cost) = state.map.stored();
-        let samples = shifted_samples(&self.views, options.texture_size, &map, watch);
-        let fitted = fit_textures(&samples, &low.atlas, &start.maps, &comparison, &options.schedule(), watch);
+        let samples = shifted_samples(&self.views, options.texture_size, &map, watcher);
+        let fitted =
+            fit_textures(&samples, &low.atlas, &start.maps, &comparison, &options.schedule(), watcher);
         drop(samples);
         let seconds = since.elapsed().as_secs_f64();
 

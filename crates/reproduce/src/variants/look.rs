@@ -14,8 +14,8 @@ use parbake_model::{Image, Mesh};
 use parbake_render::camera::Camera;
 use parbake_render::frame::tangent_light;
 use parbake_render::interpolate::{barycentrics, interpolate};
-use parbake_render::parallax::Sight;
-use parbake_render::parallax_variants::shift_map::{ShiftMap, Vantage};
+use parbake_render::parallax::ViewDirection;
+use parbake_render::parallax_variants::shift_map::{ShiftMap, TangentView};
 use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 use parbake_render::scene::{Picture, unpack};
 use parbake_render::shade::{Brdf, Lambert};
@@ -50,11 +50,11 @@ impl<'a, M: ShiftMap> Look<'a, M> {
         let normal: Vec3 = interpolate(corners.map(|i| mesh.normals[i]), b.weights);
         let tangent = interpolate(corners.map(|i| mesh.tangents[i].truncate()), b.weights);
         let light = tangent_light(normal, tangent, mesh.tangents[corners[0]].w, direction, facing);
-        let sight = Sight { direction, cosine: normal.normalize_or_zero().dot(direction) };
+        let sight = ViewDirection { direction, cosine: normal.normalize_or_zero().dot(direction) };
 
         let along = |weights| -> Vec2 { interpolate(corners.map(|i| mesh.uvs[i]), weights) };
         let uv = along(b.weights);
-        let uv = uv + self.map.shift(uv, &Vantage::under_headlight(sight, &light));
+        let uv = uv + self.map.shift(uv, &TangentView::under_headlight(sight, &light));
         let lod = self.color.lod(along(b.per_x), along(b.per_y));
         let (color, normal) = (self.color.fetch(uv, lod), self.normal.fetch(uv, lod));
         Lambert.light(&light, &MapValues::of(Vec3::from(color), Vec3::from(normal)))

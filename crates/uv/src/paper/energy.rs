@@ -11,10 +11,10 @@
 
 use super::texture_loss::TextureLoss;
 use super::{Guide, PaperOptions, PaperPoint};
-use crate::best_texture::Mapped;
 use crate::contact::Contact;
 use crate::descent::Objective;
 use crate::distortion::Distortion;
+use crate::least_squares_texture::ParameterizedSignal;
 use crate::residual::{residual, residual_by_triangle};
 use crate::signal::Signal;
 use glam::Vec4;
@@ -24,7 +24,7 @@ use std::borrow::Cow;
 
 /// What stays the same in all steps.
 pub(super) struct Problem<'a> {
-    mapped: Mapped<'a>,
+    mapped: ParameterizedSignal<'a>,
     signal: &'a Signal,
     rest: &'a [DMat2],
     contact: Option<(&'a Contact, f64)>,
@@ -46,7 +46,7 @@ pub(super) struct StepEnergy<'a> {
 impl<'a> Problem<'a> {
     /// `mapped` has one showing, `signal`, without mip levels.
     pub fn new(
-        mapped: Mapped<'a>,
+        mapped: ParameterizedSignal<'a>,
         signal: &'a Signal,
         rest: &'a [DMat2],
         contact: Option<&'a Contact>,
@@ -66,12 +66,12 @@ impl<'a> Problem<'a> {
 
     /// L_diff for a texture of size² texels.
     pub fn loss(&self, points: &[DVec2], size: usize) -> TextureLoss {
-        TextureLoss::new(&Mapped { points, ..self.mapped }, size, self.mean_over)
+        TextureLoss::new(&ParameterizedSignal { points, ..self.mapped }, size, self.mean_over)
     }
 
     /// L_diff; overwrites `errors` with eₜ of all triangles.
     pub fn errors(&self, points: &[DVec2], texture: &FloatImage<Vec4>, errors: &mut [f64]) -> f64 {
-        let mapped = Mapped { points, ..self.mapped };
+        let mapped = ParameterizedSignal { points, ..self.mapped };
         let left = residual_by_triangle(&mapped, texture);
         for ((error, part), mean_over) in errors.iter_mut().zip(&left).zip(&self.triangle_mean_over) {
             *error = part / mean_over;
@@ -143,8 +143,8 @@ impl Objective for StepEnergy<'_> {
         let mut energy = 0.0;
         // Those with a factor come first, since they scale what is there.
         if let Some((texture, signal, weight)) = &self.image {
-            let showings = std::slice::from_ref(signal.as_ref());
-            let mapped = Mapped { points, showings, ..problem.mapped };
+            let signal_scales = std::slice::from_ref(signal.as_ref());
+            let mapped = ParameterizedSignal { points, signal_scales, ..problem.mapped };
             energy += weight * residual(&mapped, texture, gradient).iter().sum::<f64>();
             gradient.iter_mut().for_each(|g| *g *= *weight);
         }

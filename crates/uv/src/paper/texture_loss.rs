@@ -6,8 +6,8 @@
 //! the full batch at once. They are summed up when the layout has moved; a gradient then
 //! costs nine products a texel, however many samples there are.
 
-use crate::best_texture::Mapped;
 use crate::footprint::{Footprint, OnLevel};
+use crate::least_squares_texture::ParameterizedSignal;
 use crate::normal_matrix::{NormalMatrix, Patch};
 use glam::Vec4;
 use rayon::prelude::*;
@@ -23,7 +23,7 @@ pub struct TextureLoss {
 impl TextureLoss {
     /// For a texture of size² texels, size ≥ 2, of which the finest level alone is looked at.
     /// `mean_over` is W C.
-    pub fn new(mapped: &Mapped, size: usize, mean_over: f64) -> Self {
+    pub fn new(mapped: &ParameterizedSignal, size: usize, mean_over: f64) -> Self {
         let patches: Vec<Patch> =
             (0..mapped.runs.count()).into_par_iter().map(|run| patch(mapped, run, size)).collect();
         Self { matrix: NormalMatrix::sum(size, patches.iter()), scale: (2.0 / mean_over) as f32 }
@@ -38,7 +38,7 @@ impl TextureLoss {
 }
 
 /// What the triangles of a run add to the matrix.
-fn patch(mapped: &Mapped, run: usize, size: usize) -> Patch {
+fn patch(mapped: &ParameterizedSignal, run: usize, size: usize) -> Patch {
     let footprints: Vec<(usize, OnLevel)> = mapped
         .runs
         .triangles(run)
@@ -57,7 +57,7 @@ fn patch(mapped: &Mapped, run: usize, size: usize) -> Patch {
     }
     let mut patch = Patch::new(low, high);
     for (t, footprint) in &footprints {
-        for sample in mapped.showings.iter().flat_map(|signal| signal.of(*t)) {
+        for sample in mapped.signal_scales.iter().flat_map(|signal| signal.of(*t)) {
             let (texel, fractions, _) = footprint.place(sample);
             patch.add_sample(texel, fractions, sample.weight, sample.target);
         }

@@ -5,7 +5,7 @@
 //! Contract: the result's layout is one of the finest grid, and sound.
 
 use super::plane::Plane;
-use super::showings::{Picture, showings};
+use super::signal_scales::{Picture, signal_scales};
 use super::{Moves, PictureOptions, as_f64};
 use crate::contact::ContactOptions;
 use crate::optimise::{Balance, Problem, RefineBy, ShapeBy, UvOptions, refine, shape, tensors};
@@ -68,9 +68,9 @@ pub fn optimised(
         let tolerance = if finest { own.tolerance } else { COARSE_TOLERANCE };
         let own = UvOptions { tolerance, ..own };
         let most = (SAMPLES_PER_TEXEL * size * size).max(SAMPLES_PER_CELL * cells * cells).max(least);
-        let showings = showings(picture, plane, most);
+        let signal_scales = signal_scales(picture, plane, most);
         let rest = plane.rest();
-        let problem = Problem { rest: &rest, showings: &showings, texture_size: size, contact };
+        let problem = Problem { rest: &rest, signal_scales: &signal_scales, texture_size: size, contact };
         let mut frames = Vec::new();
         let mut step = |points: &[DVec2], _| {
             frames.push(points.iter().map(|p| p.as_vec2()).collect::<Vec<Vec2>>());

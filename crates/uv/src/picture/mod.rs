@@ -13,7 +13,7 @@ pub mod coarse_to_fine;
 pub mod paper;
 pub mod plane;
 pub mod rounding;
-pub mod showings;
+pub mod signal_scales;
 pub mod texture;
 
 use crate::convergence::Convergence;

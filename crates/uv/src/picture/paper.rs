@@ -12,13 +12,13 @@
 //! the picture worse than it was.
 
 use super::plane::Plane;
-use super::showings::{Picture, showings};
+use super::signal_scales::{Picture, signal_scales};
 use super::{Moves, PictureOptions, as_f64};
-use crate::best_texture::Mapped;
 use crate::contact::{Border, ContactOptions};
+use crate::least_squares_texture::ParameterizedSignal;
 use crate::paper::{PaperOptions, paper_method};
 use crate::region::Feasible;
-use crate::runs::Runs;
+use crate::triangle_batches::TriangleBatches;
 use parbake_atlas::Layout;
 use parbake_model::glam::{DMat2, Vec2};
 use parbake_progress::{Message, Stage, Watcher};
@@ -51,12 +51,12 @@ pub fn moved(
     let [from, to] = BOX;
     let points = as_f64(&plane.points()).into_iter().map(|p| (p * (to - from) + from).as_vec2().as_dvec2());
     let mut layout = plane.layout(points.collect());
-    let showings = showings(&picture, plane, usize::MAX);
-    let runs = Runs::new(&layout.points, &layout.triangles, &showings[0]);
-    let mapped = Mapped {
+    let signal_scales = signal_scales(&picture, plane, usize::MAX);
+    let runs = TriangleBatches::new(&layout.points, &layout.triangles, &signal_scales[0]);
+    let mapped = ParameterizedSignal {
         points: &layout.points,
         triangles: &layout.triangles,
-        showings: &showings[..1],
+        signal_scales: &signal_scales[..1],
         runs: &runs,
     };
     let region = Feasible::new(&layout, &contact(options, own.contact_texels));

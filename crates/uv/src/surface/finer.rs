@@ -22,7 +22,7 @@ pub struct Finer {
     /// Its layout.
     pub layout: Layout,
     /// The signal on its triangles.
-    showings: Vec<Signal>,
+    signal_scales: Vec<Signal>,
     /// The old layout's point of each old vertex.
     point_of_vertex: Vec<u32>,
 }
@@ -42,14 +42,15 @@ impl Finer {
         if !check(&finer, problem.texture_size).is_bijective() {
             return None;
         }
-        let showings = problem.showings.iter().map(|signal| divided(signal, &bisected.pieces)).collect();
+        let signal_scales =
+            problem.signal_scales.iter().map(|signal| divided(signal, &bisected.pieces)).collect();
         let point_of_vertex = layout.point_of_vertex.clone();
-        Some(Self { bisected, layout: finer, showings, point_of_vertex })
+        Some(Self { bisected, layout: finer, signal_scales, point_of_vertex })
     }
 
     /// What the optimisation works on then.
     pub fn problem<'a>(&'a self, coarse: &Problem<'a>) -> Problem<'a> {
-        Problem { rest: &self.layout.rest, showings: &self.showings, ..*coarse }
+        Problem { rest: &self.layout.rest, signal_scales: &self.signal_scales, ..*coarse }
     }
 
     /// Its points where those of the old layout lie so.
@@ -218,27 +219,31 @@ mod tests {
     fn pieces_have_the_signal_of_the_whole() {
         let (mesh, signal) = sheet();
         let layout = Layout::new(&mesh);
-        let showings = [signal];
+        let signal_scales = [signal];
         let contact = ContactOptions::default();
-        let problem =
-            Problem { rest: &layout.rest, showings: &showings, texture_size: 256, contact: &contact };
+        let problem = Problem {
+            rest: &layout.rest,
+            signal_scales: &signal_scales,
+            texture_size: 256,
+            contact: &contact,
+        };
         let finer = Finer::new(&mesh, &layout, &problem, &[1.0, 3.0, 0.1], 30).expect("edges are long");
         let fine = finer.problem(&problem);
         // An edge of two triangles adds two, so that one of thirty may be left over.
         assert!(matches!(fine.rest.len(), 32 | 33));
-        assert_eq!(spots(&finer.layout, &fine.showings[0]), spots(&layout, &showings[0]));
+        assert_eq!(spots(&finer.layout, &fine.signal_scales[0]), spots(&layout, &signal_scales[0]));
         let inside = |s: &Sample| {
             s.barycentric[0].min(s.barycentric[1]) > -1e-5 && s.barycentric.iter().sum::<f32>() < 1.0 + 1e-5
         };
-        assert!(fine.showings[0].samples.iter().all(inside));
+        assert!(fine.signal_scales[0].samples.iter().all(inside));
         for (t, piece) in finer.bisected.pieces.iter().enumerate() {
             let width = |layout: &Layout, t: usize, signal: &Signal| {
                 let [a, b, c] = layout.corners(t);
                 DMat2::from_cols(b - a, c - a) * *signal.pixels.of(t).expect("a pixel has a size")
             };
             let (own, whole) = (
-                width(&finer.layout, t, &fine.showings[0]),
-                width(&layout, piece.triangle as usize, &showings[0]),
+                width(&finer.layout, t, &fine.signal_scales[0]),
+                width(&layout, piece.triangle as usize, &signal_scales[0]),
             );
             assert!((own - whole).to_cols_array().iter().all(|d| d.abs() < 1e-7));
         }

@@ -12,27 +12,27 @@
 //! are the best of its rounds at two sizes, the start included.
 
 mod finer;
-mod judge;
+mod layout_score;
 mod moved;
 mod paper;
 mod refined;
 mod steps;
-mod surface_signal;
+mod surface_samples;
 mod surface_texture;
 
-pub use surface_signal::Source;
-pub use surface_texture::{SurfaceSignal, SurfaceTexture};
+pub use surface_samples::Source;
+pub use surface_texture::{SurfaceSamples, SurfaceTexture};
 
-use crate::best_texture::{Mapped, Solve, best_texture_in_box};
 use crate::contact::{Border, ContactOptions};
 use crate::convergence::Convergence;
+use crate::least_squares_texture::{ParameterizedSignal, Solve, least_squares_texture_in_box};
 use crate::mode::{Method, UvMode};
 use crate::moves::UvMoves;
 use crate::optimise::Problem;
 use crate::paper::Guide;
-use crate::runs::Runs;
-use crate::shown::shown_errors;
 use crate::signal::Signal;
+use crate::triangle_batches::TriangleBatches;
+use crate::trilinear_error::trilinear_errors;
 use parbake_atlas::{
     AtlasError, Layout, PackOptions, RepairOptions, TutteOptions, UnwrapOptions, check, repair, tutte, unwrap,
 };
@@ -43,11 +43,11 @@ use parbake_model::{Material, Mesh, Model, Placement};
 use parbake_progress::Watcher;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use surface_signal::{FULL_AND_HALF, showings};
+use surface_samples::{FULL_AND_HALF, signal_scales};
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug)]
-pub struct UnfoldOptions {
+pub struct UvStageOptions {
     /// What becomes of the coordinates.
     pub mode: UvMode,
     /// How they are moved.
@@ -71,7 +71,7 @@ pub struct UnfoldOptions {
 
 /// What was done.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct UnfoldReport {
+pub struct UvStageReport {
     /// What was mended, a sentence each.
     pub mended: Vec<String>,
     /// Share of the square that was covered before and after.
@@ -94,7 +94,7 @@ pub struct UnfoldReport {
 
 /// A low-poly with new coordinates.
 #[derive(Clone)]
-pub struct Unfolded {
+pub struct UvStageResult {
     /// Its mesh alone: what its materials said of coordinates is applied.
     pub model: Model,
     /// How its coordinates moved.
@@ -102,7 +102,7 @@ pub struct Unfolded {
     /// Where its triangles lie on those before; empty where they are the same.
     pub pieces: Vec<Piece>,
     /// What was done.
-    pub report: UnfoldReport,
+    pub report: UvStageReport,
 }
 
 /// Samples of a low-poly's surface at most while coordinates move…
@@ -112,17 +112,17 @@ const MOST_SAMPLES: usize = 400_000;
 const OWN_SAMPLES: usize = 800_000;
 
 /// Prepares the texture coordinates of a mended low-poly that `frame` places.
-pub fn unfold(
-    low: Mended,
+pub fn optimise_uvs(
+    low: RepairedLowPoly,
     frame: &Placement,
     source: &Source,
-    options: &UnfoldOptions,
+    options: &UvStageOptions,
     watcher: &impl Watcher,
-) -> Unfolded {
-    let Mended { name, mut mesh, mended } = low;
+) -> UvStageResult {
+    let RepairedLowPoly { name, mut mesh, mended } = low;
     let start = Layout::new(&mesh);
     let before = check(&start, options.texture_size).utilisation;
-    let mut report = UnfoldReport {
+    let mut report = UvStageReport {
         mended,
         utilisation: [before; 2],
         gutter: options.gutter,
@@ -149,12 +149,12 @@ pub fn unfold(
     }
     mesh.triangle_materials.fill(0);
     let model = Model { name, mesh, materials: vec![Material::default()], images: Vec::new() };
-    Unfolded { model, moves, pieces, report }
+    UvStageResult { model, moves, pieces, report }
 }
 
 /// A low-poly whose coordinates are sound, or as they were where they are to be kept.
 #[derive(Clone)]
-pub struct Mended {
+pub struct RepairedLowPoly {
     /// The model's name.
     pub name: String,
     /// Its mesh with unit normals; what its materials said of coordinates is applied.
@@ -167,7 +167,7 @@ pub struct Mended {
 ///
 /// # Errors
 /// Where charts do not fit into the texture with the gutter asked for.
-pub fn mend(low: &Model, options: &UnfoldOptions) -> Result<Mended, AtlasError> {
+pub fn repair_uvs(low: &Model, options: &UvStageOptions) -> Result<RepairedLowPoly, AtlasError> {
     let mut mesh = low.mesh.clone();
     mesh.uvs = material_uvs(&low.mesh, &low.materials);
     mesh.tangents.clear();
@@ -189,7 +189,7 @@ pub fn mend(low: &Model, options: &UnfoldOptions) -> Result<Mended, AtlasError> 
     if repaired > 0 && !low.mesh.normals.is_empty() {
         mended.push(format!("{repaired} unusable normals were replaced."));
     }
-    Ok(Mended { name: low.name.clone(), mesh, mended })
+    Ok(RepairedLowPoly { name: low.name.clone(), mesh, mended })
 }
 
 /// Gutter that a parallax map wants, in its texels: as far as what is fetched at a chart's border
@@ -198,7 +198,7 @@ const PARALLAX_GUTTER: f64 = 2.0;
 /// Share of the square that such gutters may take, with charts that are squares of one size.
 const PARALLAX_ROOM: f64 = 0.25;
 
-impl UnfoldOptions {
+impl UvStageOptions {
     /// The same with a parallax map's gutter; None where none is to come, where the layout or the
     /// gutter is the user's, or where charts are too many for it.
     fn with_room(&self, mesh: &Mesh) -> Option<Self> {
@@ -219,16 +219,19 @@ impl UnfoldOptions {
 ///
 /// # Errors
 /// As of [`mend`].
-pub fn mend_with_room(low: &Model, options: &mut UnfoldOptions) -> Result<Mended, AtlasError> {
-    let mended = mend(low, options)?;
+pub fn repair_uvs_with_room(
+    low: &Model,
+    options: &mut UvStageOptions,
+) -> Result<RepairedLowPoly, AtlasError> {
+    let mended = repair_uvs(low, options)?;
     let Some(wide) = options.with_room(&mended.mesh) else { return Ok(mended) };
     // What does not fit so goes without it.
-    let Ok(roomy) = mend(low, &wide) else { return Ok(mended) };
+    let Ok(roomy) = repair_uvs(low, &wide) else { return Ok(mended) };
     *options = wide;
     Ok(roomy)
 }
 
-fn packing(options: &UnfoldOptions) -> PackOptions {
+fn packing(options: &UvStageOptions) -> PackOptions {
     PackOptions {
         texture_size: options.texture_size,
         gutter_texels: options.gutter,
@@ -250,12 +253,12 @@ fn signal(mesh: &Mesh, start: &Layout, source: &Source, size: usize) -> Option<V
         Some(_) => MOST_SAMPLES.min((8 * size * size).max(1 << 16)),
         None => OWN_SAMPLES,
     };
-    let showings = showings(mesh, &start.rest, source, &FULL_AND_HALF, most);
-    (!showings[0].samples.is_empty()).then_some(showings)
+    let signal_scales = signal_scales(mesh, &start.rest, source, &FULL_AND_HALF, most);
+    (!signal_scales[0].samples.is_empty()).then_some(signal_scales)
 }
 
 /// How near charts may come, with a barrier of this width in texels.
-fn contact(asked: &UnfoldOptions, activation_texels: f64) -> ContactOptions {
+fn contact(asked: &UvStageOptions, activation_texels: f64) -> ContactOptions {
     ContactOptions {
         texture_size: asked.texture_size as u32,
         gutter_texels: asked.gutter,
@@ -268,20 +271,25 @@ fn contact(asked: &UnfoldOptions, activation_texels: f64) -> ContactOptions {
 /// What 8-bit texels leave of each showing, with a texture that is about the one that will be
 /// solved for: for all sizes at once where `all_sizes` says so, else for the full one.
 fn errors(problem: &Problem, layout: &Layout, all_sizes: bool) -> Vec<f64> {
-    let solved = if all_sizes { problem.showings } else { &problem.showings[..1] };
+    let solved = if all_sizes { problem.signal_scales } else { &problem.signal_scales[..1] };
     let start = FloatImage::solid(problem.texture_size, Vec4::splat(0.5));
     let rough = Solve { steps: 40, ..Solve::ROUGH };
-    let mut texture = best_texture_in_box(&mapped(layout, solved, &runs(layout, solved)), start, &rough);
+    let mut texture =
+        least_squares_texture_in_box(&mapped(layout, solved, &runs(layout, solved)), start, &rough);
     texture.texels.par_iter_mut().for_each(|t| *t = (*t * 255.0).round() / 255.0);
-    shown_errors(&mapped(layout, problem.showings, &runs(layout, problem.showings)), &texture)
+    trilinear_errors(&mapped(layout, problem.signal_scales, &runs(layout, problem.signal_scales)), &texture)
 }
 
-fn runs(layout: &Layout, showings: &[Signal]) -> Runs {
-    Runs::new(&layout.points, &layout.triangles, &showings[0])
+fn runs(layout: &Layout, signal_scales: &[Signal]) -> TriangleBatches {
+    TriangleBatches::new(&layout.points, &layout.triangles, &signal_scales[0])
 }
 
-fn mapped<'a>(layout: &'a Layout, showings: &'a [Signal], runs: &'a Runs) -> Mapped<'a> {
-    Mapped { points: &layout.points, triangles: &layout.triangles, showings, runs }
+fn mapped<'a>(
+    layout: &'a Layout,
+    signal_scales: &'a [Signal],
+    runs: &'a TriangleBatches,
+) -> ParameterizedSignal<'a> {
+    ParameterizedSignal { points: &layout.points, triangles: &layout.triangles, signal_scales, runs }
 }
 
 fn as_f32(points: &[DVec2]) -> Vec<Vec2> {
@@ -293,8 +301,8 @@ mod tests {
     use super::*;
     use parbake_model::glam::vec2;
 
-    fn with_parallax(gutter: Option<f64>) -> UnfoldOptions {
-        UnfoldOptions {
+    fn with_parallax(gutter: Option<f64>) -> UvStageOptions {
+        UvStageOptions {
             mode: UvMode::Optimize,
             method: Method::Fit,
             guide: Guide::ContentAware,
@@ -327,7 +335,7 @@ mod tests {
     fn few_charts_get_room_for_a_parallax_map() {
         for (asked, wanted) in [(None, 8.0), (Some(3.0), 3.0)] {
             let mut options = with_parallax(asked);
-            let mended = mend_with_room(&sheet(4), &mut options).expect("four charts fit");
+            let mended = repair_uvs_with_room(&sheet(4), &mut options).expect("four charts fit");
             assert_eq!(options.gutter, wanted);
             let gutter = check(&Layout::new(&mended.mesh), 256).gutter.expect("several charts").texels;
             assert!(gutter >= wanted, "{gutter} of {wanted}");

@@ -7,11 +7,11 @@
 //!
 //! Contract: a moved layout is as sound as the one before, and shows the surface better.
 
-use super::judge::Judge;
+use super::layout_score::LayoutScore;
 use super::refined::refined;
 use super::steps::Steps;
-use super::surface_signal::Source;
-use super::{Moved, UnfoldOptions, UnfoldReport, as_f32, contact, packing, signal};
+use super::surface_samples::Source;
+use super::{Moved, UvStageOptions, UvStageReport, as_f32, contact, packing, signal};
 use crate::metric::chart_scales;
 use crate::optimise::{Problem, RefineBy, UvOptions, shape, tensors};
 use parbake_atlas::{ChartScale, Layout, PackOptions, pack};
@@ -40,17 +40,17 @@ const ACTIVATION_TEXELS: f64 = 0.5;
 pub fn moved(
     mesh: &Mesh,
     source: &Source,
-    asked: &UnfoldOptions,
-    report: &mut UnfoldReport,
+    asked: &UvStageOptions,
+    report: &mut UvStageReport,
     watcher: &impl Watcher,
 ) -> Option<Moved> {
     let start = &Layout::new(mesh);
-    let showings = signal(mesh, start, source, asked.texture_size)?;
+    let signal_scales = signal(mesh, start, source, asked.texture_size)?;
     let contact = contact(asked, ACTIVATION_TEXELS);
     let problem = &Problem {
         rest: &start.rest,
-        showings: &showings,
-        texture_size: told_apart(asked.texture_size, showings[0].samples.len()),
+        signal_scales: &signal_scales,
+        texture_size: told_apart(asked.texture_size, signal_scales[0].samples.len()),
         contact: &contact,
     };
     let most_steps = (SHAPE_WORK / mesh.triangles.len().max(1)).clamp(LEAST_SHAPE_STEPS, MOST_SHAPE_STEPS);
@@ -58,20 +58,20 @@ pub fn moved(
     let own = source.surface.is_none();
     let refine_by = if own { RefineBy::Stiffness } else { RefineBy::Laplacian };
     let options = &UvOptions { refine_steps: asked.steps, shape_steps, refine_by, ..UvOptions::default() };
-    let judge = &Judge::new(mesh, start, problem, own, asked.gutter_required.then_some(asked.gutter));
+    let score = &LayoutScore::new(mesh, start, problem, own, asked.gutter_required.then_some(asked.gutter));
     let tensors = &tensors(problem, start);
-    let unmoved = judge.kept.len() as f64;
+    let unmoved = score.kept.len() as f64;
     let packed = packed(problem, start, &packing(asked), tensors)
-        .map(|packed| (judge.total(&packed), packed))
+        .map(|packed| (score.total(&packed), packed))
         .filter(|(left, _)| *left < unmoved);
     let is_packed = packed.is_some();
     let (left, mut layout) = packed.unwrap_or_else(|| (unmoved, start.clone()));
     let mut frames = vec![as_f32(&start.points), as_f32(&layout.points)];
     let most = options.refine_steps + FLAT.len() * options.shape_steps;
     let steps = &mut Steps::new(most, watcher);
-    frames.extend(shaped(judge, &mut layout, left, tensors, options, steps));
+    frames.extend(shaped(score, &mut layout, left, tensors, options, steps));
     let more_triangles = if own { asked.more_triangles } else { 0 };
-    let (moved, relative) = refined(judge, layout, options, more_triangles, frames, steps)?;
+    let (moved, relative) = refined(score, layout, options, more_triangles, frames, steps)?;
     report.packed |= is_packed;
     report.steps = moved.frames.len() - 2;
     report.relative_error = relative;
@@ -92,7 +92,7 @@ fn told_apart(texture_size: usize, samples: usize) -> usize {
 /// starts, and returns the way there. The start is a guess: how plain the plain is depends on the
 /// texture's size, and where both guesses are bad, none is better.
 fn shaped<W: Watcher>(
-    judge: &Judge,
+    score: &LayoutScore,
     layout: &mut Layout,
     mut least: f64,
     tensors: &[DMat2],
@@ -103,9 +103,9 @@ fn shaped<W: Watcher>(
     for flat in FLAT {
         let (mut guess, mut way) = (before.clone(), Vec::new());
         let own = UvOptions { flat, ..*options };
-        shape(judge.problem, &mut guess, tensors, &own, |points, _| steps.step(&mut way, points));
-        let left = judge.total(&guess);
-        if left < least && judge.is_sound(&guess) {
+        shape(score.problem, &mut guess, tensors, &own, |points, _| steps.step(&mut way, points));
+        let left = score.total(&guess);
+        if left < least && score.is_sound(&guess) {
             (*layout, least, shaped) = (guess, left, way);
         }
         if steps.watcher.stopped() {

@@ -15,14 +15,14 @@
 //! those that do not show it worse at half; as sound as the layout before, which stays where no round
 //! is better.
 
-use super::surface_signal::Source;
-use super::{Moved, UnfoldOptions, UnfoldReport, as_f32, contact, errors, signal};
-use crate::best_texture::Mapped;
+use super::surface_samples::Source;
+use super::{Moved, UvStageOptions, UvStageReport, as_f32, contact, errors, signal};
 use crate::distortion::total_area;
+use crate::least_squares_texture::ParameterizedSignal;
 use crate::optimise::Problem;
 use crate::paper::{PaperOptions, paper_method};
 use crate::region::Feasible;
-use crate::runs::Runs;
+use crate::triangle_batches::TriangleBatches;
 use parbake_atlas::Layout;
 use parbake_model::Mesh;
 use parbake_model::glam::DVec2;
@@ -41,12 +41,12 @@ const MINIFIED: f64 = 1.01;
 pub fn moved(
     mesh: &Mesh,
     source: &Source,
-    asked: &UnfoldOptions,
-    report: &mut UnfoldReport,
+    asked: &UvStageOptions,
+    report: &mut UvStageReport,
     watcher: &impl Watcher,
 ) -> Option<Moved> {
     let start = Layout::new(mesh);
-    let showings = signal(mesh, &start, source, asked.texture_size)?;
+    let signal_scales = signal(mesh, &start, source, asked.texture_size)?;
     let own = PaperOptions {
         rounds: asked.steps,
         guide: asked.guide,
@@ -56,14 +56,18 @@ pub fn moved(
     let contact = contact(asked, own.contact_texels);
     let problem = Problem {
         rest: &start.rest,
-        showings: &showings,
+        signal_scales: &signal_scales,
         texture_size: asked.texture_size,
         contact: &contact,
     };
     let region = Feasible::new(&start, &contact);
-    let runs = Runs::new(&start.points, &start.triangles, &showings[0]);
-    let mapped =
-        Mapped { points: &start.points, triangles: &start.triangles, showings: &showings[..1], runs: &runs };
+    let runs = TriangleBatches::new(&start.points, &start.triangles, &signal_scales[0]);
+    let mapped = ParameterizedSignal {
+        points: &start.points,
+        triangles: &start.triangles,
+        signal_scales: &signal_scales[..1],
+        runs: &runs,
+    };
     let mut frames = vec![as_f32(&start.points)];
     let kept = errors(&problem, &start, false);
     let relative = |points: &[DVec2]| -> Vec<f64> {
@@ -71,7 +75,7 @@ pub fn moved(
         errors(&problem, &layout, false).iter().zip(&kept).map(|(a, b)| a / b.max(1e-12)).collect()
     };
     let mut best = (vec![1.0; kept.len()], start.points.clone());
-    let mut judge = |points: &[DVec2]| {
+    let mut score = |points: &[DVec2]| {
         let found = relative(points);
         if found[0] < best.0[0] && found[1..].iter().all(|r| *r < MINIFIED) {
             best = (found, points.to_vec());
@@ -83,12 +87,12 @@ pub fn moved(
             frames.push(as_f32(progress.points));
         }
         if progress.round.is_multiple_of(JUDGED_ROUNDS) {
-            judge(progress.points);
+            score(progress.points);
         }
         watcher.message(Message::Progress { stage: Stage::Unfold, done: progress.round, total });
         !watcher.stopped()
     });
-    judge(&found.points);
+    score(&found.points);
     let (relative, points) = best;
     frames.push(as_f32(&points));
     let layout = Layout { points, ..start.clone() };

@@ -11,10 +11,10 @@
 //! Contract: of the turns' layouts the best one that shows the surface better than the start.
 
 use super::finer::Finer;
-use super::judge::Judge;
+use super::layout_score::LayoutScore;
 use super::steps::Steps;
 use super::{Moved, mapped, runs};
-use crate::best_texture::Solve;
+use crate::least_squares_texture::Solve;
 use crate::optimise::{Balance, Problem, UvOptions, refine};
 use crate::residual::residual_by_triangle;
 use glam::Vec4;
@@ -48,25 +48,25 @@ const WORTH_TRIANGLES: f64 = 0.97;
 /// those of the start; None where none is better at each size. A model's own gets at most
 /// `more_triangles`.
 pub fn refined<W: Watcher>(
-    judge: &Judge,
+    score: &LayoutScore,
     mut layout: Layout,
     options: &UvOptions,
     more_triangles: usize,
     mut frames: Vec<Vec<Vec2>>,
     steps: &mut Steps<W>,
 ) -> Option<(Moved, Vec<f64>)> {
-    let coarse = judge.problem;
-    let limits = Limits::new(judge.own);
-    if judge.own && coarse.showings[0].samples.len() < SAMPLES_PER_TEXEL * coarse.texture_size.pow(2) {
-        let errors = judge.relative(coarse, &layout);
-        let is_better = limits.are_kept(&errors) && judge.is_sound(&layout);
+    let coarse = score.problem;
+    let limits = Limits::new(score.own);
+    if score.own && coarse.signal_scales[0].samples.len() < SAMPLES_PER_TEXEL * coarse.texture_size.pow(2) {
+        let errors = score.relative(coarse, &layout);
+        let is_better = limits.are_kept(&errors) && score.is_sound(&layout);
         return is_better.then_some((Moved { layout, frames, bisected: None }, errors));
     }
     // A bake's last thousandths lie in parallax and outlines, not in coordinates.
     let (tolerance, solve) =
-        if judge.own { (options.tolerance, options.solve) } else { (1e-3, Solve::ROUGH) };
+        if score.own { (options.tolerance, options.solve) } else { (1e-3, Solve::ROUGH) };
     let turn = UvOptions { refine_steps: options.refine_steps.div_ceil(TURNS), tolerance, solve, ..*options };
-    let (mut balance, mut texture) = Balance::new(coarse, judge.start);
+    let (mut balance, mut texture) = Balance::new(coarse, score.start);
     // Views see a surface under all angles: half of it is minified.
     balance.weights.fill(1.0);
     let (mut finer, mut fine_frames) = (None::<Finer>, Vec::new());
@@ -74,20 +74,20 @@ pub fn refined<W: Watcher>(
     for count in 0..TURNS {
         if count == FINER_AFTER && more_triangles > 0 {
             let errors = by_triangle(coarse, &layout, &texture);
-            finer = Finer::new(judge.mesh, &layout, coarse, &errors, more_triangles);
+            finer = Finer::new(score.mesh, &layout, coarse, &errors, more_triangles);
             layout = finer.as_ref().map_or(layout, |finer| finer.layout.clone());
         }
         let problem = &finer.as_ref().map_or(*coarse, |finer| finer.problem(coarse));
         let way = if finer.is_some() { &mut fine_frames } else { &mut frames };
         let step = |points: &[DVec2], _| steps.step(way, points);
         texture = refine(problem, &balance, &mut layout, texture, &turn, step).texture;
-        let errors = judge.relative(problem, &layout);
+        let errors = score.relative(problem, &layout);
         // By what the texture that will be solved for leaves.
         balance.update(&errors);
         let lost = limits.is_lost(&errors);
         if limits.are_kept(&errors)
             && best.as_ref().is_none_or(|best| best.is_beaten(&errors, finer.is_some()))
-            && judge.is_sound(&layout)
+            && score.is_sound(&layout)
         {
             let way = [frames.len(), fine_frames.len()];
             best = Some(Best { layout: layout.clone(), errors, is_finer: finer.is_some(), way });
@@ -151,6 +151,6 @@ impl Limits {
 
 /// What a texture leaves on each triangle at full size.
 fn by_triangle(problem: &Problem, layout: &Layout, texture: &FloatImage<Vec4>) -> Vec<f64> {
-    let showings = &problem.showings[..1];
-    residual_by_triangle(&mapped(layout, showings, &runs(layout, showings)), texture)
+    let signal_scales = &problem.signal_scales[..1];
+    residual_by_triangle(&mapped(layout, signal_scales, &runs(layout, signal_scales)), texture)
 }

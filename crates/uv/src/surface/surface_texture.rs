@@ -9,11 +9,11 @@
 //! Contract: textures are compared by the same samples, whatever the coordinates.
 
 use super::finer::divided;
-use super::surface_signal::{FORESHORTENED, FULL_AND_HALF, Size, Source, showings};
-use super::{Unfolded, mapped, runs};
-use crate::best_texture::{Solve, best_texture_in_bytes, rough_texture};
-use crate::shown::shown_errors;
+use super::surface_samples::{FORESHORTENED, FULL_AND_HALF, Size, Source, signal_scales};
+use super::{UvStageResult, mapped, runs};
+use crate::least_squares_texture::{Solve, least_squares_texture_in_bytes, rough_texture};
 use crate::signal::Signal;
+use crate::trilinear_error::trilinear_errors;
 use glam::Vec4;
 use parbake_atlas::Layout;
 use parbake_image::FloatImage;
@@ -29,9 +29,9 @@ const FEWEST_AND_MOST: [usize; 2] = [1 << 21, 1 << 22];
 const LEAST_GAIN: f64 = 2e-5;
 
 /// What a texture of size² texels is solved for: the surface as it is seen from all around.
-pub struct SurfaceSignal {
+pub struct SurfaceSamples {
     /// One for each of [`FORESHORTENED`], by the surface's F triangles.
-    showings: Vec<Signal>,
+    signal_scales: Vec<Signal>,
     size: usize,
 }
 
@@ -46,33 +46,34 @@ pub struct SurfaceTexture {
     pub samples: usize,
 }
 
-impl SurfaceSignal {
+impl SurfaceSamples {
     /// Of a surface in the common frame, which is the source's own. None where it has no area.
     pub fn new(surface: &Mesh, source: &Source, size: usize) -> Option<Self> {
         let [fewest, most] = FEWEST_AND_MOST;
         let most = (SAMPLES_PER_TEXEL * size * size).clamp(fewest, most);
-        let showings = showings(surface, &Layout::new(surface).rest, source, &FORESHORTENED, most);
-        (!showings[0].samples.is_empty()).then_some(Self { showings, size })
+        let signal_scales = signal_scales(surface, &Layout::new(surface).rest, source, &FORESHORTENED, most);
+        (!signal_scales[0].samples.is_empty()).then_some(Self { signal_scales, size })
     }
 
     /// Solves for the texture of what became of the surface's coordinates, mip levels included.
-    pub fn best_texture(&self, low: &Unfolded) -> SurfaceTexture {
-        let mut showings = Cow::Borrowed(&self.showings);
+    pub fn least_squares_texture(&self, low: &UvStageResult) -> SurfaceTexture {
+        let mut signal_scales = Cow::Borrowed(&self.signal_scales);
         if !low.pieces.is_empty() {
-            showings = Cow::Owned(self.showings.iter().map(|signal| divided(signal, &low.pieces)).collect());
+            signal_scales =
+                Cow::Owned(self.signal_scales.iter().map(|signal| divided(signal, &low.pieces)).collect());
         }
         let layout = Layout::new(&low.model.mesh);
-        let runs = runs(&layout, &showings);
-        let mapped = mapped(&layout, &showings, &runs);
+        let runs = runs(&layout, &signal_scales);
+        let mapped = mapped(&layout, &signal_scales, &runs);
         let start = rough_texture(&mapped, self.size);
-        let least_gain = LEAST_GAIN * shown_errors(&mapped, &start).iter().sum::<f64>();
-        let texture = best_texture_in_bytes(&mapped, start, &Solve { least_gain, ..Solve::FINAL });
-        let left = shown_errors(&mapped, &texture);
+        let least_gain = LEAST_GAIN * trilinear_errors(&mapped, &start).iter().sum::<f64>();
+        let texture = least_squares_texture_in_bytes(&mapped, start, &Solve { least_gain, ..Solve::FINAL });
+        let left = trilinear_errors(&mapped, &texture);
         let errors = FULL_AND_HALF.map(|at| {
             let own = |(size, _): &(&Size, &f64)| size.width == at.width;
             let found = FORESHORTENED.iter().zip(&left).find(own);
             found.map_or(0.0, |(size, left)| left / (3.0 * size.share))
         });
-        SurfaceTexture { texture, errors, samples: showings.iter().map(|s| s.samples.len()).sum() }
+        SurfaceTexture { texture, errors, samples: signal_scales.iter().map(|s| s.samples.len()).sum() }
     }
 }

@@ -2,7 +2,7 @@
 //! where it is seen, how the light meets it, and what it shall show.
 //!
 //! Forward: `raster → interpolate → frame`, once a pixel; everything a solver needs is left
-//! in [`Seen`], and nothing of the mesh.
+//! in [`Fragment`], and nothing of the mesh.
 //!
 //! Contract: the low-poly has normals, tangents and texture coordinates.
 
@@ -14,7 +14,7 @@ use parbake_render::camera::Camera;
 use parbake_render::cutout::{ShCutout, rasterise_cut};
 use parbake_render::frame::{TangentLight, tangent_light};
 use parbake_render::interpolate::{barycentrics, interpolate};
-use parbake_render::parallax::Sight;
+use parbake_render::parallax::ViewDirection;
 use parbake_render::raster::{
     NOTHING, ScreenTriangle, ScreenTriangles, Visibility, rasterise, rasterise_behind,
 };
@@ -22,7 +22,7 @@ use parbake_render::raster::{
 /// What a pixel of the low-poly shall look like where the high-poly leaves the
 /// pixel, or part of it, empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Beyond {
+pub enum UncoveredPixels {
     /// Nothing is asked of such pixels.
     Ignore,
     /// The high-poly before a background of this linear light, counting this much
@@ -32,23 +32,23 @@ pub enum Beyond {
 
 /// What every view of a fit has in common.
 #[derive(Clone)]
-pub struct Walker<'a> {
+pub struct ViewSampler<'a> {
     low: &'a Mesh,
     face_normals: Vec<Vec3>,
     /// Pixels along a side of each view.
     size: usize,
     display: &'a Display,
-    beyond: Beyond,
+    beyond: UncoveredPixels,
     cutout: Option<&'a ShCutout>,
 }
 
 /// One pixel that shows the low-poly.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct Fragment {
     /// Where it falls on the texture.
     pub uv: Vec2,
     /// From where it is seen.
-    pub sight: Sight,
+    pub sight: ViewDirection,
     /// How the light meets it.
     pub light: TangentLight,
     /// Wanted display value, in 65535ths of 1.
@@ -57,9 +57,9 @@ pub struct Seen {
     pub weight: u16,
 }
 
-impl<'a> Walker<'a> {
+impl<'a> ViewSampler<'a> {
     /// For views of `size`² pixels.
-    pub fn new(low: &'a Mesh, size: usize, display: &'a Display, beyond: Beyond) -> Self {
+    pub fn new(low: &'a Mesh, size: usize, display: &'a Display, beyond: UncoveredPixels) -> Self {
         let face_normals = (0..low.triangles.len()).map(|t| low.area_normal(t)).collect();
         Self { low, face_normals, size, display, beyond, cutout: None }
     }
@@ -84,7 +84,7 @@ impl<'a> Walker<'a> {
 
     /// Hands over all layers of the view's pixels, the nearest first: the high-poly's coverage
     /// of the pixel, the layer's number, its coordinate and the direction to the viewer.
-    pub fn walk_layers(&self, reference: &Reference, mut each: impl FnMut(f32, usize, Vec2, Vec3)) {
+    pub fn fragment_layers(&self, reference: &Reference, mut each: impl FnMut(f32, usize, Vec2, Vec3)) {
         let (camera, jitter, size) = (&reference.view.camera, reference.view.jitter, self.size);
         let screen = self.screen(reference);
         let (mut seen, mut next) = (Visibility::default(), Visibility::default());
@@ -102,7 +102,7 @@ impl<'a> Walker<'a> {
     }
 
     /// Hands over the view's pixels, row by row.
-    pub fn walk(&self, reference: &Reference, mut each: impl FnMut(Seen)) {
+    pub fn fragments(&self, reference: &Reference, mut each: impl FnMut(Fragment)) {
         let Self { low, size, .. } = *self;
         let (camera, jitter) = (&reference.view.camera, reference.view.jitter);
         let screen = self.screen(reference);
@@ -130,9 +130,9 @@ impl<'a> Walker<'a> {
             let tangent = interpolate(corners.map(|i| low.tangents[i].truncate()), b);
             let direction = camera.view_direction(point);
             let facing = if direction.dot(self.face_normals[triangle as usize]) < 0.0 { -1.0 } else { 1.0 };
-            each(Seen {
+            each(Fragment {
                 uv: interpolate(corners.map(|i| low.uvs[i]), b),
-                sight: Sight { direction, cosine: normal.normalize_or_zero().dot(direction) },
+                sight: ViewDirection { direction, cosine: normal.normalize_or_zero().dot(direction) },
                 light: tangent_light(normal, tangent, low.tangents[corners[0]].w, direction, facing),
                 target,
                 weight,
@@ -155,13 +155,13 @@ const UNCOVERED: f32 = 1e-3;
 
 /// What the display shall show and how much that counts; `None` when nothing is
 /// asked of this pixel.
-fn target(pixel: [f32; 4], display: &Display, beyond: Beyond) -> Option<([u16; 3], u16)> {
+fn target(pixel: [f32; 4], display: &Display, beyond: UncoveredPixels) -> Option<([u16; 3], u16)> {
     let [r, g, b, coverage] = pixel;
     let rest = 1.0 - coverage;
     let (light, weight) = match beyond {
         _ if rest < UNCOVERED => ([r, g, b], 1.0),
-        Beyond::Ignore => return None,
-        Beyond::Background(behind, weight) => {
+        UncoveredPixels::Ignore => return None,
+        UncoveredPixels::Background(behind, weight) => {
             // The background is light that has passed the gain already.
             let behind = behind.map(|x| x * rest / display.gain);
             ([r + behind[0], g + behind[1], b + behind[2]], weight)
@@ -180,8 +180,8 @@ mod tests {
     fn a_half_covered_pixel_is_ignored_or_blended() {
         let display = Display { gain: 1.0, curve: parbake_image::display::Curve::Linear };
         let pixel = [0.25, 0.25, 0.25, 0.5];
-        assert_eq!(target(pixel, &display, Beyond::Ignore), None);
-        let white = target(pixel, &display, Beyond::Background([1.0; 3], 0.5));
+        assert_eq!(target(pixel, &display, UncoveredPixels::Ignore), None);
+        let white = target(pixel, &display, UncoveredPixels::Background([1.0; 3], 0.5));
         assert_eq!(white, Some(([49151; 3], 32768)));
     }
 }

@@ -1,23 +1,23 @@
 //! How a texture really looks: the squared error of the trilinear fetch that engines do,
-//! not the bound that is minimised (`best_texture.rs`).
+//! not the bound that is minimised (`least_squares_texture.rs`).
 
-use crate::best_texture::Mapped;
 use crate::footprint::{Footprint, shares};
+use crate::least_squares_texture::ParameterizedSignal;
 use crate::pyramid::{level_count, levels};
 use glam::Vec4;
 use parbake_image::FloatImage;
 use rayon::prelude::*;
 
 /// The weighted squared error of each showing, summed over channels and samples.
-pub fn shown_errors(mapped: &Mapped, texture: &FloatImage<Vec4>) -> Vec<f64> {
+pub fn trilinear_errors(mapped: &ParameterizedSignal, texture: &FloatImage<Vec4>) -> Vec<f64> {
     let pyramid = levels(&texture.texels, texture.width, level_count(texture.width));
     let parts: Vec<Vec<f64>> = (0..mapped.runs.count())
         .into_par_iter()
         .map(|run| {
-            let mut errors = vec![0.0; mapped.showings.len()];
+            let mut errors = vec![0.0; mapped.signal_scales.len()];
             for t in mapped.runs.triangles(run) {
                 let footprint = Footprint::new(mapped.points, mapped.triangles[t]);
-                for (signal, error) in mapped.showings.iter().zip(&mut errors) {
+                for (signal, error) in mapped.signal_scales.iter().zip(&mut errors) {
                     let level = footprint.level(signal.pixels.of(t), texture.width, pyramid.len());
                     for sample in signal.of(t) {
                         let mut shown = Vec4::ZERO;
@@ -38,7 +38,7 @@ pub fn shown_errors(mapped: &Mapped, texture: &FloatImage<Vec4>) -> Vec<f64> {
             errors
         })
         .collect();
-    let mut errors = vec![0.0; mapped.showings.len()];
+    let mut errors = vec![0.0; mapped.signal_scales.len()];
     for part in parts {
         errors.iter_mut().zip(part).for_each(|(sum, e)| *sum += e);
     }

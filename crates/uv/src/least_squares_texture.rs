@@ -15,7 +15,7 @@
 //! number of threads.
 
 use crate::normal_equations::NormalEquations;
-pub use crate::parameterized::Mapped;
+pub use crate::parameterized::ParameterizedSignal;
 use crate::rounding::rounded;
 use glam::Vec4;
 use parbake_image::FloatImage;
@@ -52,7 +52,11 @@ impl Solve {
 }
 
 /// The best texture; begins at `start`.
-pub fn best_texture(mapped: &Mapped, start: FloatImage<Vec4>, solve: &Solve) -> FloatImage<Vec4> {
+pub fn least_squares_texture(
+    mapped: &ParameterizedSignal,
+    start: FloatImage<Vec4>,
+    solve: &Solve,
+) -> FloatImage<Vec4> {
     NormalEquations::assemble(mapped, start.width, solve.smoothness).solve(start, solve, None)
 }
 
@@ -60,23 +64,31 @@ pub fn best_texture(mapped: &Mapped, start: FloatImage<Vec4>, solve: &Solve) -> 
 ///
 /// Texels that leave the box are held at its border and the rest is solved again
 /// (active set), at most a few times.
-pub fn best_texture_in_box(mapped: &Mapped, start: FloatImage<Vec4>, solve: &Solve) -> FloatImage<Vec4> {
+pub fn least_squares_texture_in_box(
+    mapped: &ParameterizedSignal,
+    start: FloatImage<Vec4>,
+    solve: &Solve,
+) -> FloatImage<Vec4> {
     NormalEquations::assemble(mapped, start.width, solve.smoothness).solve_in_box(start, solve)
 }
 
 /// A first guess for a texture of this size: rough textures from coarse to fine, so that
 /// conjugate gradients need not carry what is far apart from texel to texel.
-pub fn rough_texture(mapped: &Mapped, size: usize) -> FloatImage<Vec4> {
+pub fn rough_texture(mapped: &ParameterizedSignal, size: usize) -> FloatImage<Vec4> {
     const COARSEST: usize = 64;
     if size <= COARSEST || !size.is_multiple_of(2) {
         return FloatImage::solid(size, Vec4::splat(0.5));
     }
     let rough = Solve { steps: 10, ..Solve::ROUGH };
-    doubled(&best_texture(mapped, rough_texture(mapped, size / 2), &rough))
+    doubled(&least_squares_texture(mapped, rough_texture(mapped, size / 2), &rough))
 }
 
 /// The best texture whose values are 255ths, as files of eight bits hold them; begins at `start`.
-pub fn best_texture_in_bytes(mapped: &Mapped, start: FloatImage<Vec4>, solve: &Solve) -> FloatImage<Vec4> {
+pub fn least_squares_texture_in_bytes(
+    mapped: &ParameterizedSignal,
+    start: FloatImage<Vec4>,
+    solve: &Solve,
+) -> FloatImage<Vec4> {
     let equations = NormalEquations::assemble(mapped, start.width, solve.smoothness);
     rounded(&equations, equations.solve_in_box(start, solve))
 }
@@ -171,9 +183,9 @@ fn sum(rows: &[Vec4]) -> Vec4 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::runs::Runs;
-    use crate::shown::shown_errors;
     use crate::signal::{Pixels, Sample, Signal};
+    use crate::triangle_batches::TriangleBatches;
+    use crate::trilinear_error::trilinear_errors;
     use glam::{DMat2, dvec2};
 
     /// Protects the time that fine textures of few samples take: begun from coarse to fine, few steps
@@ -190,16 +202,22 @@ mod tests {
                 (0, Sample { target, barycentric, weight: 1.0 / 4000.0 })
             })
             .collect();
-        let showings = [0.5, 3.0].map(|texels| {
+        let signal_scales = [0.5, 3.0].map(|texels| {
             let mut signal = Signal::new(1, &samples);
             signal.pixels = Pixels::ByTurns([DMat2::IDENTITY * (texels / 256.0); 2]);
             signal
         });
-        let runs = Runs::new(&points, &triangles, &showings[0]);
-        let mapped = Mapped { points: &points, triangles: &triangles, showings: &showings, runs: &runs };
+        let runs = TriangleBatches::new(&points, &triangles, &signal_scales[0]);
+        let mapped = ParameterizedSignal {
+            points: &points,
+            triangles: &triangles,
+            signal_scales: &signal_scales,
+            runs: &runs,
+        };
         let few = Solve { steps: 5, ..Solve::FINAL };
-        let left =
-            |start| shown_errors(&mapped, &best_texture_in_box(&mapped, start, &few)).iter().sum::<f64>();
+        let left = |start| {
+            trilinear_errors(&mapped, &least_squares_texture_in_box(&mapped, start, &few)).iter().sum::<f64>()
+        };
         let (flat, fine) =
             (left(FloatImage::solid(256, Vec4::splat(0.5))), left(rough_texture(&mapped, 256)));
         assert!(fine < 0.9 * flat, "{fine} of {flat}");

@@ -2,20 +2,20 @@
 //! read again and again, so that no view has to be walked for them twice.
 //!
 //! Contract: directions and light are rounded to 32767ths, which moves a shift by up to some ten
-//! thousandths of its length, where sight is grazing; pixels are in the walk's order (`view_walk.rs`).
+//! thousandths of its length, where sight is grazing; pixels are in the walk's order (`view_sampler.rs`).
 
 use crate::packing::{packed, unpacked};
 use crate::reference::Reference;
-use crate::view_walk::Walker;
+use crate::view_sampler::ViewSampler;
 use parbake_model::glam::{Vec2, Vec3};
 use parbake_render::frame::TangentLight;
-use parbake_render::parallax::Sight;
+use parbake_render::parallax::ViewDirection;
 use rayon::prelude::*;
 
 /// One pixel, as in `Sample` but for where it is fetched: 44 bytes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub struct Sighted {
+pub struct ViewSample {
     /// Where it falls on the texture.
     pub uv: Vec2,
     /// Direction to the viewer and cosine, in 32767ths.
@@ -30,7 +30,7 @@ pub struct Sighted {
 
 const STEP: f32 = 1.0 / 32767.0;
 
-impl Sighted {
+impl ViewSample {
     /// A pixel at this place of the texture that asks for nothing, for hand-made scenes.
     pub fn at(uv: Vec2) -> Self {
         Self { uv, sight: [0; 4], light: [0; 9], target: [0; 3], weight: 0 }
@@ -38,9 +38,9 @@ impl Sighted {
 
     /// From where it is seen.
     #[inline]
-    pub fn sight(&self) -> Sight {
+    pub fn sight(&self) -> ViewDirection {
         let [x, y, z, cosine] = self.sight.map(|v| f32::from(v) * STEP);
-        Sight { direction: Vec3::new(x, y, z), cosine }
+        ViewDirection { direction: Vec3::new(x, y, z), cosine }
     }
 
     /// How the light meets it.
@@ -51,14 +51,14 @@ impl Sighted {
 }
 
 /// The pixels of each of these views.
-pub fn sighted_views(walker: &Walker, references: &[Reference]) -> Vec<Vec<Sighted>> {
+pub fn sample_views(sampler: &ViewSampler, references: &[Reference]) -> Vec<Vec<ViewSample>> {
     let rounded = |x: f32| (x.clamp(-1.0, 1.0) * 32767.0).round_ties_even() as i16;
     (references.par_iter())
         .map(|reference| {
             let mut out = Vec::with_capacity(reference.pixels.len() / 3);
-            walker.walk(reference, |seen| {
+            sampler.fragments(reference, |seen| {
                 let [x, y, z] = seen.sight.direction.to_array();
-                out.push(Sighted {
+                out.push(ViewSample {
                     uv: seen.uv,
                     sight: [x, y, z, seen.sight.cosine].map(rounded),
                     light: packed(&seen.light),

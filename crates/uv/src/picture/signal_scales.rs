@@ -60,7 +60,7 @@ const SIZES: usize = 3;
 /// The picture at its three sizes, as samples of the plane; each showing's weights sum
 /// to 1. Sizes with more than `most` samples are sampled at a lower resolution, but
 /// minified as their own size says.
-pub fn showings(picture: &Picture, plane: Plane, most: usize) -> Vec<Signal> {
+pub fn signal_scales(picture: &Picture, plane: Plane, most: usize) -> Vec<Signal> {
     let mut sizes = vec![picture.clone()];
     while sizes.len() < SIZES {
         let next = sizes[sizes.len() - 1].halved();

@@ -24,7 +24,7 @@ const LIFT: f32 = 1e-4;
 /// The share of each triangle's views that show it: 0 for what is hidden, 1 for the outside of a convex
 /// body, 2 for a sheet that is seen from both sides. `surface` is the same mesh. Triangles without area
 /// have 0.
-pub fn exposures(mesh: &Mesh, surface: &HighSurface) -> Vec<f32> {
+pub fn visibilities(mesh: &Mesh, surface: &HighSurface) -> Vec<f32> {
     let doubled_area = |t: usize| {
         let [a, b, c] = mesh.corners(t);
         (b - a).cross(c - a).length()
@@ -101,7 +101,7 @@ mod tests {
     }
 
     fn exposures_of(mesh: &Mesh) -> Vec<f32> {
-        exposures(mesh, &HighSurface::new(mesh))
+        visibilities(mesh, &HighSurface::new(mesh))
     }
 
     /// Protects texels of what is seen: all of a convex body is, nothing of what it holds.

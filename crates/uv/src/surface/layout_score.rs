@@ -6,7 +6,7 @@ use parbake_atlas::{Layout, check};
 use parbake_model::Mesh;
 
 /// The given layout, and what others are compared by.
-pub struct Judge<'a> {
+pub struct LayoutScore<'a> {
     /// The mesh with the given coordinates.
     pub mesh: &'a Mesh,
     /// The layout that was given.
@@ -22,7 +22,7 @@ pub struct Judge<'a> {
     pub kept: Vec<f64>,
 }
 
-impl<'a> Judge<'a> {
+impl<'a> LayoutScore<'a> {
     /// A judge by the given layout.
     pub fn new(
         mesh: &'a Mesh,

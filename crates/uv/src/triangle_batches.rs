@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 /// Runs of triangles of about the same number of samples.
 #[derive(Clone, Debug, Default)]
-pub struct Runs {
+pub struct TriangleBatches {
     /// All F triangles, each once.
     pub order: Vec<u32>,
     /// Where each run begins in `order`, and the end.
@@ -47,7 +47,7 @@ const RUNS: usize = 32;
 /// the curve: samples lie in that order, and to read them as they lie takes a fifth less time.
 const OWN_ORDER: f64 = 2.5;
 
-impl Runs {
+impl TriangleBatches {
     /// Sorts triangles along a Morton curve through their centres, unless their own order is as good.
     pub fn new(points: &[DVec2], triangles: &[[u32; 3]], signal: &Signal) -> Self {
         let mut keyed: Vec<(u32, u32)> = triangles

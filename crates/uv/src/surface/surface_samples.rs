@@ -23,8 +23,8 @@ pub struct Source<'a> {
     /// Its surface to project on; None where the low-poly is the high-poly itself, with the
     /// same triangles.
     pub surface: Option<&'a HighSurface>,
-    /// How much of each triangle is seen (`parbake_mesh::exposures`); empty where all counts alike.
-    pub exposures: &'a [f32],
+    /// How much of each triangle is seen (`parbake_mesh::visibilities`); empty where all counts alike.
+    pub visibilities: &'a [f32],
     /// How far projection looks to either side, in the common frame.
     pub reach: f32,
     /// How far dark colours are brightened before they are compared, as strong light does: 0 for stored
@@ -79,13 +79,19 @@ const HIDDEN: f32 = 0.05;
 
 /// The surface at these sizes: a sample for each that views take, at most about `most` where the
 /// width is 1 and in proportion at the others.
-pub fn showings(mesh: &Mesh, rest: &[DMat2], source: &Source, sizes: &[Size], most: usize) -> Vec<Signal> {
+pub fn signal_scales(
+    mesh: &Mesh,
+    rest: &[DMat2],
+    source: &Source,
+    sizes: &[Size],
+    most: usize,
+) -> Vec<Signal> {
     let least = (total_area(rest) / most as f64).sqrt();
     let spacing = source.pixel.max(least);
-    sizes.iter().map(|size| showing(mesh, rest, source, size, spacing * size.width)).collect()
+    sizes.iter().map(|size| signal_scale(mesh, rest, source, size, spacing * size.width)).collect()
 }
 
-fn showing(mesh: &Mesh, rest: &[DMat2], source: &Source, size: &Size, spacing: f64) -> Signal {
+fn signal_scale(mesh: &Mesh, rest: &[DMat2], source: &Source, size: &Size, spacing: f64) -> Signal {
     let pixel = source.pixel * size.width;
     let total = total_area(rest);
     // What one triangle is too small for goes to the next: the sum is right.
@@ -99,7 +105,7 @@ fn showing(mesh: &Mesh, rest: &[DMat2], source: &Source, size: &Size, spacing: f
             if has_area(r, total) { count as usize } else { 0 }
         })
         .collect();
-    let counted = |t: usize| source.exposures.get(t).map_or(1.0, |seen| seen.max(HIDDEN));
+    let counted = |t: usize| source.visibilities.get(t).map_or(1.0, |seen| seen.max(HIDDEN));
     let all: f64 = counts.iter().enumerate().map(|(t, n)| *n as f64 * f64::from(counted(t))).sum();
     let unit = (size.share / all.max(f64::MIN_POSITIVE)) as f32;
     let samples: Vec<(u32, Sample)> = (counts.par_iter().enumerate())
@@ -198,14 +204,14 @@ mod tests {
             let source = Source {
                 scene: &scene,
                 surface: None,
-                exposures: &[],
+                visibilities: &[],
                 reach: 0.0,
                 brightened,
                 normals,
                 pixel,
             };
             let rest = Layout::new(scene.mesh()).rest;
-            let signal = showings(scene.mesh(), &rest, &source, &FULL_AND_HALF, 10_000).remove(0);
+            let signal = signal_scales(scene.mesh(), &rest, &source, &FULL_AND_HALF, 10_000).remove(0);
             signal.samples.iter().map(|sample| sample.target.w).collect()
         };
         let spread = |shades: &[f32]| {

@@ -19,7 +19,7 @@ use parbake_views::low_poly::LowPoly;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AlgorithmPlan {
+pub struct PaperJointPlan {
     /// Views in the pool.
     pub views: usize,
     /// Side of a view in pixels.
@@ -43,15 +43,15 @@ pub struct Outcome {
 ///
 /// # Errors
 /// Where its texture coordinates have no area.
-pub fn algorithm_one(
+pub fn paper_joint_fit(
     low: &mut Model,
     high: &HighPoly,
-    plan: &AlgorithmPlan,
+    plan: &PaperJointPlan,
     seed: u64,
-    watch: &impl Watcher,
+    watcher: &impl Watcher,
 ) -> Result<Outcome, PrepareError> {
     let LowPoly { placed, .. } = LowPoly::new(low, &high.frame, plan.fit.texture_size)?;
-    let references = smooth_references(high, plan.views, plan.view_size, SAMPLES, seed, watch);
+    let references = smooth_references(high, plan.views, plan.view_size, SAMPLES, seed, watcher);
     let views = Views {
         references: &references,
         size: plan.view_size,
@@ -59,7 +59,7 @@ pub fn algorithm_one(
         comparison: Comparison { image: ImageLoss::L1, ..Comparison::default() },
         background: Background::Black,
     };
-    let found = paper_fit(&placed, &views, seed, &plan.fit, watch);
+    let found = paper_fit(&placed, &views, seed, &plan.fit, watcher);
     let map = found.map.map(|map| map.as_stored());
     let report = plan.fit.motion.map(|_| {
         move_vertices(&mut low.mesh, &placed, &found.positions, &high.frame);

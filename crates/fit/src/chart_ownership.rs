@@ -9,20 +9,20 @@
 //! not depend on the number of threads.
 
 use parbake_model::glam::Vec2;
-use parbake_render::parallax::{ShParallax, Sight};
+use parbake_render::parallax::{ShParallax, ViewDirection};
 use parbake_render::spherical_harmonics::functions;
 use parbake_views::chart_labels::{Atlas, NO_CHART};
-use parbake_views::sighted::Sighted;
+use parbake_views::view_sample::ViewSample;
 use rayon::prelude::*;
 
 /// The owners of a texture's texels.
 #[derive(Clone, Debug)]
-pub struct Territory {
+pub struct ChartOwnership {
     size: usize,
     owner: Vec<u32>,
 }
 
-impl Territory {
+impl ChartOwnership {
     /// From an atlas whose charts were grown until they met.
     pub fn new(grown: &Atlas) -> Self {
         Self { size: grown.size, owner: grown.label.clone() }
@@ -41,7 +41,7 @@ impl Territory {
 
     /// Whether a shift leads from one owner to another.
     #[inline]
-    fn strays(&self, map: &ShParallax, uv: Vec2, sight: &Sight) -> bool {
+    fn strays(&self, map: &ShParallax, uv: Vec2, sight: &ViewDirection) -> bool {
         self.owner(uv + map.shift(uv, sight)) != self.owner(uv)
     }
 }
@@ -53,11 +53,15 @@ const ROUNDS: usize = 32;
 
 /// Shrinks coefficients until no shift crosses a border, but for pixels that lie on one.
 /// Returns the share of pixels whose shifts did at first, and at the end.
-pub fn keep_at_home(views: &[Vec<Sighted>], territory: &Territory, map: &mut ShParallax) -> [f64; 2] {
-    let (first, mut stray) = strays(views, territory, map);
+pub fn clamp_to_chart(
+    views: &[Vec<ViewSample>],
+    chart_ownership: &ChartOwnership,
+    map: &mut ShParallax,
+) -> [f64; 2] {
+    let (first, mut stray) = strays(views, chart_ownership, map);
     let count = functions(map.order);
     for _ in 0..ROUNDS {
-        stray.retain(|(uv, sight)| territory.strays(map, *uv, sight));
+        stray.retain(|(uv, sight)| chart_ownership.strays(map, *uv, sight));
         if stray.is_empty() {
             break;
         }
@@ -70,15 +74,19 @@ pub fn keep_at_home(views: &[Vec<Sighted>], territory: &Territory, map: &mut ShP
         }
     }
     // A shift that became smaller ends elsewhere, and that may be another chart's bay.
-    [first, if first > 0.0 { strays(views, territory, map).0 } else { 0.0 }]
+    [first, if first > 0.0 { strays(views, chart_ownership, map).0 } else { 0.0 }]
 }
 
 /// The pixels that stray, and their share in all.
-fn strays(views: &[Vec<Sighted>], territory: &Territory, map: &ShParallax) -> (f64, Vec<(Vec2, Sight)>) {
-    let stray: Vec<(Vec2, Sight)> = (views.par_iter())
+fn strays(
+    views: &[Vec<ViewSample>],
+    chart_ownership: &ChartOwnership,
+    map: &ShParallax,
+) -> (f64, Vec<(Vec2, ViewDirection)>) {
+    let stray: Vec<(Vec2, ViewDirection)> = (views.par_iter())
         .flat_map_iter(|view| {
             let pixels = view.iter().map(|pixel| (pixel.uv, pixel.sight()));
-            pixels.filter(|(uv, sight)| territory.strays(map, *uv, sight))
+            pixels.filter(|(uv, sight)| chart_ownership.strays(map, *uv, sight))
         })
         .collect();
     let all: usize = views.iter().map(Vec::len).sum();
@@ -94,12 +102,12 @@ mod tests {
     #[test]
     fn shifts_across_a_border_stray() {
         let label = (0..16).map(|i| u32::from(i % 4 >= 2)).collect();
-        let territory = Territory::new(&Atlas { size: 4, label, covered: vec![true; 16] });
+        let chart_ownership = ChartOwnership::new(&Atlas { size: 4, label, covered: vec![true; 16] });
         let mut map = ShParallax::zeros(0, 1);
-        let sight = Sight { direction: Vec3::Z, cosine: 1.0 };
+        let sight = ViewDirection { direction: Vec3::Z, cosine: 1.0 };
         let mut strays = |x: f32, from: f32| {
             map.coefficients[0] = Vec2::new(x / 0.282_094_8, 0.0);
-            territory.strays(&map, Vec2::new(from, 0.5), &sight)
+            chart_ownership.strays(&map, Vec2::new(from, 0.5), &sight)
         };
         assert!(!strays(0.2, 0.25) && strays(0.3, 0.25));
         assert!(!strays(0.2, 0.75) && strays(0.3, 0.75));
