@@ -1,20 +1,31 @@
-//! Parbake makes a small 3D model look like a big one.
+//! Parbake bakes the appearance of a high-poly model onto a low-poly one by differentiable rendering.
 //!
-//! It takes a detailed textured model (the high-poly) and a coarse one (the low-poly), renders
-//! both, and moves the coarse one's vertices, texture coordinates and textures until the
-//! pictures agree.
+//! It renders both models from hundreds of views and solves for the vertices, texture coordinates and
+//! maps of the low-poly that make the pictures agree. This crate is options and order only; the
+//! algorithms live in the crates that it calls (`ARCHITECTURE.md`).
 //!
 //! ```no_run
-//! use parbake::{BakeOptions, Limits, bake, read_model, write_glb};
-//! # fn main() -> Result<(), parbake::BakeError> {
-//! let limits = Limits::default();
-//! let high = read_model("high.obj".as_ref(), &limits)?.model;
-//! let low = read_model("low.obj".as_ref(), &limits)?.model;
-//! let baked = bake(&high, &low, &BakeOptions::default(), &())?;
-//! write_glb("baked.glb".as_ref(), &baked.model)?;
-//! # Ok(())
-//! # }
+//! use parbake::{BakeError, BakeOptions, Limits, bake, read_model, write_glb};
+//!
+//! fn main() -> Result<(), BakeError> {
+//!     let limits = Limits::default();
+//!     let high = read_model("high.obj".as_ref(), &limits)?.model;
+//!     let low = read_model("low.obj".as_ref(), &limits)?.model;
+//!     let baked = bake(&high, &low, &BakeOptions::default(), &())?;
+//!     write_glb("baked.glb".as_ref(), &baked.model)?;
+//!     Ok(())
+//! }
 //! ```
+//!
+//! * **Options** are plain structs with a documented default for each field: [`BakeOptions`] for
+//!   [`bake`] and [`compress`], [`ImageOptions`] for [`bake_image`], [`EvaluateOptions`] for
+//!   [`evaluate`]. They are the same for library, command line and options file.
+//! * **Several low-polys** of one high-poly: [`prepare_high_poly`] once, then [`bake_prepared`] for each.
+//! * **Warnings and progress** come as [`Message`]s to the [`Watcher`] that is the last argument, which
+//!   may also stop the run; `&()` watches nothing. Warnings of readers are in [`Loaded`].
+//! * **Errors** are [`BakeError`]s: one sentence with the file, the place or the option, and what to do.
+//! * **Threads**: work runs on rayon's current pool ([`with_threads`] makes one); the result does not
+//!   depend on their number.
 
 mod bake;
 mod budget;
@@ -67,3 +78,8 @@ pub use plan::Plan;
 pub use report::{BakeReport, LossStep, Work};
 pub use studio::{Shot, Studio, Subject};
 pub use threads::{MOST_THREADS, join, with_threads};
+
+/// The README's example, compiled as it is pasted.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+pub struct Readme;

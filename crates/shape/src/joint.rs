@@ -12,7 +12,7 @@
 //! a black background, where nobody would see it, is seen here.
 //!
 //! How far vertices go depends on how far outlines are apart at first: the step, what holds a
-//! vertex near its rest, and the discount on overhang all follow that one length. A mesh whose
+//! vertex near its rest position, and the discount on overhang all follow that one length. A mesh whose
 //! outlines fit already stays as it is, and so does one whose outlines did not come closer. Where
 //! outlines are more than a pixel apart, steps begin with views of half the size, which show the
 //! way as well and take a third of the time.

@@ -1,6 +1,6 @@
 //! Points that follow the gradient of their vertices by Adam, on a mesh that stays sane.
 //!
-//! A step: the adjoint of where vertices are ([`Points`]), a spring that pulls points rest, Adam,
+//! A step: the adjoint of where vertices are ([`Points`]), a spring that pulls points back to rest, Adam,
 //! and what the [`TriangleQuality`] leaves of where that leads.
 //!
 //! Contract: after every step each triangle is as sane as the guard asks, and the values that Adam
@@ -41,14 +41,14 @@ impl<'a> MovingPoints<'a> {
         &self.at
     }
 
-    /// P ways from rest.
+    /// P displacements from the rest positions.
     pub fn ways(&self) -> Vec<Vec3> {
         self.at.iter().zip(&self.points.rest).map(|(at, rest)| *at - *rest).collect()
     }
 
     /// Moves against the gradients of the V vertices and, if there are any, of the P points
     /// besides, at `share` of the first rate. The spring weighs the mean of the squared ways from
-    /// rest, in what the gradients are of.
+    /// the rest positions, in what the gradients are of.
     pub fn step(&mut self, to_vertices: &[Vec3], to_points: &[Vec3], spring: f32, share: f32) {
         let mut gradient = self.points.adjoint(self.motion, to_vertices);
         let pull = 2.0 * spring / self.values.len().max(1) as f32;
@@ -72,7 +72,7 @@ impl<'a> MovingPoints<'a> {
         self.at.clone_from(&self.points.rest);
     }
 
-    /// Mean and longest way from rest.
+    /// Mean and greatest distance from the rest positions.
     pub fn moved(&self) -> [f32; 2] {
         let ways = || self.at.iter().zip(&self.points.rest).map(|(at, rest)| at.distance(*rest));
         [ways().sum::<f32>() / self.at.len().max(1) as f32, ways().fold(0.0, f32::max)]
@@ -89,7 +89,7 @@ mod tests {
     }
 
     /// Protects the fit: points go against the gradient, the spring alone brings them back, and
-    /// what is taken back is rest to the bit.
+    /// what is taken back is at rest to the bit.
     #[test]
     fn points_follow_and_the_spring_pulls_them_home() {
         let points = square();
