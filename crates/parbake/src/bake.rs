@@ -1,18 +1,20 @@
 //! A bake, from two models to a third.
 //!
 //! ```text
-//! high ─ placed ─┬ Scene ──────┬ reference views ──────────────┬───────┐
-//!                └ HighSurface ┴ projection ────────┐          │       │
-//! low ─ lit ┬ mend ─ shape ─ unfold ─ LowPoly ───── start ─── depth ─ samples ─ fit ─ Model
-//!   (normals)│    (vertices) (coordinates) (texel map, charts)  (cutout, parallax)
-//!           └ mend ─ LowPoly ─ projection ─ Model (to compare with)
+//! high ─ HighPoly ─┬ scene ─── reference views ─────────────────────────┬───────────┐
+//!                  └ surface ─ projection ───────────────┐              │           │
+//! low ─ normals ┬ repair ─ vertices ─ UVs ─ LowPoly ─ projected maps ─ parallax ─ samples ─ maps ─ Model
+//!               │          (geometry.rs)  (texel map, charts)        (and cutout)
+//!               └ baseline ─ LowPoly ─ ray-cast maps ─ Model (to compare with)
 //! ```
 
+use crate::baseline::other_baseline;
 use crate::budget::{at_the_end, check_budget, shares, stage_weights};
 use crate::error::BakeError;
 use crate::geometry::{Geometry, move_geometry};
 use crate::options::{BakeOptions, UvMode};
 use crate::report::{BakeReport, Work, layout_warning};
+use crate::warnings::{Warnings, swapped, unseen};
 use parbake_atlas::check_mesh;
 use parbake_fit::backend::{Backend, Cpu};
 use parbake_fit::parallax_maps::{FittedMaps, ParallaxMaps, fit_parallax_maps};
@@ -25,7 +27,6 @@ use parbake_progress::{Clock, Message, ProgressScope, Stage, Watcher};
 use parbake_render::camera::Projection;
 use parbake_render::shade::Lambert;
 use parbake_uv::moves::UvMoves;
-use parbake_uv::surface::{RepairedLowPoly, UvStageOptions, repair_uvs};
 use parbake_views::high_poly::{Conventions, HighPoly, ViewSet};
 use parbake_views::low_poly::{LowPoly, lit};
 use parbake_views::pool::Rig;
@@ -45,7 +46,7 @@ pub struct Baked {
     pub model: Model,
     /// What the result is compared with: what an ordinary ray-cast baker makes of the same two models.
     /// The low-poly as it was delivered, vertices included, with its own texture coordinates where they
-    /// are sound or were to be kept (else mended as [`UvMode::Repair`] does), and with maps of the same
+    /// are sound or were to be kept (else repaired as [`UvMode::Repair`](crate::UvMode::Repair) does), and with maps of the same
     /// size that were projected along its normals. Where a model is compressed: its own surface with the
     /// best texture for its own coordinates.
     pub ray_cast: Model,
@@ -145,7 +146,7 @@ fn run(
     let scope = ProgressScope::new(watcher, begin, options.time_budget).keeping_back(at_the_end(size));
     watcher.message(Message::Plan(stage_weights(options)));
     let mut clock = Clock::new(begin);
-    let mut warnings = Warnings { watcher, told: Vec::new() };
+    let mut warnings = Warnings::new(watcher);
     warnings.tell((!same).then(|| swapped(high, low)).flatten());
     // One model twice keeps its vertices, whatever their normals are like.
     let turned = (!same).then(|| lit(low));
@@ -249,85 +250,9 @@ fn run(
     })
 }
 
-/// The delivered low-poly made ready to be compared with, as [`Baked::ray_cast`] says; none where that is what
-/// was prepared for the bake already, or where its own coordinates have no place for a texture.
-fn other_baseline(
-    delivered: &Model,
-    prepared: &LowPoly,
-    work: Work,
-    high: &HighPoly,
-    options: &BakeOptions,
-) -> Option<LowPoly> {
-    let same = |mesh: &Mesh| {
-        let own = &prepared.written;
-        own.uvs == mesh.uvs && own.positions == mesh.positions && own.triangles == mesh.triangles
-    };
-    if work == Work::Compress || same(&delivered.mesh) {
-        return None;
-    }
-    let mode = if options.uv == UvMode::Keep { UvMode::Keep } else { UvMode::Repair };
-    // A gutter that was asked for is no reason to pack anew what is sound.
-    let asked = UvStageOptions { gutter_required: false, ..options.uv_stage_as(mode) };
-    let RepairedLowPoly { name, mut mesh, .. } = repair_uvs(delivered, &asked).ok()?;
-    if same(&mesh) {
-        return None;
-    }
-    mesh.triangle_materials.fill(0);
-    let mended = Model { name, mesh, materials: vec![Material::default()], images: Vec::new() };
-    LowPoly::new(&mended, &high.frame, options.texture_size).ok()
-}
-
-/// A low-poly has more triangles than its high-poly by more than this factor only where the two are swapped.
-const SWAPPED: usize = 2;
-
-/// A word about models that are likely in each other's place. A plain low-poly for a textured high-poly is
-/// not, however fine it is: a scan with its colours on a coarser mesh than the model's own is a good pair.
-fn swapped(high: &HighPoly, low: &Model) -> Option<String> {
-    let (of_low, of_high) = (low.mesh.triangles.len(), high.triangles);
-    let has_pictures = low.materials.iter().any(|material| material.base_color_texture.is_some());
-    let only_high = high.scene.has(MapKind::BaseColor) && !has_pictures;
-    (of_low > SWAPPED * of_high && !only_high).then(|| {
-        format!(
-            "the low-poly {} has {of_low} triangles and the high-poly {} {of_high}: are they swapped?",
-            low.name, high.name
-        )
-    })
-}
-
-/// Share of the texels on the surface that no view saw from which on it is worth a word.
-const UNSEEN_WORTH_A_WORD: f64 = 0.05;
-
-/// A word about texels that no training view saw.
-fn unseen(model: &str, unseen: usize, covered: usize) -> Option<String> {
-    let share = unseen as f64 / covered.max(1) as f64;
-    (share > UNSEEN_WORTH_A_WORD).then(|| {
-        format!(
-            "{model}: no training view saw {:.0} % of the texels on the surface, which are as projected or filled from \
-             their neighbours; parts that nothing shows are no loss, else try more --views, a larger --view-size \
-             or --time-budget, or a smaller --texture-size",
-            100.0 * share
-        )
-    })
-}
-
 /// Maps as files hold them.
 fn images(maps: &MapSet, srgb: bool) -> Vec<(MapKind, Image)> {
     maps.iter().map(|(kind, map)| (kind, to_image(kind, map, srgb))).collect()
-}
-
-/// What the user is told of as it is found, and reads again in the report.
-struct Warnings<'a, W> {
-    watcher: &'a W,
-    told: Vec<String>,
-}
-
-impl<W: Watcher> Warnings<'_, W> {
-    fn tell(&mut self, found: impl IntoIterator<Item = String>) {
-        for warning in found {
-            self.watcher.message(Message::Warning(warning.clone()));
-            self.told.push(warning);
-        }
-    }
 }
 
 /// The low-poly with one material of these images and these parallax maps.

@@ -28,6 +28,7 @@
 //!   depend on their number.
 
 mod bake;
+mod baseline;
 mod budget;
 mod comparison;
 mod compress;
@@ -44,6 +45,7 @@ mod plan;
 mod report;
 pub mod studio;
 mod threads;
+mod warnings;
 
 pub use bake::{Baked, bake, bake_prepared, prepare_high_poly};
 pub use comparison::{
