@@ -122,9 +122,10 @@ pub fn check_beside(
         if taken.contains(&path.as_path()) {
             return Err(Failure::Usage(format!("{}: two outputs have this name", path.display())));
         }
+        // That a file would be lost is said before anything else about its name.
+        check_not_input(path, inputs)?;
         check_extension(path, extensions, what)?;
         check_place(path)?;
-        check_not_input(path, inputs)?;
         taken.push(path);
     }
     Ok(())
