@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Elements are `repr(C)`: [`Sample`](parbake_views::samples::Sample),
-//! [`ViewSample`](parbake_views::sighted::Sighted), [`Row`] and `Vec4`. A kernel for each operation can
+//! [`ViewSample`], [`Row`] and `Vec4`. A kernel for each operation can
 //! stand in the place of the [`Cpu`]'s; nothing is kept between calls.
 //!
 //! Contract: results depend on the arguments alone, not on the number of threads.

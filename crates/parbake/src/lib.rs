@@ -19,7 +19,7 @@
 //!
 //! * **Options** are plain structs with a documented default for each field: [`BakeOptions`] for
 //!   [`bake`] and [`compress`], [`ImageOptions`] for [`bake_image`], [`EvaluateOptions`] for
-//!   [`evaluate`]. They are the same for library, command line and options file.
+//!   [`evaluate()`]. They are the same for library, command line and options file.
 //! * **Several low-polys** of one high-poly: [`prepare_high_poly`] once, then [`bake_prepared`] for each.
 //! * **Warnings and progress** come as [`Message`]s to the [`Watcher`] that is the last argument, which
 //!   may also stop the run; `&()` watches nothing. Warnings of readers are in [`Loaded`].

@@ -196,8 +196,9 @@ impl Pictures<'_, '_> {
         };
         let Some(image) = image else {
             let name = &map.file;
-            self.context
-                .warn(format!("material {material:?}: picture {name:?} was not found; the material goes without it"));
+            self.context.warn(format!(
+                "material {material:?}: picture {name:?} was not found; the material goes without it"
+            ));
             return Ok(None);
         };
         let wrap = [if map.clamp { Wrap::Clamp } else { Wrap::Repeat }; 2];

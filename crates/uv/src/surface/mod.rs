@@ -214,11 +214,11 @@ impl UvStageOptions {
     }
 }
 
-/// [`mend`], with room for a parallax map where charts are few: near another chart's a fetch blends in that
+/// [`repair_uvs`], with room for a parallax map where charts are few: near another chart's a fetch blends in that
 /// one's coefficients, which costs 0.1 to 0.4 dB. The gutter becomes that of `options`.
 ///
 /// # Errors
-/// As of [`mend`].
+/// As of [`repair_uvs`].
 pub fn repair_uvs_with_room(
     low: &Model,
     options: &mut UvStageOptions,
