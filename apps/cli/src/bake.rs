@@ -238,7 +238,7 @@ fn tell_of_shape(console: &Console, report: &BakeReport) {
         let [before, after] = depth.strayed.map(|share| 100.0 * share);
         let anew = match depth.begun_anew {
             0 => "",
-            _ => ", begun anew for a finer texture, as all it had mended was a coarse one's blur",
+            _ => ", started again for the finer texture, since it had only made up for the coarse one's blur",
         };
         console.say(&format!(
             "parallax: {} steps{anew}; {before:.3} % of the pixels strayed into another chart, {after:.3} % do",

@@ -122,7 +122,7 @@ impl BakeReport {
     pub fn start(&self) -> &'static str {
         match (self.views, self.losses.first().map(|loss| loss.moved.as_str())) {
             // Nothing was ray-cast where nothing was looked at.
-            (0, Some("mended")) => "the best texture of this size for coordinates that were only mended",
+            (0, Some("mended")) => "the best texture of this size for UVs that were only repaired",
             (0, _) => "the best texture of this size for the coordinates as they were",
             _ => "what a ray-cast baker makes of the low-poly as it was delivered",
         }
