@@ -12,7 +12,7 @@ use divan::counter::ItemsCount;
 use parbake_fit::backend::Cpu;
 use parbake_fit::membrane::Membrane;
 use parbake_fit::outliers::Cauchy;
-use parbake_fit::problem::{Problem, footprint};
+use parbake_fit::problem::{Problem, ShadedProblem, footprint};
 use parbake_fit::step::{StepOptions, Workspace, fit_step};
 use parbake_image::display_table::DisplayTable;
 use parbake_image::{FloatImage, MapKind, MapSet};
@@ -71,9 +71,9 @@ fn collect(low: &Mesh, references: &[Reference]) -> SampleSet {
 }
 
 impl Bench {
-    fn problem(&self) -> Problem<'_, Lambert> {
+    fn problem(&self) -> ShadedProblem<'_, Lambert> {
         let Self { samples, atlas, display, .. } = self;
-        Problem { samples, atlas, display, brdf: &Lambert, outliers: Cauchy::new(1.0) }
+        ShadedProblem { samples, atlas, display, brdf: &Lambert, outliers: Cauchy::new(1.0) }
     }
 
     fn count(&self) -> ItemsCount {

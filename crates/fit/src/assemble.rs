@@ -11,27 +11,27 @@ use crate::outliers::Loss;
 use crate::problem::{Problem, Response, footprint, local_places};
 use parbake_image::{MapKind, MapSet};
 use parbake_model::glam::Vec4;
-use parbake_render::shade::{Brdf, Jacobian};
+use parbake_render::shade::Jacobian;
 use parbake_solve::grid::gather;
 use parbake_solve::stencil::{Block, Diagonal, Row, Symmetric, add_diagonal, add_symmetric};
 
 /// The normal equations of one map over all samples; returns the loss.
-pub(crate) fn assemble_on_cpu<B: Brdf, S: SampleBlock>(
+pub(crate) fn assemble_on_cpu<P: Problem, S: SampleBlock>(
     kind: MapKind,
-    problem: &Problem<B>,
+    problem: &P,
     maps: &MapSet,
     rows: &mut Vec<Row<S>>,
 ) -> Loss {
-    let size = problem.samples.size;
+    let samples = problem.samples();
+    let size = samples.size;
     let losses = gather(
         size,
         rows,
         |band, first, local| {
             let mut loss = Loss::default();
-            for s in problem.samples.band(band) {
+            for s in samples.band(band) {
                 let (texels, w) = footprint(s, size);
-                let (light, jacobian) = problem.brdf.jacobian(kind, &s.light(), &maps.blend(texels, w));
-                let (response, weights, share) = problem.respond(light, s);
+                let (jacobian, response, weights, share) = problem.linearise(kind, s, &maps.blend(texels, w));
                 loss += share;
                 if let Some((block, right)) = S::of(&jacobian, &response, weights) {
                     S::add_sample(local, local_places(texels, first, size), w, &block, right);

@@ -52,10 +52,10 @@ pub trait Backend: Sync {
     ) -> SampleSet;
 
     /// The normal equations of one map over all samples, texture size² rows; returns the loss.
-    fn assemble<B: Brdf, S: SampleBlock>(
+    fn assemble<P: Problem, S: SampleBlock>(
         &self,
         kind: MapKind,
-        problem: &Problem<B>,
+        problem: &P,
         maps: &MapSet,
         rows: &mut Vec<Row<S>>,
     ) -> Loss;
@@ -106,10 +106,10 @@ impl Backend for Cpu {
         shifted_samples(views, texture_size, map, watcher)
     }
 
-    fn assemble<B: Brdf, S: SampleBlock>(
+    fn assemble<P: Problem, S: SampleBlock>(
         &self,
         kind: MapKind,
-        problem: &Problem<B>,
+        problem: &P,
         maps: &MapSet,
         rows: &mut Vec<Row<S>>,
     ) -> Loss {

@@ -19,6 +19,7 @@ pub(crate) mod assemble;
 pub mod backend;
 pub mod chart_ownership;
 pub mod cutout;
+pub mod material_problem;
 pub mod membrane;
 pub mod outliers;
 pub mod parallax;

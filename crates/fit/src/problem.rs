@@ -1,22 +1,68 @@
-//! What the samples of all views ask of the maps: the comparison of a sample's light with what the
-//! high-poly shows in its place.
+//! What the samples of all views ask of the maps.
 //!
-//! A sample shows `e = curve(gain · light)` with the light of a [`Brdf`] at the bilinear blend of four
+//! [`Problem`] is what a step has to know: the samples, and what each of them says of one map. Two
+//! implementations: [`ShadedProblem`] compares a sample's light with what the high-poly shows in its
+//! place; `material_problem.rs` compares the maps' values with those of the high-poly itself.
+//!
+//! A shaded sample shows `e = curve(gain · light)` with the light of a [`Brdf`] at the bilinear blend of four
 //! texels of each map. Clipping at 1: a texel that is too bright is pulled down although the clipped
 //! picture no longer moves with it; where both saturate nothing is asked.
 
 use crate::outliers::{Cauchy, Loss};
-use parbake_image::MapSet;
 use parbake_image::display_table::DisplayTable;
+use parbake_image::{MapKind, MapSet, MapValues};
 use parbake_model::glam::Vec4;
-use parbake_render::shade::Brdf;
+use parbake_render::shade::{Brdf, Jacobian};
 use parbake_solve::grid::{block, weights};
 use parbake_views::chart_labels::Atlas;
-use parbake_views::samples::{Sample, SampleSet};
+use parbake_views::samples::{Fetched, Sample, SampleSet};
 use rayon::prelude::*;
 
-/// What all steps of a texture solve share.
-pub struct Problem<'a, B> {
+/// What the samples ask of the maps.
+pub trait Problem: Sync {
+    /// What a pixel of a view says.
+    type Sample: Fetched + Sync;
+
+    /// All samples.
+    fn samples(&self) -> &SampleSet<Self::Sample>;
+
+    /// Chart labels of the texture.
+    fn atlas(&self) -> &Atlas;
+
+    /// Whether a kind of map has a say.
+    fn reads(&self, kind: MapKind) -> bool;
+
+    /// Half of a step's linear model: how what is compared changes with one map, what it is and what
+    /// was wanted, how much each channel counts, and the sample's part of the loss.
+    fn linearise(
+        &self,
+        kind: MapKind,
+        sample: &Self::Sample,
+        values: &MapValues,
+    ) -> (Jacobian, Response, Vec4, Loss);
+
+    /// A sample's part of the loss.
+    fn loss_at(&self, sample: &Self::Sample, values: &MapValues) -> Loss;
+
+    /// The loss of all samples.
+    fn loss(&self, maps: &MapSet) -> Loss {
+        let samples = self.samples();
+        let of_band = |band: usize| -> Loss {
+            let samples_of_band = samples.band(band).iter();
+            samples_of_band
+                .map(|s| {
+                    let (texels, w) = footprint(s, samples.size);
+                    self.loss_at(s, &maps.blend(texels, w))
+                })
+                .sum()
+        };
+        let bands: Vec<Loss> = (0..samples.bands()).into_par_iter().map(of_band).collect();
+        bands.into_iter().sum()
+    }
+}
+
+/// What views show: light by a BRDF, as a display shows it.
+pub struct ShadedProblem<'a, B> {
     /// The samples of the training views.
     pub samples: &'a SampleSet,
     /// Chart labels.
@@ -29,7 +75,7 @@ pub struct Problem<'a, B> {
     pub outliers: Cauchy,
 }
 
-impl<B: Brdf> Problem<'_, B> {
+impl<B: Brdf> ShadedProblem<'_, B> {
     /// Compares the light at a sample with what it wants: the answer, how much each channel of it
     /// counts in a step of least squares, and its part of the loss.
     #[inline]
@@ -42,22 +88,39 @@ impl<B: Brdf> Problem<'_, B> {
         };
         (response, weights * weight, loss)
     }
+}
 
-    /// The loss of all samples, three channels each.
-    pub fn loss(&self, maps: &MapSet) -> Loss {
-        let size = self.samples.size;
-        let of_band = |band: usize| -> Loss {
-            let samples = self.samples.band(band).iter();
-            samples
-                .map(|s| {
-                    let (texels, w) = footprint(s, size);
-                    let light = self.brdf.light(&s.light(), &maps.blend(texels, w));
-                    self.respond(light.extend(0.0), s).2
-                })
-                .sum()
-        };
-        let bands: Vec<Loss> = (0..self.samples.bands()).into_par_iter().map(of_band).collect();
-        bands.into_iter().sum()
+impl<B: Brdf> Problem for ShadedProblem<'_, B> {
+    type Sample = Sample;
+
+    fn samples(&self) -> &SampleSet {
+        self.samples
+    }
+
+    fn atlas(&self) -> &Atlas {
+        self.atlas
+    }
+
+    fn reads(&self, kind: MapKind) -> bool {
+        self.brdf.reads(kind)
+    }
+
+    #[inline]
+    fn linearise(
+        &self,
+        kind: MapKind,
+        sample: &Sample,
+        values: &MapValues,
+    ) -> (Jacobian, Response, Vec4, Loss) {
+        let (light, jacobian) = self.brdf.jacobian(kind, &sample.light(), values);
+        let (response, weights, loss) = self.respond(light, sample);
+        (jacobian, response, weights, loss)
+    }
+
+    #[inline]
+    fn loss_at(&self, sample: &Sample, values: &MapValues) -> Loss {
+        let light = self.brdf.light(&sample.light(), values);
+        self.respond(light.extend(0.0), sample).2
     }
 }
 
@@ -93,9 +156,9 @@ pub(crate) fn respond(display: &DisplayTable, light: Vec4, target: Vec4) -> Resp
 
 /// A sample's four texels and their bilinear weights.
 #[inline]
-pub fn footprint(sample: &Sample, size: usize) -> ([usize; 4], [f32; 4]) {
-    let (fx, fy) = sample.fractions();
-    (block(sample.texel as usize, size), weights(fx, fy))
+pub fn footprint(sample: &impl Fetched, size: usize) -> ([usize; 4], [f32; 4]) {
+    let ([fx, fy], texel) = (sample.fractions(), sample.texel());
+    (block(texel, size), weights(fx, fy))
 }
 
 /// The four places of a sample in a band's local rows (see [`parbake_solve::grid::gather`]).

@@ -9,7 +9,7 @@
 use crate::backend::{Backend, Cpu};
 use crate::membrane::Membrane;
 use crate::outliers::{Cauchy, Loss};
-use crate::problem::Problem;
+use crate::problem::{Problem, ShadedProblem};
 use crate::step::{StepOptions, Workspace, fit_step};
 use parbake_image::display::Display;
 use parbake_image::display_table::DisplayTable;
@@ -23,7 +23,7 @@ use parbake_solve::conjugate_gradient::Effort;
 use parbake_solve::grid::block;
 use parbake_views::chart_labels::{Atlas, NO_CHART};
 use parbake_views::gutter;
-use parbake_views::samples::SampleSet;
+use parbake_views::samples::{Fetched, SampleSet};
 use std::time::Instant;
 
 /// How much work the fit does.
@@ -132,7 +132,7 @@ struct Log {
 }
 
 impl Log {
-    fn new(samples: &SampleSet) -> Self {
+    fn new<S: Fetched>(samples: &SampleSet<S>) -> Self {
         let weight: f64 = samples.iter().map(|s| f64::from(s.weight())).sum();
         Self { begin: Instant::now(), terms: (3.0 * weight).max(1e-9), losses: Vec::new(), best: None }
     }
@@ -177,10 +177,10 @@ impl<W: Watcher, K: Backend> Descent<'_, W, K> {
     }
 
     /// Takes this many steps of one map.
-    fn take<B: Brdf>(
+    fn take<P: Problem>(
         &mut self,
         kind: MapKind,
-        problem: &Problem<B>,
+        problem: &P,
         schedule: &Schedule,
         effort: Effort,
         count: usize,
@@ -216,8 +216,8 @@ impl<W: Watcher, K: Backend> Descent<'_, W, K> {
     }
 
     /// Measures where the last step led, also when there is no time left, and goes back to the best.
-    fn settle<B: Brdf>(&mut self, problem: &Problem<B>, nothing_moved: Move) {
-        if !problem.samples.is_empty() && self.last != nothing_moved {
+    fn settle<P: Problem>(&mut self, problem: &P, nothing_moved: Move) {
+        if !problem.samples().is_empty() && self.last != nothing_moved {
             self.log.note(self.last, problem.loss(&self.maps), &self.maps);
         }
         if let Some((_, maps)) = self.log.best.take() {
@@ -239,7 +239,7 @@ pub struct Comparison<'a, B, K = Cpu> {
     pub srgb: bool,
 }
 
-/// Fits all maps that the start has, beginning there.
+/// Fits all maps that the start has to the light that views show, beginning there.
 pub fn fit_textures<B: Brdf, K: Backend>(
     samples: &SampleSet,
     atlas: &Atlas,
@@ -250,8 +250,22 @@ pub fn fit_textures<B: Brdf, K: Backend>(
 ) -> Fitted {
     let Comparison { backend, brdf, display, srgb } = *comparison;
     let display = &DisplayTable::new(&display);
-    let problem = &Problem { samples, atlas, display, brdf, outliers: Cauchy::new(schedule.outlier) };
-    let kinds: Vec<MapKind> = start.kinds().filter(|kind| brdf.reads(*kind)).collect();
+    let problem = ShadedProblem { samples, atlas, display, brdf, outliers: Cauchy::new(schedule.outlier) };
+    fit_maps(&problem, start, backend, srgb, schedule, watcher)
+}
+
+/// Fits all maps that the start has and the problem reads, beginning there. `srgb` tells whether files
+/// hold sRGB of colours.
+pub fn fit_maps<P: Problem, K: Backend>(
+    problem: &P,
+    start: &MapSet,
+    backend: &K,
+    srgb: bool,
+    schedule: &Schedule,
+    watcher: &impl Watcher,
+) -> Fitted {
+    let (samples, atlas) = (problem.samples(), problem.atlas());
+    let kinds: Vec<MapKind> = start.kinds().filter(|kind| problem.reads(*kind)).collect();
     let (normals, boxed): (Vec<MapKind>, Vec<MapKind>) =
         kinds.iter().partition(|kind| kind.spec().domain == Domain::Hemisphere);
     let total = schedule.rounds * kinds.iter().map(|kind| schedule.steps(*kind)).sum::<usize>()
@@ -316,10 +330,10 @@ pub fn fit_textures<B: Brdf, K: Backend>(
 }
 
 /// Texels that at least one sample reads.
-fn seen(samples: &SampleSet) -> Vec<bool> {
+fn seen<S: Fetched>(samples: &SampleSet<S>) -> Vec<bool> {
     let mut seen = vec![false; samples.size * samples.size];
     for sample in samples.iter() {
-        for texel in block(sample.texel as usize, samples.size) {
+        for texel in block(sample.texel(), samples.size) {
             seen[texel] = true;
         }
     }

@@ -15,7 +15,6 @@ use crate::outliers::Loss;
 use crate::problem::Problem;
 use parbake_image::{Domain, FloatImage, MapKind, MapSet};
 use parbake_model::glam::Vec4;
-use parbake_render::shade::Brdf;
 use parbake_solve::boxed::solve_in_box;
 use parbake_solve::conjugate_gradient::{Effort, Outcome};
 use parbake_solve::stencil::{Block, Diagonal, Row, Stencil, Symmetric};
@@ -45,22 +44,22 @@ pub struct Workspace {
 
 /// One step of the map of this kind, which must be in `maps`. `start` is what unseen texels are held
 /// to. Returns the loss before the step and what the linear solver did.
-pub fn fit_step<B: Brdf>(
+pub fn fit_step<P: Problem>(
     backend: &impl Backend,
     kind: MapKind,
-    problem: &Problem<B>,
+    problem: &P,
     options: &StepOptions,
     maps: &mut MapSet,
     start: &FloatImage<Vec4>,
     workspace: &mut Workspace,
 ) -> (Loss, Outcome) {
-    let size = problem.samples.size;
+    let size = problem.samples().size;
     match kind.spec().domain {
         Domain::Box => {
             let rows = &mut workspace.diagonal;
             let loss = backend.assemble(kind, problem, maps, rows);
             let Some(map) = maps.get_mut(kind) else { return (loss, Outcome::default()) };
-            add_membrane(rows, problem.atlas, map, start, &options.membrane);
+            add_membrane(rows, problem.atlas(), map, start, &options.membrane);
             let matrix = Stencil { size, rows: std::mem::take(rows) };
             let solve =
                 |right: &[Vec4], free: &[Vec4]| backend.solve(&matrix, right, Some(free), &options.effort);
@@ -73,7 +72,7 @@ pub fn fit_step<B: Brdf>(
             let loss = backend.assemble(kind, problem, maps, rows);
             let Some(map) = maps.get_mut(kind) else { return (loss, Outcome::default()) };
             let extra = options.damping * mean_pull(rows);
-            add_membrane(rows, problem.atlas, map, start, &options.membrane);
+            add_membrane(rows, problem.atlas(), map, start, &options.membrane);
             rows.par_iter_mut()
                 .filter(|r| r.centre.trace() > 0.0)
                 .for_each(|r| r.centre.add(&Symmetric::identity(extra)));
@@ -94,6 +93,7 @@ mod tests {
     use super::*;
     use crate::backend::Cpu;
     use crate::outliers::Cauchy;
+    use crate::problem::ShadedProblem;
     use parbake_image::display::{Curve, Display};
     use parbake_image::display_table::DisplayTable;
     use parbake_render::shade::Lambert;
@@ -128,7 +128,7 @@ mod tests {
         let (samples, atlas, display) = (samples(band), atlas(), linear());
         let start = FloatImage::solid(SIZE, Vec4::splat(0.5));
         for (scale, wanted) in [(f32::INFINITY, 0.72), (0.1, 0.8)] {
-            let problem = Problem {
+            let problem = ShadedProblem {
                 samples: &samples,
                 atlas: &atlas,
                 display: &display,
@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn a_normal_tilts_until_the_cosine_fits() {
         let (samples, atlas, display) = (samples(vec![Sample::facing(0, 0.5); 4]), atlas(), linear());
-        let problem = Problem {
+        let problem = ShadedProblem {
             samples: &samples,
             atlas: &atlas,
             display: &display,
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn emission_is_what_the_lit_colour_leaves() {
         let (samples, atlas, display) = (samples(vec![Sample::facing(0, 0.8); 4]), atlas(), linear());
-        let problem = Problem {
+        let problem = ShadedProblem {
             samples: &samples,
             atlas: &atlas,
             display: &display,

@@ -25,7 +25,8 @@ pub fn shifted_texture_slot(material: &Material, kind: MapKind) -> Option<Textur
     own.or(texture_slot(material, kind))
 }
 
-/// What multiplies the texture, or stands for it where there is none; colours are linear.
+/// What multiplies the texture, or stands for it where there is none; colours are linear. Of the
+/// occlusion it is the strength.
 pub fn factors(material: &Material) -> MapValues {
     let mut factors = MapValues::NEUTRAL;
     factors[MapKind::BaseColor] = Vec4::from(material.base_color);
@@ -34,6 +35,9 @@ pub fn factors(material: &Material) -> MapValues {
     factors[MapKind::Normal] = Vec4::new(strength, strength, 1.0, 0.0);
     factors[MapKind::Emissive] = Vec3::from(material.emissive).extend(0.0) * material.emissive_strength;
     factors[MapKind::MetallicRoughness] = Vec4::new(0.0, material.roughness, material.metallic, 0.0);
+    // Its strength: the map's value is 1 + strength · (texture − 1).
+    let strength = material.occlusion_texture.map_or(1.0, |_| material.occlusion_strength);
+    factors[MapKind::Occlusion] = Vec4::splat(strength);
     factors
 }
 

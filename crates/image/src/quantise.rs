@@ -24,7 +24,8 @@ pub fn decoded(kind: MapKind, srgb: bool) -> [f32; 256] {
     })
 }
 
-/// A map as a file holds it: RGB, and an alpha of 1. Normals are stored at unit length.
+/// A map as a file holds it: RGB, and the base colour's opacity as alpha, 1 for all other maps. Normals
+/// are stored at unit length.
 pub fn to_image(kind: MapKind, map: &FloatImage<Vec4>, srgb: bool) -> Image {
     let encoding = kind.spec().encoding;
     let store = |t: &Vec4| {
@@ -37,7 +38,8 @@ pub fn to_image(kind: MapKind, map: &FloatImage<Vec4>, srgb: bool) -> Image {
             Encoding::Srgb | Encoding::Linear => round(x),
             Encoding::Signed => round(0.5 * x + 0.5),
         });
-        [r, g, b, 255]
+        let alpha = if kind == MapKind::BaseColor { round(t.w) } else { 255 };
+        [r, g, b, alpha]
     };
     let pixels = map.texels.par_iter().map(store).collect();
     Image { name: kind.spec().name.into(), width: map.width, height: map.height, pixels }
@@ -46,7 +48,10 @@ pub fn to_image(kind: MapKind, map: &FloatImage<Vec4>, srgb: bool) -> Image {
 /// The map that a reader of [`to_image`] finds; normals are not quite of unit length.
 pub fn from_image(kind: MapKind, image: &Image, srgb: bool) -> FloatImage<Vec4> {
     let table = decoded(kind, srgb);
-    let read = |p: &[u8; 4]| Vec4::new(table[p[0] as usize], table[p[1] as usize], table[p[2] as usize], 0.0);
+    let opacity = |stored: u8| if kind == MapKind::BaseColor { f32::from(stored) / 255.0 } else { 0.0 };
+    let read = |p: &[u8; 4]| {
+        Vec4::new(table[p[0] as usize], table[p[1] as usize], table[p[2] as usize], opacity(p[3]))
+    };
     let texels = image.pixels.par_iter().map(read).collect();
     FloatImage { width: image.width, height: image.height, texels }
 }

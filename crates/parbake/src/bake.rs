@@ -9,30 +9,27 @@
 //! ```
 
 use crate::baseline::other_baseline;
-use crate::budget::{at_the_end, check_budget, shares, stage_weights};
+use crate::budget::{at_the_end, check_budget, stage_weights};
 use crate::error::BakeError;
 use crate::geometry::{Geometry, move_geometry};
-use crate::options::{BakeOptions, UvMode};
+use crate::look::Look;
+use crate::options::{BakeOptions, Shading, UvMode};
+use crate::plan::Plan;
 use crate::report::{BakeReport, Work, layout_warning};
+use crate::textures::{FittedTextures, Subject, fit_views};
 use crate::warnings::{Warnings, swapped, unseen};
 use parbake_atlas::check_mesh;
-use parbake_fit::backend::{Backend, Cpu};
-use parbake_fit::parallax_maps::{FittedMaps, ParallaxMaps, fit_parallax_maps};
-use parbake_fit::schedule::{Comparison, fit_textures};
-use parbake_image::material_maps::set_texture;
 use parbake_image::quantise::to_image;
 use parbake_image::{MapKind, MapSet};
-use parbake_model::{Image, Material, Mesh, Model, TextureSlot, Wrap};
+use parbake_model::{Image, Model};
 use parbake_progress::{Clock, Message, ProgressScope, Stage, Watcher};
 use parbake_render::camera::Projection;
-use parbake_render::shade::Lambert;
 use parbake_uv::moves::UvMoves;
-use parbake_views::high_poly::{Conventions, HighPoly, ViewSet};
+use parbake_views::alpha_layers::alpha_modes;
+use parbake_views::high_poly::{Conventions, HighPoly};
 use parbake_views::low_poly::{LowPoly, lit};
 use parbake_views::pool::Rig;
 use parbake_views::projection::project;
-use parbake_views::view_sample::sample_views;
-use parbake_views::view_sampler::ViewSampler;
 use std::time::Instant;
 
 /// The training cameras: the paper's distance, and the field of view at which a
@@ -118,12 +115,25 @@ fn conventions(options: &BakeOptions) -> Conventions {
         interpretation: options.convention.interpretation(),
         display: options.convention.display(),
         rig: RIG,
+        whole_material: match options.shading {
+            Shading::Auto => None,
+            shading => Some(shading == Shading::Pbr),
+        },
         max_distance: 2.0 * options.reach,
     }
 }
 
 fn prepare(high: &Model, options: &BakeOptions) -> Result<HighPoly, BakeError> {
     Ok(HighPoly::new(high, conventions(options))?)
+}
+
+/// What is to be done.
+#[derive(Clone, Copy)]
+pub(crate) struct Order<'a> {
+    pub high: &'a HighPoly,
+    pub plan: &'a Plan,
+    pub options: &'a BakeOptions,
+    pub work: Work,
 }
 
 fn run(
@@ -142,7 +152,6 @@ fn run(
         plan.reference.filter = (0.5 * plan.reference.filter).max(1.0 / 16.0);
     }
     let size = options.texture_size;
-    let Conventions { display, .. } = high.conventions;
     let scope = ProgressScope::new(watcher, begin, options.time_budget).keeping_back(at_the_end(size));
     watcher.message(Message::Plan(stage_weights(options)));
     let mut clock = Clock::new(begin);
@@ -164,45 +173,14 @@ fn run(
     let projected = project(&prepared, high);
     clock.lap(Stage::Start);
 
-    let set = ViewSet { count: plan.views, seed: options.seed, jitter: true, sampling: plan.reference };
-    let references = high.references(&set, &scope.share(shares::REFERENCE));
-    let views = references.len();
-    clock.lap(Stage::Reference);
-
-    let sampler = ViewSampler::new(&prepared.placed, plan.reference.size, &display, options.beyond());
-    let parallax = match options.parallax_plan().filter(|_| !same) {
-        Some(plan) => {
-            let share = scope.share(shares::PARALLAX);
-            let own = (&prepared, &projected);
-            let fitted = fit_parallax_maps(low, own, high, &references, &sampler, &plan, &share)?;
-            clock.lap(Stage::Parallax);
-            Some(fitted)
-        }
-        None => map.map(FittedMaps::given),
-    };
-    let (samples, maps, parallax_report) = match parallax {
-        None => {
-            let samples = Cpu.view_samples(&sampler, &references, size, &scope);
-            drop(references);
-            (samples, None, None)
-        }
-        Some(FittedMaps { maps, views: mut view_samples, report }) => {
-            let sampler = sampler.with_cutout(maps.cutout.as_ref());
-            view_samples.extend(sample_views(&sampler, &references[view_samples.len()..]));
-            drop(references);
-            (Cpu.shifted_view_samples(view_samples, size, &maps.parallax, &scope), Some(maps), report)
-        }
-    };
-    if samples.is_empty() {
-        return Err(BakeError::OutOfView { low: low.name.clone(), high: high.name.clone() });
-    }
-    clock.lap(Stage::Sampling);
-
-    let comparison = Comparison { backend: &Cpu, brdf: &Lambert, display, srgb: high.conventions.srgb() };
-    let LowPoly { written, map: texels, atlas, .. } = &prepared;
-    let fitted = fit_textures(&samples, atlas, &projected.maps, &comparison, &plan.schedule, &scope);
-    let samples = samples.len();
+    let modes = alpha_modes(&prepared.placed, delivered, high);
+    let subject = Subject { model: low, prepared: &prepared, projected: &projected, modes: &modes };
+    let order = Order { high, plan: &plan, options, work };
+    let textures = fit_views(&order, subject, map, &scope, &mut clock)?;
+    let FittedTextures { fitted, views, samples, parallax, parallax_report } = textures;
+    let LowPoly { written, map: texels, .. } = &prepared;
     clock.lap(Stage::Solve);
+    let (look, srgb) = (Look::new(high, modes), high.conventions.srgb());
 
     let missed_texels = projected.missed;
     let ray_cast = match other_baseline(delivered, &prepared, work, high, options) {
@@ -210,9 +188,9 @@ fn run(
         Some(baseline) => {
             drop(projected);
             let maps = project(&baseline, high).maps;
-            textured(delivered, &baseline.written, images(&maps, comparison.srgb), None)
+            look.textured(delivered, &baseline.written, images(&maps, srgb), None)
         }
-        None => textured(low, written, images(&projected.maps, comparison.srgb), None),
+        None => look.textured(low, written, images(&projected.maps, srgb), None),
     };
     clock.lap(Stage::Baseline);
 
@@ -244,7 +222,7 @@ fn run(
     };
     Ok(Baked {
         ray_cast,
-        model: textured(low, written, fitted.images, maps.as_ref()),
+        model: look.textured(low, written, fitted.images, parallax.as_ref()),
         report,
         uv_moves: unfolded.and_then(|u| u.moves),
     })
@@ -253,21 +231,4 @@ fn run(
 /// Maps as files hold them.
 fn images(maps: &MapSet, srgb: bool) -> Vec<(MapKind, Image)> {
     maps.iter().map(|(kind, map)| (kind, to_image(kind, map, srgb))).collect()
-}
-
-/// The low-poly with one material of these images and these parallax maps.
-fn textured(low: &Model, mesh: &Mesh, maps: Vec<(MapKind, Image)>, parallax: Option<&ParallaxMaps>) -> Model {
-    let mut mesh = mesh.clone();
-    mesh.colors.clear();
-    mesh.uvs1.clear();
-    mesh.triangle_materials.fill(0);
-    let mut material = Material { name: low.name.clone(), ..Material::default() };
-    let mut images = Vec::new();
-    for (kind, image) in maps {
-        let slot = TextureSlot { image: images.len(), wrap: [Wrap::Repeat; 2], ..TextureSlot::default() };
-        set_texture(&mut material, kind, slot);
-        images.push(image);
-    }
-    material.parallax = parallax.map(|maps| maps.pack(&mut images));
-    Model { name: low.name.clone(), mesh, materials: vec![material], images }
 }

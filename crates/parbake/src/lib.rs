@@ -37,6 +37,7 @@ pub mod evaluate;
 mod geometry;
 mod image;
 mod image_options;
+mod look;
 mod memory;
 mod models;
 mod normal_y;
@@ -44,6 +45,7 @@ mod options;
 mod plan;
 mod report;
 pub mod studio;
+mod textures;
 mod threads;
 mod warnings;
 
@@ -59,7 +61,7 @@ pub use image::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
 pub use memory::peak_memory;
 pub use models::{demo_pair, laid_out, simplified, subdivided, wall_pair};
 pub use normal_y::{NormalY, with_normal_y};
-pub use options::{Backdrop, BakeOptions, Convention, Method, Parallax, Preset, ShapeMode, UvMode};
+pub use options::{Backdrop, BakeOptions, Convention, Method, Parallax, Preset, Shading, ShapeMode, UvMode};
 #[cfg(feature = "clap")]
 pub use options::{heading, parse_texels};
 pub use parbake_atlas::{LayoutCheck, ModelCheck, UvCheck, check_mesh, check_model};

@@ -104,6 +104,20 @@ pub enum ShapeMode {
     Free,
 }
 
+/// What of the high-poly's materials is fitted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum Shading {
+    /// `pbr` where a material has more than colour, normals and emission, else `lambert`.
+    #[default]
+    Auto,
+    /// Colours, normals and emission, as a headlight shows them on a matte surface (the paper's shading).
+    Lambert,
+    /// The whole metallic-roughness material, right under any light; needs --convention gltf.
+    Pbr,
+}
+
 /// Whether depth is faked by maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
@@ -246,6 +260,10 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Convention::Gltf, help_heading = heading::ADVANCED))]
     pub convention: Convention,
 
+    /// What of the high-poly's materials is fitted
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Shading::Auto, help_heading = heading::QUALITY))]
+    pub shading: Shading,
+
     /// Keep the projected normal map instead of fitting it
     #[cfg_attr(feature = "clap", arg(long, help_heading = heading::ADVANCED))]
     pub keep_normals: bool,
@@ -301,6 +319,7 @@ impl Default for BakeOptions {
             more_triangles: None,
             convention: Convention::Gltf,
             backdrop: Backdrop::Black,
+            shading: Shading::Auto,
             silhouette: None,
             keep_normals: false,
             normal_y: NormalY::Up,
@@ -353,6 +372,10 @@ impl BakeOptions {
         within("cutout-size", self.cutout_size as f64, 4.0, 1024.0)?;
         within("threads", self.threads as f64, 0.0, crate::threads::MOST_THREADS as f64)?;
         within("time-budget", self.time_budget.unwrap_or(0.0), 0.0, 1e9)?;
+        if self.shading == Shading::Pbr && self.convention == Convention::Paper {
+            let range = "auto or lambert with --convention paper".into();
+            return Err(BakeError::Option { option: "shading", value: "pbr".into(), range });
+        }
         if self.shape == ShapeMode::Laplacian && self.method == Method::Paper {
             let range = "keep or normal with --method paper".into();
             return Err(BakeError::Option { option: "shape", value: "laplacian".into(), range });

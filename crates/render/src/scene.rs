@@ -15,7 +15,7 @@ use crate::frame::tangent_light;
 use crate::interpolate::{barycentrics, interpolate};
 use crate::interpretation::Interpretation;
 use crate::parallax::ViewDirection;
-use crate::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
+use crate::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility, rasterise};
 pub use crate::scene_textures::unpack;
 use crate::scene_textures::{Builder, Map, Surface, Textures};
 use crate::shade::Brdf;
@@ -23,7 +23,7 @@ use parbake_image::display::encode_srgb;
 use parbake_image::pyramid::Pyramid;
 use parbake_image::{MapKind, MapValues};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
-use parbake_model::{Image, Material, Mesh};
+use parbake_model::{AlphaMode, Image, Material, Mesh};
 use rayon::prelude::*;
 
 /// A square picture in linear light: premultiplied RGB and coverage.
@@ -33,6 +33,31 @@ pub struct Picture {
     pub size: usize,
     /// size² pixels, row 0 on top.
     pub rgba: Vec<[f32; 4]>,
+}
+
+/// A point of the surface as a camera sees it.
+struct Seen {
+    /// The normal's is in the tangent frame.
+    values: MapValues,
+    normal: Vec3,
+    tangent: Vec3,
+    handedness: f32,
+    to_viewer: Vec3,
+    facing: f32,
+}
+
+impl Seen {
+    fn light(&self, brdf: &impl Brdf) -> Vec3 {
+        let Self { normal, tangent, handedness, to_viewer, facing, .. } = *self;
+        brdf.light(&tangent_light(normal, tangent, handedness, to_viewer, facing), &self.values)
+    }
+
+    fn world_normal(&self) -> Vec3 {
+        let m = self.values[MapKind::Normal];
+        let bitangent = self.normal.cross(self.tangent) * self.handedness;
+        let world = self.tangent * m.x + bitangent * m.y + self.normal * m.z;
+        (world * self.facing).normalize_or(self.to_viewer)
+    }
 }
 
 /// A model with its textures unpacked into mip pyramids.
@@ -47,6 +72,17 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Multiplies all emission, so that it fits into what maps can hold.
+    pub fn scale_emission(&mut self, factor: f32) {
+        self.surfaces.iter_mut().for_each(|surface| surface.factors[MapKind::Emissive] *= factor);
+    }
+
+    /// The brightest emission that a material's factor allows.
+    pub fn strongest_emission(&self) -> f32 {
+        let strongest = |s: &Surface| s.factors[MapKind::Emissive].truncate().max_element();
+        self.surfaces.iter().map(strongest).fold(0.0, f32::max)
+    }
+
     /// Unpacks every texture that a material uses.
     ///
     /// The mesh must have normals, and tangents if a material has a normal map.
@@ -122,9 +158,14 @@ impl Scene {
         for (kind, map) in MapKind::ALL.into_iter().zip(textures).filter(|(k, _)| *k != MapKind::Normal) {
             values[kind] = surface.factors[kind];
             if let Some(map) = map {
-                values[kind] *= fetch(map).extend(1.0);
+                let texture = fetch(map).extend(1.0);
+                values[kind] = match kind {
+                    MapKind::Occlusion => Vec4::ONE + values[kind] * (texture - Vec4::ONE),
+                    _ => values[kind] * texture,
+                };
             }
         }
+        values[MapKind::BaseColor].w = self.opacity(surface, corners, weights, fetch);
         if !self.mesh.colors.is_empty() {
             let own: Vec4 = interpolate(corners.map(|i| self.mesh.colors[i]), weights);
             // Light is what is blended between vertices, whatever is stored.
@@ -132,6 +173,50 @@ impl Scene {
             values[MapKind::BaseColor] *= Vec3::from(own.truncate().to_array().map(stored)).extend(1.0);
         }
         values
+    }
+
+    /// Opacity before any cutoff; 1 where the material is opaque.
+    fn opacity(
+        &self,
+        surface: &Surface,
+        corners: [usize; 3],
+        weights: [f32; 3],
+        fetch: &impl Fn(&Map) -> Vec3,
+    ) -> f32 {
+        if surface.alpha_mode == AlphaMode::Opaque {
+            return 1.0;
+        }
+        let texture = surface.opacity.as_ref().map_or(1.0, |map| fetch(map).x);
+        let own = match self.mesh.colors.is_empty() {
+            true => 1.0,
+            false => interpolate::<Vec4>(corners.map(|i| self.mesh.colors[i]), weights).w,
+        };
+        surface.factors[MapKind::BaseColor].w * texture * own
+    }
+
+    /// Whether any material is cut out or blended.
+    pub fn has_alpha(&self) -> bool {
+        self.surfaces.iter().any(|surface| surface.alpha_mode != AlphaMode::Opaque)
+    }
+
+    /// Whether every material shows its base colour without lights.
+    pub fn is_unlit(&self) -> bool {
+        self.surfaces.iter().all(|surface| surface.is_unlit)
+    }
+
+    /// Whether a material is more than rough, opaque and not metallic: what only shading by the whole
+    /// metallic-roughness model shows.
+    pub fn needs_whole_material(&self) -> bool {
+        let plain = Vec4::new(0.0, 1.0, 0.0, 0.0);
+        self.has_alpha()
+            || self.has(MapKind::Occlusion)
+            || self.surfaces.iter().any(|s| s.is_unlit || s.factors[MapKind::MetallicRoughness] != plain)
+    }
+
+    /// How a triangle's alpha is to be understood, and below which it is cut out.
+    pub fn alpha(&self, triangle: usize) -> (AlphaMode, f32) {
+        let surface = &self.surfaces[self.mesh.triangle_materials[triangle] as usize];
+        (surface.alpha_mode, surface.alpha_cutoff)
     }
 
     /// Light that leaves the surface towards the camera at one sample. With parallax,
@@ -149,7 +234,35 @@ impl Scene {
         at: (f64, f64),
         footprint: f32,
     ) -> Vec3 {
-        let b = barycentrics(&screen.triangles[triangle], at.0, at.1);
+        self.seen(camera, &screen.triangles[triangle], triangle, at, footprint).light(brdf)
+    }
+
+    /// The maps' values at one sample, as of [`Scene::shade`]; the normal is a unit vector of the
+    /// common frame that looks to the side of the viewer. `on_screen` is the triangle's place on the
+    /// screen.
+    pub fn material(
+        &self,
+        camera: &Camera,
+        on_screen: &ScreenTriangle,
+        triangle: usize,
+        at: (f64, f64),
+        footprint: f32,
+    ) -> MapValues {
+        let seen = self.seen(camera, on_screen, triangle, at, footprint);
+        let mut values = seen.values;
+        values[MapKind::Normal] = seen.world_normal().extend(0.0);
+        values
+    }
+
+    fn seen(
+        &self,
+        camera: &Camera,
+        on_screen: &ScreenTriangle,
+        triangle: usize,
+        at: (f64, f64),
+        footprint: f32,
+    ) -> Seen {
+        let b = barycentrics(on_screen, at.0, at.1);
         let mesh = &self.mesh;
         let corners = mesh.triangles[triangle].map(|i| i as usize);
         let surface = &self.surfaces[mesh.triangle_materials[triangle] as usize];
@@ -179,7 +292,7 @@ impl Scene {
             handedness = mesh.tangents[corners[0]].w;
             values[MapKind::Normal] = fetch(map).extend(0.0) * surface.factors[MapKind::Normal];
         }
-        brdf.light(&tangent_light(normal, tangent, handedness, to_viewer, facing), &values)
+        Seen { values, normal, tangent, handedness, to_viewer, facing }
     }
 
     /// What is seen at each sample, through all that is cut out.

@@ -16,7 +16,7 @@ use parbake_image::pyramid::Pyramid;
 use parbake_image::quantise::decoded;
 use parbake_image::{Encoding, FloatImage, MapKind, MapValues};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
-use parbake_model::{Image, Material, Mesh, TextureSlot, Wrap};
+use parbake_model::{AlphaMode, Image, Material, Mesh, TextureSlot, Wrap};
 use rayon::prelude::*;
 
 /// One use of a texture, with what moves its coordinates.
@@ -71,6 +71,14 @@ impl Shifted {
 pub(crate) struct Surface {
     /// What multiplies the textures, as they are read.
     pub factors: MapValues,
+    /// How alpha is to be understood.
+    pub alpha_mode: AlphaMode,
+    /// Below this it is cut out, where it is a mask.
+    pub alpha_cutoff: f32,
+    /// Whether the base colour is shown as it is.
+    pub is_unlit: bool,
+    /// The base colour's alpha in all three channels, where it counts.
+    pub opacity: Option<Map>,
     /// As viewers see it that know no parallax.
     pub plain: Textures,
     /// As all others do.
@@ -84,13 +92,26 @@ pub fn unpack(kind: MapKind, image: &Image, srgb: bool) -> FloatImage<[f32; 3]> 
     FloatImage { width: image.width, height: image.height, texels }
 }
 
+/// An image's alpha, three times.
+fn opacity(image: &Image) -> FloatImage<[f32; 3]> {
+    let texels = image.pixels.par_iter().map(|p| [f32::from(p[3]) / 255.0; 3]).collect();
+    FloatImage { width: image.width, height: image.height, texels }
+}
+
+/// What an image is read for.
+#[derive(Clone, Copy)]
+enum Use {
+    Map(MapKind),
+    Opacity,
+}
+
 /// Makes surfaces, and keeps the pyramids that they fetch from.
 pub(crate) struct Builder<'a> {
     images: &'a [Image],
     interpretation: Interpretation,
     pub pyramids: Vec<Pyramid<3>>,
-    /// Image, encoding and wrap modes of each pyramid.
-    built: Vec<(usize, Encoding, [Wrap; 2])>,
+    /// Image, encoding (none of opacity) and wrap modes of each pyramid.
+    built: Vec<(usize, Option<Encoding>, [Wrap; 2])>,
 }
 
 impl<'a> Builder<'a> {
@@ -106,7 +127,11 @@ impl<'a> Builder<'a> {
             }
         }
         let plain = MapKind::ALL.map(|kind| self.map(kind, texture_slot(material, kind)));
-        Surface { factors, plain, shifted: self.shifted(material) }
+        let (alpha_mode, alpha_cutoff) = (material.alpha_mode, material.alpha_cutoff);
+        let color = material.base_color_texture.filter(|_| alpha_mode != AlphaMode::Opaque);
+        let opacity = self.pyramid(color, Use::Opacity);
+        let (is_unlit, shifted) = (material.unlit, self.shifted(material));
+        Surface { factors, alpha_mode, alpha_cutoff, is_unlit, opacity, plain, shifted }
     }
 
     fn shifted(&mut self, material: &Material) -> Option<Shifted> {
@@ -118,11 +143,22 @@ impl<'a> Builder<'a> {
     }
 
     fn map(&mut self, kind: MapKind, slot: Option<TextureSlot>) -> Option<Map> {
+        self.pyramid(slot, Use::Map(kind))
+    }
+
+    fn pyramid(&mut self, slot: Option<TextureSlot>, purpose: Use) -> Option<Map> {
         let slot = slot?;
         let image = self.images.get(slot.image)?;
-        let key = (slot.image, kind.spec().encoding, slot.wrap);
+        let encoding = match purpose {
+            Use::Map(kind) => Some(kind.spec().encoding),
+            Use::Opacity => None,
+        };
+        let key = (slot.image, encoding, slot.wrap);
         let pyramid = self.built.iter().position(|b| *b == key).unwrap_or_else(|| {
-            let base = unpack(kind, image, self.interpretation.decode_srgb);
+            let base = match purpose {
+                Use::Map(kind) => unpack(kind, image, self.interpretation.decode_srgb),
+                Use::Opacity => opacity(image),
+            };
             let mut pyramid = match self.interpretation.trilinear {
                 true => Pyramid::from_base(base),
                 false => Pyramid::single(base),

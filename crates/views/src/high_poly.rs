@@ -30,6 +30,9 @@ pub struct Conventions {
     pub interpretation: Interpretation,
     /// Light strength and display curve of the comparison.
     pub display: Display,
+    /// Whether the whole metallic-roughness material is fitted, and not only what a headlight shows of
+    /// colours, normals and emission; none where the high-poly's materials decide.
+    pub whole_material: Option<bool>,
     /// Where cameras stand.
     pub rig: Rig,
     /// How far to either side of the low-poly projection looks for the high-poly, in the common
@@ -85,6 +88,11 @@ pub struct HighPoly {
     pub scene: Scene,
     /// What rays hit.
     pub surface: HighSurface,
+    /// Whether the whole metallic-roughness material is fitted.
+    pub is_whole_material: bool,
+    /// What emission was divided by so that maps, which end at 1, can hold it; 1 where only a headlight's
+    /// view is fitted.
+    pub emissive_strength: f32,
     /// Rendered view sets that are kept; none where they are not to be.
     kept: Option<Mutex<Vec<KeptViews>>>,
 }
@@ -97,12 +105,28 @@ impl HighPoly {
     pub fn new(model: &Model, conventions: Conventions) -> Result<Self, PrepareError> {
         let frame = common_frame(model)?;
         let mesh = placed(model, &frame);
-        let (scene, surface) = rayon::join(
+        let (mut scene, surface) = rayon::join(
             || Scene::new(mesh.clone(), &model.materials, &model.images, conventions.interpretation),
             || HighSurface::new(&mesh),
         );
         let (name, triangles) = (model.name.clone(), model.mesh.triangles.len());
-        Ok(Self { name, triangles, frame, conventions, scene, surface, kept: None })
+        let is_whole_material =
+            conventions.whole_material.unwrap_or_else(|| conventions.srgb() && scene.needs_whole_material());
+        let emissive_strength = if is_whole_material { scene.strongest_emission().max(1.0) } else { 1.0 };
+        if emissive_strength > 1.0 {
+            scene.scale_emission(1.0 / emissive_strength);
+        }
+        Ok(Self {
+            name,
+            triangles,
+            frame,
+            conventions,
+            scene,
+            surface,
+            is_whole_material,
+            emissive_strength,
+            kept: None,
+        })
     }
 
     /// The same for several bakes: each set of views is rendered once and kept, 8 bytes a pixel.
@@ -111,12 +135,16 @@ impl HighPoly {
     }
 
     /// The kinds of maps that a bake fits: base colour and normals, and those others that the
-    /// high-poly's materials have and its BRDF reads.
+    /// high-poly's materials have and its BRDF reads; metallic-roughness always where the whole material
+    /// is fitted.
     pub fn kinds(&self) -> impl Iterator<Item = MapKind> + '_ {
         let always = [MapKind::BaseColor, MapKind::Normal];
-        MapKind::ALL
-            .into_iter()
-            .filter(move |kind| Lambert.reads(*kind) && (always.contains(kind) || self.scene.has(*kind)))
+        let whole = self.is_whole_material;
+        MapKind::ALL.into_iter().filter(move |kind| {
+            let is_read = if whole { true } else { Lambert.reads(*kind) };
+            let is_there = self.scene.has(*kind) || (whole && *kind == MapKind::MetallicRoughness);
+            is_read && (always.contains(kind) || is_there)
+        })
     }
 
     /// The high-poly from each view of a set. Stops early, with fewer views, when asked to, but never

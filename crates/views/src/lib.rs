@@ -9,12 +9,14 @@
 //!
 //! Everything here is made once and read by the fits of vertices, texture coordinates and maps.
 
+pub mod alpha_layers;
 pub mod chart_labels;
 mod error;
 pub mod frame;
 pub mod gutter;
 pub mod high_poly;
 pub mod low_poly;
+pub mod material_samples;
 mod packing;
 pub mod pool;
 pub mod projection;

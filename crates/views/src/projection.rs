@@ -28,7 +28,7 @@ pub struct ProjectedMaps {
 }
 
 /// What a texel finds where neither it nor a neighbour finds anything.
-const NOTHING_FOUND: Vec4 = Vec4::new(0.5, 0.5, 0.5, 0.0);
+const NOTHING_FOUND: Vec4 = Vec4::new(0.5, 0.5, 0.5, 1.0);
 
 /// Projects the high-poly onto each texel of the map.
 ///
@@ -74,8 +74,11 @@ pub fn project(low: &LowPoly, high: &HighPoly) -> ProjectedMaps {
     for kind in high.kinds() {
         let domain = kind.spec().domain;
         let none = if domain == Domain::Hemisphere { kind.spec().neutral } else { NOTHING_FOUND };
-        // The fourth channel waits for opacity.
-        let of = |(values, _): &(MapValues, f32)| domain.clamp(values[kind].truncate().extend(0.0));
+        let of = |(values, _): &(MapValues, f32)| match kind {
+            MapKind::BaseColor if high.is_whole_material => domain.clamp(values[kind]),
+            MapKind::BaseColor => domain.clamp(values[kind].truncate().extend(1.0)),
+            _ => domain.clamp(values[kind].truncate().extend(0.0)),
+        };
         let texels = projected.iter().map(|p| p.as_ref().map_or(none, of)).collect();
         let mut map = FloatImage::square(size, texels);
         gutter::fill(&mut map, &known);

@@ -40,15 +40,27 @@ pub struct Sample {
     pub weight: u16,
 }
 
+/// What is fetched from a texture by four texels and their bilinear weights.
+pub trait Fetched {
+    /// Upper left texel of the fetch.
+    fn texel(&self) -> usize;
+
+    /// Fractions towards the right and lower texels, in [0, 1).
+    fn fractions(&self) -> [f32; 2];
+
+    /// How much it counts, 0 … 1.
+    fn weight(&self) -> f32;
+}
+
 /// All samples, by band of the texture, in one flat buffer.
 #[derive(Clone, Debug, Default)]
-pub struct SampleSet {
+pub struct SampleSet<S = Sample> {
     /// Texels along a side of the texture.
     pub size: usize,
     /// Where each band's samples begin, and the end of the last one's.
     first: Vec<usize>,
     /// Samples whose fetch begins in the first band, then in the second …, each in a fixed order.
-    samples: Vec<Sample>,
+    samples: Vec<S>,
 }
 
 impl Sample {
@@ -57,12 +69,6 @@ impl Sample {
     fn at(uv: Vec2, size: usize, light: [i16; 9], target: [u16; 3], weight: u16) -> Self {
         let (texel, fraction) = place(uv, size);
         Self { texel, fraction, light, target, weight }
-    }
-
-    /// Fractions as numbers in [0, 1).
-    #[inline]
-    pub fn fractions(&self) -> (f32, f32) {
-        (f32::from(self.fraction[0]) * (1.0 / 65536.0), f32::from(self.fraction[1]) * (1.0 / 65536.0))
     }
 
     /// How the light meets the surface.
@@ -77,10 +83,21 @@ impl Sample {
         let [r, g, b] = self.target.map(|t| f32::from(t) * (1.0 / 65535.0));
         Vec4::new(r, g, b, 0.0)
     }
+}
 
-    /// Weight, 0 … 1.
+impl Fetched for Sample {
     #[inline]
-    pub fn weight(&self) -> f32 {
+    fn texel(&self) -> usize {
+        self.texel as usize
+    }
+
+    #[inline]
+    fn fractions(&self) -> [f32; 2] {
+        self.fraction.map(|f| f32::from(f) * (1.0 / 65536.0))
+    }
+
+    #[inline]
+    fn weight(&self) -> f32 {
         f32::from(self.weight) * (1.0 / 65535.0)
     }
 }
@@ -94,9 +111,9 @@ impl Sample {
     }
 }
 
-impl SampleSet {
+impl<S: Clone> SampleSet<S> {
     /// Of hand-made bands.
-    pub fn new(size: usize, bands: &[Vec<Sample>]) -> Self {
+    pub fn new(size: usize, bands: &[Vec<S>]) -> Self {
         let mut first = vec![0];
         first.extend(bands.iter().scan(0, |end, band| {
             *end += band.len();
@@ -104,7 +121,9 @@ impl SampleSet {
         }));
         Self { size, first, samples: bands.concat() }
     }
+}
 
+impl<S> SampleSet<S> {
     /// How many samples there are.
     pub fn len(&self) -> usize {
         self.samples.len()
@@ -116,7 +135,7 @@ impl SampleSet {
     }
 
     /// All samples, band after band.
-    pub fn iter(&self) -> std::slice::Iter<'_, Sample> {
+    pub fn iter(&self) -> std::slice::Iter<'_, S> {
         self.samples.iter()
     }
 
@@ -127,7 +146,7 @@ impl SampleSet {
 
     /// The samples of a band; none where there is no such band.
     #[inline]
-    pub fn band(&self, band: usize) -> &[Sample] {
+    pub fn band(&self, band: usize) -> &[S] {
         match self.first.get(band..band + 2) {
             Some(&[from, to]) => &self.samples[from..to],
             _ => &[],
@@ -154,8 +173,8 @@ impl Layout {
 }
 
 /// One view's samples in tile order, and where each tile's begin.
-struct Sorted {
-    samples: Vec<Sample>,
+struct Sorted<S> {
+    samples: Vec<S>,
     begin: Vec<u32>,
 }
 
@@ -190,15 +209,15 @@ pub fn shifted_samples<V: AsRef<[ViewSample]>>(
     })
 }
 
-fn collect<V>(
+pub(crate) fn collect<V, S: Fetched + Copy + Default + Send + Sync>(
     views: impl IndexedParallelIterator<Item = V>,
     texture_size: usize,
     watcher: &impl Watcher,
-    of_view: impl Fn(V, &mut Vec<Sample>) + Sync,
-) -> SampleSet {
+    of_view: impl Fn(V, &mut Vec<S>) + Sync,
+) -> SampleSet<S> {
     let layout = Layout { size: texture_size, tiles_across: texture_size.div_ceil(TILE) };
     let (done, all) = (AtomicUsize::new(0), views.len());
-    let views: Vec<Sorted> = views
+    let views: Vec<Sorted<S>> = views
         .map(|view| {
             let mut samples = Vec::new();
             of_view(view, &mut samples);
@@ -207,14 +226,14 @@ fn collect<V>(
         })
         .collect();
     let tiles = |band: usize| band * layout.tiles_across..(band + 1) * layout.tiles_across;
-    let of = |v: &Sorted, tile: usize| v.begin[tile] as usize..v.begin[tile + 1] as usize;
+    let of = |v: &Sorted<S>, tile: usize| v.begin[tile] as usize..v.begin[tile + 1] as usize;
     let mut first = vec![0];
     for band in 0..bands(texture_size) {
         let tiles = tiles(band);
-        let count = |v: &Sorted| of(v, tiles.end - 1).end - of(v, tiles.start).start;
+        let count = |v: &Sorted<S>| of(v, tiles.end - 1).end - of(v, tiles.start).start;
         first.push(first[band] + views.iter().map(count).sum::<usize>());
     }
-    let mut samples = vec![Sample::default(); first.last().copied().unwrap_or_default()];
+    let mut samples = vec![S::default(); first.last().copied().unwrap_or_default()];
     let (mut rest, mut parts) = (samples.as_mut_slice(), Vec::with_capacity(first.len()));
     for ends in first.windows(2) {
         let (part, others) = rest.split_at_mut(ends[1] - ends[0]);
@@ -234,18 +253,18 @@ fn collect<V>(
     SampleSet { size: texture_size, first, samples }
 }
 
-fn sort(samples: Vec<Sample>, layout: &Layout) -> Sorted {
+fn sort<S: Fetched + Copy + Default>(samples: Vec<S>, layout: &Layout) -> Sorted<S> {
     let mut begin = vec![0u32; layout.tiles() + 1];
     for s in &samples {
-        begin[layout.tile(s.texel as usize) + 1] += 1;
+        begin[layout.tile(s.texel()) + 1] += 1;
     }
     for i in 1..begin.len() {
         begin[i] += begin[i - 1];
     }
     let mut next = begin.clone();
-    let mut sorted = vec![Sample::default(); samples.len()];
+    let mut sorted = vec![S::default(); samples.len()];
     for s in samples {
-        let place = &mut next[layout.tile(s.texel as usize)];
+        let place = &mut next[layout.tile(s.texel())];
         sorted[*place as usize] = s;
         *place += 1;
     }
@@ -253,7 +272,7 @@ fn sort(samples: Vec<Sample>, layout: &Layout) -> Sorted {
 }
 
 /// The upper left texel of a coordinate's fetch, and the fractions.
-fn place(uv: Vec2, size: usize) -> (u32, [u16; 2]) {
+pub(crate) fn place(uv: Vec2, size: usize) -> (u32, [u16; 2]) {
     let along = |t: f32| {
         let x = t * size as f32 - 0.5;
         let first = x.floor();

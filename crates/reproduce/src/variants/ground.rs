@@ -71,6 +71,7 @@ impl Subject {
     ) -> Result<Self, BakeError> {
         let convention = options.convention;
         let conventions = Conventions {
+            whole_material: Some(false),
             interpretation: convention.interpretation(),
             display: convention.display(),
             rig: RIG,

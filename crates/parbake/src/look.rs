@@ -1,0 +1,158 @@
+//! From fitted maps to the low-poly's materials, one for each alpha mode in use, all on one atlas.
+//!
+//! A map that has one value all over becomes a factor and costs no texture. Occlusion, roughness and
+//! metallic share one image, in its red, green and blue channel (glTF 2.0, 3.9).
+
+use parbake_fit::parallax_maps::ParallaxMaps;
+use parbake_image::MapKind;
+use parbake_image::display::decode_srgb;
+use parbake_image::material_maps::set_texture;
+use parbake_model::{AlphaMode, Image, Material, Mesh, Model, TextureSlot, Wrap};
+use parbake_views::high_poly::HighPoly;
+
+/// What the materials of a bake have besides maps.
+pub(crate) struct Look {
+    /// The alpha mode of each triangle.
+    pub modes: Vec<AlphaMode>,
+    /// Whether the whole metallic-roughness material was fitted.
+    pub is_whole: bool,
+    /// What emission was divided by.
+    pub emissive_strength: f32,
+    /// Whether the high-poly shows its base colour without lights.
+    pub is_unlit: bool,
+}
+
+impl Look {
+    /// Of a low-poly with these alpha modes.
+    pub fn new(high: &HighPoly, modes: Vec<AlphaMode>) -> Self {
+        Self {
+            modes,
+            is_whole: high.is_whole_material,
+            emissive_strength: high.emissive_strength,
+            is_unlit: high.is_whole_material && high.scene.is_unlit(),
+        }
+    }
+
+    /// The low-poly with materials of these images and these parallax maps.
+    pub fn textured(
+        &self,
+        low: &Model,
+        mesh: &Mesh,
+        maps: Vec<(MapKind, Image)>,
+        parallax: Option<&ParallaxMaps>,
+    ) -> Model {
+        let mut mesh = mesh.clone();
+        mesh.colors.clear();
+        mesh.uvs1.clear();
+        let mut material = Material { name: low.name.clone(), ..Material::default() };
+        let mut images = Vec::new();
+        if self.is_whole {
+            self.add_whole(&mut material, &mut images, maps);
+        } else {
+            for (kind, image) in maps {
+                set_texture(&mut material, kind, slot(images.len()));
+                images.push(image);
+            }
+        }
+        material.parallax = parallax.map(|maps| maps.pack(&mut images));
+        let mut modes: Vec<AlphaMode> = Vec::new();
+        for (own, mode) in mesh.triangle_materials.iter_mut().zip(&self.modes) {
+            let index = modes.iter().position(|m| m == mode).unwrap_or_else(|| {
+                modes.push(*mode);
+                modes.len() - 1
+            });
+            *own = index as u32;
+        }
+        let materials = modes.iter().map(|&mode| Material {
+            alpha_mode: mode,
+            name: match mode {
+                AlphaMode::Opaque => material.name.clone(),
+                AlphaMode::Mask => format!("{} (cut out)", material.name),
+                AlphaMode::Blend => format!("{} (blended)", material.name),
+            },
+            ..material.clone()
+        });
+        Model { name: low.name.clone(), mesh, materials: materials.collect(), images }
+    }
+
+    fn add_whole(&self, material: &mut Material, images: &mut Vec<Image>, maps: Vec<(MapKind, Image)>) {
+        let mut add = |material: &mut Material, kind: MapKind, image: Image| {
+            set_texture(material, kind, slot(images.len()));
+            images.push(image);
+        };
+        let (mut roughness, mut occlusion) = (None, None);
+        material.unlit = self.is_unlit;
+        for (kind, image) in maps {
+            let value = constant(&image);
+            let linear = value.map(|v| v.map(|x| f32::from(x) / 255.0));
+            match (kind, linear) {
+                // What is not lit shows nothing else.
+                (
+                    MapKind::Normal | MapKind::MetallicRoughness | MapKind::Occlusion | MapKind::Emissive,
+                    _,
+                ) if self.is_unlit => {}
+                (MapKind::BaseColor, Some([r, g, b, a])) => {
+                    material.base_color = [decode_srgb(r), decode_srgb(g), decode_srgb(b), a];
+                }
+                (MapKind::Emissive, Some([r, g, b, _])) => {
+                    material.emissive = [r, g, b].map(decode_srgb);
+                    material.emissive_strength = self.emissive_strength;
+                }
+                (MapKind::Emissive, None) => {
+                    add(material, kind, image);
+                    material.emissive_strength = self.emissive_strength;
+                }
+                (MapKind::MetallicRoughness, _) => roughness = Some((image, linear)),
+                (MapKind::Occlusion, Some(_)) => {}
+                (MapKind::Occlusion, None) => occlusion = Some(image),
+                (MapKind::Normal, Some([x, y, ..])) if (x - 0.5).abs() < 0.01 && (y - 0.5).abs() < 0.01 => {}
+                (MapKind::BaseColor | MapKind::Normal, _) => add(material, kind, image),
+            }
+        }
+        let factors = roughness.as_ref().and_then(|(_, value)| *value);
+        let mut packed = match (roughness, factors) {
+            (Some((image, _)), None) => Some(image),
+            _ => None,
+        };
+        if let Some([_, roughness, metallic, _]) = factors {
+            (material.roughness, material.metallic) = (roughness, metallic);
+        }
+        if let Some(occlusion) = occlusion {
+            match &mut packed {
+                Some(image) => {
+                    let pairs = image.pixels.iter_mut().zip(&occlusion.pixels);
+                    pairs.for_each(|(to, from)| to[0] = from[0]);
+                }
+                None => {
+                    let whitened = occlusion.pixels.iter().map(|p| [p[0], 255, 255, 255]).collect();
+                    packed = Some(Image { pixels: whitened, ..occlusion });
+                }
+            }
+            material.occlusion_texture = Some(slot(images.len()));
+        }
+        if let Some(image) = packed {
+            if factors.is_none() {
+                (material.roughness, material.metallic) = (1.0, 1.0);
+                material.metallic_roughness_texture = Some(slot(images.len()));
+            }
+            let name = "occlusion roughness metallic".into();
+            images.push(Image { name, ..image });
+        }
+    }
+}
+
+fn slot(image: usize) -> TextureSlot {
+    TextureSlot { image, wrap: [Wrap::Repeat; 2], ..TextureSlot::default() }
+}
+
+/// The mean value of an image that has about one value all over, give or take rounding.
+fn constant(image: &Image) -> Option<[u8; 4]> {
+    let (mut low, mut high) = ([255u8; 4], [0u8; 4]);
+    for pixel in &image.pixels {
+        for k in 0..4 {
+            (low[k], high[k]) = (low[k].min(pixel[k]), high[k].max(pixel[k]));
+        }
+    }
+    let is_constant = low.iter().zip(&high).all(|(l, h)| h.saturating_sub(*l) <= 2);
+    is_constant.then(|| std::array::from_fn(|k| u8::midpoint(low[k], high[k])))
+}

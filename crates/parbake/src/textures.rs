@@ -1,0 +1,130 @@
+//! From views to maps: what is fitted to the light that views show (`--shading lambert`), or to the
+//! materials that they see (`pbr`); parallax maps before either.
+
+use crate::bake::Order;
+use crate::budget::shares;
+use crate::error::BakeError;
+use crate::report::Work;
+use parbake_fit::backend::{Backend, Cpu};
+use parbake_fit::material_problem::MaterialProblem;
+use parbake_fit::parallax_maps::{FittedMaps, ParallaxMaps, ParallaxReport, fit_parallax_maps};
+use parbake_fit::schedule::{Comparison, Fitted, fit_maps, fit_textures};
+use parbake_model::glam::{Vec2, Vec3};
+use parbake_model::{AlphaMode, Model};
+use parbake_progress::{Clock, ProgressScope, Stage, Watcher};
+use parbake_render::parallax::{ShParallax, ViewDirection};
+use parbake_render::shade::Lambert;
+use parbake_views::alpha_layers::alpha_layers;
+use parbake_views::high_poly::{Conventions, ViewSet};
+use parbake_views::low_poly::LowPoly;
+use parbake_views::material_samples::MaterialSampler;
+use parbake_views::projection::ProjectedMaps;
+use parbake_views::view_sample::sample_views;
+use parbake_views::view_sampler::ViewSampler;
+
+/// Maps, and what they were fitted to.
+pub(crate) struct FittedTextures {
+    pub fitted: Fitted,
+    pub views: usize,
+    pub samples: usize,
+    pub parallax: Option<ParallaxMaps>,
+    pub parallax_report: Option<ParallaxReport>,
+}
+
+/// The low-poly whose maps are fitted.
+#[derive(Clone, Copy)]
+pub(crate) struct Subject<'a> {
+    pub model: &'a Model,
+    pub prepared: &'a LowPoly,
+    pub projected: &'a ProjectedMaps,
+    /// The alpha mode of each triangle.
+    pub modes: &'a [AlphaMode],
+}
+
+/// Fits the maps of a low-poly whose shape and coordinates stay from now on. `given` is a parallax map
+/// that was fitted before.
+///
+/// # Errors
+/// Where no view shows the low-poly before the high-poly.
+pub(crate) fn fit_views<W: Watcher>(
+    order: &Order,
+    subject: Subject,
+    given: Option<ShParallax>,
+    scope: &ProgressScope<W>,
+    clock: &mut Clock,
+) -> Result<FittedTextures, BakeError> {
+    let &Order { high, plan, options, work } = order;
+    let Subject { model: low, prepared, projected, modes } = subject;
+    let (size, placed) = (options.texture_size, &prepared.placed);
+    let Conventions { display, .. } = high.conventions;
+    let set = ViewSet { count: plan.views, seed: options.seed, jitter: true, sampling: plan.reference };
+    let parallax_plan = options.parallax_plan().filter(|_| work != Work::Compress);
+    let whole = high.is_whole_material;
+    // What is seen of materials needs no pictures.
+    let references =
+        (!whole || parallax_plan.is_some()).then(|| high.references(&set, &scope.share(shares::REFERENCE)));
+    clock.lap(Stage::Reference);
+
+    let sampler = ViewSampler::new(placed, plan.reference.size, &display, options.beyond());
+    let parallax = match (parallax_plan, &references) {
+        (Some(plan), Some(references)) => {
+            let share = scope.share(shares::PARALLAX);
+            let own = (prepared, projected);
+            let fitted = fit_parallax_maps(low, own, high, references, &sampler, &plan, &share)?;
+            clock.lap(Stage::Parallax);
+            Some(fitted)
+        }
+        _ => given.map(FittedMaps::given),
+    };
+    let unseen = || BakeError::OutOfView { low: low.name.clone(), high: high.name.clone() };
+    let (atlas, start, srgb) = (&prepared.atlas, &projected.maps, high.conventions.srgb());
+    if whole {
+        drop(references);
+        let (maps, parallax_report) = parallax.map(|fitted| (fitted.maps, fitted.report)).unzip();
+        let (samples, views) = {
+            let shift = maps.as_ref().map(shift_of);
+            let shift = shift.as_ref().map(|shift| shift as _);
+            let layers = alpha_layers(modes, high);
+            MaterialSampler { high, low: placed, layers: &layers, shift }.samples(&set, size, scope)
+        };
+        if samples.is_empty() {
+            return Err(unseen());
+        }
+        clock.lap(Stage::Sampling);
+        let problem = MaterialProblem::new(&samples, atlas, start);
+        let fitted = fit_maps(&problem, start, &Cpu, srgb, &plan.schedule, scope);
+        let (samples, parallax_report) = (samples.len(), parallax_report.flatten());
+        return Ok(FittedTextures { fitted, views, samples, parallax: maps, parallax_report });
+    }
+    let references = references.unwrap_or_default();
+    let views = references.len();
+    let (samples, maps, parallax_report) = match parallax {
+        None => {
+            let samples = Cpu.view_samples(&sampler, &references, size, scope);
+            drop(references);
+            (samples, None, None)
+        }
+        Some(FittedMaps { maps, views: mut view_samples, report }) => {
+            let sampler = sampler.with_cutout(maps.cutout.as_ref());
+            view_samples.extend(sample_views(&sampler, &references[view_samples.len()..]));
+            drop(references);
+            (Cpu.shifted_view_samples(view_samples, size, &maps.parallax, scope), Some(maps), report)
+        }
+    };
+    if samples.is_empty() {
+        return Err(unseen());
+    }
+    clock.lap(Stage::Sampling);
+    let comparison = Comparison { backend: &Cpu, brdf: &Lambert, display, srgb };
+    let fitted = fit_textures(&samples, atlas, start, &comparison, &plan.schedule, scope);
+    Ok(FittedTextures { fitted, views, samples: samples.len(), parallax: maps, parallax_report })
+}
+
+/// Where a point's maps are fetched, seen along a direction; none where it is cut out.
+fn shift_of(maps: &ParallaxMaps) -> impl Fn(Vec2, Vec3, Vec3) -> Option<Vec2> + Sync + '_ {
+    move |uv, direction, normal| {
+        let is_cut = maps.cutout.as_ref().is_some_and(|cutout| cutout.opacity(uv, direction) < 0.0);
+        let cosine = normal.normalize_or_zero().dot(direction);
+        (!is_cut).then(|| uv + maps.parallax.shift(uv, &ViewDirection { direction, cosine }))
+    }
+}

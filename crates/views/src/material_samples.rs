@@ -1,0 +1,289 @@
+//! What the training views say of the low-poly's material: for each of their pixels, where it falls on
+//! the low-poly's texture, and which values the high-poly's maps have in its place.
+//!
+//! Forward, a view at a time: both models are rasterised, layer by layer (`alpha_layers.rs`); the
+//! high-poly's maps are read as wide as the pixel is (`Scene::material`), and its normal is turned into
+//! the low-poly's tangent frame, `m = F⁻¹ N` with F as in `parbake_render::frame`. Nothing is shaded, so
+//! what is fitted to these samples is right under any light.
+//!
+//! Contract: samples are sorted as in `samples.rs`; nothing depends on the number of threads.
+
+use crate::alpha_layers::AlphaLayer;
+use crate::high_poly::{HighPoly, ViewSet};
+use crate::pool::View;
+use crate::samples::{Fetched, SampleSet, collect, place};
+use parbake_image::display::encode_srgb;
+use parbake_image::{MapKind, MapValues};
+use parbake_model::AlphaMode;
+use parbake_model::Mesh;
+use parbake_model::glam::{DVec3, Mat3, Vec2, Vec3, Vec4};
+use parbake_progress::Watcher;
+use parbake_render::camera::Camera;
+use parbake_render::cutout::rasterise_cut;
+use parbake_render::interpolate::{barycentrics, interpolate};
+use parbake_render::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility, rasterise};
+use rayon::prelude::*;
+
+/// One pixel of a training view: 40 bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct MaterialSample {
+    texel: u32,
+    /// Fractions towards the right and lower texels, in 65536ths.
+    fraction: [u16; 2],
+    /// How much this sample counts, in 65535ths; 0 where only its opacity is known.
+    weight: u16,
+    /// The same for its opacity.
+    opacity_weight: u16,
+    /// sRGB of the base colour, and opacity, in 65535ths.
+    base_color: [u16; 4],
+    /// Occlusion, roughness and metallic, in 65535ths.
+    occlusion_roughness_metallic: [u16; 3],
+    /// sRGB of the emission, in 65535ths.
+    emissive: [u16; 3],
+    /// The normal in the low-poly's tangent frame, in 32767ths.
+    normal: [i16; 3],
+}
+
+fn unit(x: f32) -> u16 {
+    (x.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
+}
+
+impl MaterialSample {
+    /// A pixel at this coordinate of a texture of `size`² texels that shall have these values; colours
+    /// are linear, the normal is in the tangent frame. `weights` are those of its maps and of its
+    /// opacity, 0 … 1.
+    pub fn new(uv: Vec2, size: usize, values: &MapValues, weights: [f32; 2]) -> Self {
+        let (texel, fraction) = place(uv, size);
+        let color = values[MapKind::BaseColor];
+        let encoded = |v: Vec4| v.truncate().to_array().map(|x| unit(encode_srgb(x.clamp(0.0, 1.0))));
+        let [r, g, b] = encoded(color);
+        let [_, roughness, metallic, _] = values[MapKind::MetallicRoughness].to_array();
+        let signed = |x: f32| (x.clamp(-1.0, 1.0) * 32767.0).round_ties_even() as i16;
+        Self {
+            texel,
+            fraction,
+            weight: unit(weights[0]),
+            opacity_weight: unit(weights[1]),
+            base_color: [r, g, b, unit(color.w)],
+            occlusion_roughness_metallic: [values[MapKind::Occlusion].x, roughness, metallic].map(unit),
+            emissive: encoded(values[MapKind::Emissive]),
+            normal: values[MapKind::Normal].truncate().to_array().map(signed),
+        }
+    }
+
+    /// What a map shall be here: sRGB values of colours and emission, opacity in the base colour's fourth
+    /// lane, all else as in [`MapValues`].
+    #[inline]
+    pub fn target(&self, kind: MapKind) -> Vec4 {
+        let unit = |x: u16| f32::from(x) * (1.0 / 65535.0);
+        let [occlusion, roughness, metallic] = self.occlusion_roughness_metallic.map(unit);
+        match kind {
+            MapKind::BaseColor => Vec4::from(self.base_color.map(unit)),
+            MapKind::Emissive => Vec3::from(self.emissive.map(unit)).extend(0.0),
+            MapKind::Normal => Vec3::from(self.normal.map(|x| f32::from(x) * (1.0 / 32767.0))).extend(0.0),
+            MapKind::MetallicRoughness => Vec4::new(0.0, roughness, metallic, 0.0),
+            MapKind::Occlusion => Vec4::new(occlusion, 0.0, 0.0, 0.0),
+        }
+    }
+
+    /// How much its opacity counts, 0 … 1.
+    #[inline]
+    pub fn opacity_weight(&self) -> f32 {
+        f32::from(self.opacity_weight) * (1.0 / 65535.0)
+    }
+}
+
+impl Fetched for MaterialSample {
+    #[inline]
+    fn texel(&self) -> usize {
+        self.texel as usize
+    }
+
+    #[inline]
+    fn fractions(&self) -> [f32; 2] {
+        self.fraction.map(|f| f32::from(f) * (1.0 / 65536.0))
+    }
+
+    #[inline]
+    fn weight(&self) -> f32 {
+        f32::from(self.weight) * (1.0 / 65535.0)
+    }
+}
+
+/// Moves a coordinate of the texture, seen along a direction to the viewer, of which the second is
+/// the cosine with the normal; none where the surface is cut out there.
+pub type Shift<'a> = &'a (dyn Fn(Vec2, Vec3, Vec3) -> Option<Vec2> + Sync);
+
+/// What the views of a set are sampled for.
+pub struct MaterialSampler<'a> {
+    /// The high-poly.
+    pub high: &'a HighPoly,
+    /// The low-poly in the common frame, with normals, tangents and texture coordinates.
+    pub low: &'a Mesh,
+    /// Which of their triangles belong together.
+    pub layers: &'a [AlphaLayer],
+    /// How coordinates shift, where there is a parallax map.
+    pub shift: Option<Shift<'a>>,
+}
+
+/// How far behind the low-poly a layer with gaps may lie in the high-poly for it to be the same leaf or
+/// pane, in the common frame.
+const BEHIND: f64 = 0.03;
+
+impl MaterialSampler<'_> {
+    /// The samples of all views on a texture of `texture_size`² texels, and how many views there were
+    /// time for.
+    pub fn samples(
+        &self,
+        set: &ViewSet,
+        texture_size: usize,
+        watcher: &impl Watcher,
+    ) -> (SampleSet<MaterialSample>, usize) {
+        let views = set.views(&self.high.conventions.rig);
+        let seen = std::sync::atomic::AtomicUsize::new(0);
+        let samples = collect(views.par_iter().enumerate(), texture_size, watcher, |(index, view), out| {
+            if index > 0 && watcher.stopped() {
+                return;
+            }
+            seen.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            self.layers.iter().for_each(|layer| self.sample(layer, view, set, texture_size, out));
+        });
+        (samples, seen.into_inner())
+    }
+
+    fn sample(
+        &self,
+        layer: &AlphaLayer,
+        view: &View,
+        set: &ViewSet,
+        texture_size: usize,
+        out: &mut Vec<MaterialSample>,
+    ) {
+        let (size, filter) = (set.sampling.size, set.sampling.filter);
+        let (scene, camera) = (&self.high.scene, &view.camera);
+        let jitter = (view.jitter[0], view.jitter[1]);
+        let at = |pixel: usize| {
+            let along = |i: usize, shift: f32| i as f64 + 0.5 + f64::from(shift);
+            (along(pixel % size, jitter.0), along(pixel / size, jitter.1))
+        };
+        let footprint = filter.max(1.0 / 16.0);
+        let high = Part::of(scene.mesh(), &layer.high, camera, size);
+        let mut shown = Visibility::default();
+        match layer.mode {
+            AlphaMode::Mask => rasterise_cut(&high.screen, size, jitter, &mut shown, |triangle, at| {
+                let own = high.triangle(triangle);
+                let values = scene.material(camera, &high.screen.triangles[triangle], own, at, footprint);
+                values[MapKind::BaseColor].w >= scene.alpha(own).1
+            }),
+            _ => rasterise(&high.screen, size, jitter, &mut shown),
+        }
+        let low = Part::of(self.low, &layer.low, camera, size);
+        let mut seen = Visibility::default();
+        match self.shift {
+            None => rasterise(&low.screen, size, jitter, &mut seen),
+            Some(shift) => rasterise_cut(&low.screen, size, jitter, &mut seen, |triangle, at| {
+                let point = Point::of(self.low, low.triangle(triangle), &low.screen.triangles[triangle], at);
+                shift(point.uv, camera.view_direction(point.position), point.normal).is_some()
+            }),
+        }
+        let has_gaps = layer.mode != AlphaMode::Opaque;
+        for pixel in (0..size * size).filter(|&pixel| seen.triangle[pixel] != NOTHING) {
+            let (under, over) = (seen.triangle[pixel] as usize, shown.triangle[pixel]);
+            if over == NOTHING && !has_gaps {
+                continue;
+            }
+            let at = at(pixel);
+            let point = Point::of(self.low, low.triangle(under), &low.screen.triangles[under], at);
+            let direction = camera.view_direction(point.position);
+            let Some(uv) =
+                self.shift.map_or(Some(point.uv), |shift| shift(point.uv, direction, point.normal))
+            else {
+                continue;
+            };
+            // Where the layer is not there, or only far behind, it has a gap.
+            let depth = |of: &ScreenTriangle| 1.0 / of.nearness.dot(DVec3::new(at.0, at.1, 1.0)).max(1e-9);
+            let own = depth(&low.screen.triangles[under]);
+            let theirs = match over {
+                NOTHING => f64::INFINITY,
+                over => depth(&high.screen.triangles[over as usize]),
+            };
+            if has_gaps && theirs > own + BEHIND {
+                out.push(MaterialSample::new(uv, texture_size, &GAP, [0.0, 1.0]));
+                continue;
+            }
+            if has_gaps && theirs < own - BEHIND {
+                continue;
+            }
+            let on_screen = &high.screen.triangles[over as usize];
+            let mut values = scene.material(camera, on_screen, high.triangle(over as usize), at, footprint);
+            if layer.mode == AlphaMode::Mask {
+                values[MapKind::BaseColor].w = 1.0;
+            }
+            values[MapKind::Normal] =
+                point.in_frame(values[MapKind::Normal].truncate(), direction).extend(0.0);
+            out.push(MaterialSample::new(uv, texture_size, &values, [1.0, if has_gaps { 1.0 } else { 0.0 }]));
+        }
+    }
+}
+
+/// Nothing is there.
+const GAP: MapValues = MapValues::ZERO;
+
+/// Some triangles of a mesh on a screen.
+struct Part<'a> {
+    screen: ScreenTriangles,
+    /// Their indices in the mesh; none where all are there.
+    own: Option<&'a [u32]>,
+}
+
+impl<'a> Part<'a> {
+    fn of(mesh: &Mesh, triangles: &'a [u32], camera: &Camera, size: usize) -> Self {
+        if triangles.len() == mesh.triangles.len() {
+            let screen = ScreenTriangles::new(&mesh.positions, &mesh.triangles, camera, size);
+            return Self { screen, own: None };
+        }
+        let corners: Vec<[u32; 3]> = triangles.iter().map(|&t| mesh.triangles[t as usize]).collect();
+        Self { screen: ScreenTriangles::new(&mesh.positions, &corners, camera, size), own: Some(triangles) }
+    }
+
+    fn triangle(&self, on_screen: usize) -> usize {
+        self.own.map_or(on_screen, |own| own[on_screen] as usize)
+    }
+}
+
+/// A point of the low-poly.
+struct Point {
+    uv: Vec2,
+    position: Vec3,
+    normal: Vec3,
+    tangent: Vec3,
+    handedness: f32,
+    face_normal: Vec3,
+}
+
+impl Point {
+    fn of(mesh: &Mesh, triangle: usize, on_screen: &ScreenTriangle, at: (f64, f64)) -> Self {
+        let weights = barycentrics(on_screen, at.0, at.1).weights;
+        let corners = mesh.triangles[triangle].map(|i| i as usize);
+        Self {
+            uv: interpolate(corners.map(|i| mesh.uvs[i]), weights),
+            position: interpolate(corners.map(|i| mesh.positions[i]), weights),
+            normal: interpolate(corners.map(|i| mesh.normals[i]), weights),
+            tangent: interpolate(corners.map(|i| mesh.tangents[i].truncate()), weights),
+            handedness: mesh.tangents[corners[0]].w,
+            face_normal: mesh.area_normal(triangle),
+        }
+    }
+
+    /// A world normal in the tangent frame of the side that is seen, of unit length.
+    fn in_frame(&self, world: Vec3, to_viewer: Vec3) -> Vec3 {
+        let facing = if to_viewer.dot(self.face_normal) < 0.0 { -1.0 } else { 1.0 };
+        let bitangent = self.normal.cross(self.tangent) * self.handedness;
+        let frame = Mat3::from_cols(self.tangent, bitangent, self.normal) * facing;
+        if frame.determinant().abs() < 1e-6 {
+            return Vec3::Z;
+        }
+        (frame.inverse() * world).normalize_or(Vec3::Z)
+    }
+}
