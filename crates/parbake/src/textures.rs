@@ -92,7 +92,7 @@ pub(crate) fn fit_views<W: Watcher>(
         }
         clock.lap(Stage::Sampling);
         let problem = MaterialProblem::new(&samples, atlas, start);
-        let fitted = fit_maps(&problem, start, &Cpu, srgb, &plan.schedule, scope);
+        let fitted = fit_maps(&problem, start, &Cpu, srgb, &plan.material_schedule(), scope);
         let (samples, parallax_report) = (samples.len(), parallax_report.flatten());
         return Ok(FittedTextures { fitted, views, samples, parallax: maps, parallax_report });
     }
