@@ -3,6 +3,7 @@
 //! and what must hold of them after writing and after repair.
 
 pub mod built;
+pub mod compressed;
 pub mod repaired;
 pub mod written;
 

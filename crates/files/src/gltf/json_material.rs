@@ -86,7 +86,8 @@ pub(super) struct SpecularGlossiness {
     pub diffuse_factor: Option<[f32; 4]>,
     pub diffuse_texture: Option<TextureInfo>,
     pub glossiness_factor: Option<f32>,
-    pub specular_glossiness_texture: Option<Ignored>,
+    pub specular_factor: Option<[f32; 3]>,
+    pub specular_glossiness_texture: Option<TextureInfo>,
 }
 
 #[derive(Debug, Deserialize)]

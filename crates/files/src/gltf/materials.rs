@@ -8,6 +8,7 @@ use super::buffers::Buffers;
 use super::json_material;
 use super::parallax;
 use super::textures::TextureReader;
+use super::uv_sets::UvSets;
 use crate::FileError;
 use parbake_model::{AlphaMode, Image, Material};
 
@@ -33,6 +34,7 @@ pub(super) fn build(
 
 fn material(textures: &mut TextureReader<'_, '_>, index: usize) -> Result<Material, FileError> {
     let json = &textures.buffers.document.materials[index];
+    textures.uv_sets = UvSets::of(json);
     let here = format!("/materials/{index}");
     let name = if json.name.is_empty() { format!("material {index}") } else { json.name.clone() };
     let mut material = Material { name, ..Material::gltf_default() };

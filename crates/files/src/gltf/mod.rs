@@ -9,6 +9,7 @@ mod accessor;
 mod binary;
 mod buffers;
 mod container;
+mod draco;
 mod extensions;
 mod ignored;
 mod integer;
@@ -17,6 +18,8 @@ mod json_material;
 mod locate;
 mod materials;
 mod merge;
+mod meshopt;
+mod meshopt_filter;
 mod parallax;
 mod references;
 mod runs;
@@ -24,6 +27,7 @@ mod scene;
 mod textures;
 mod topology;
 mod uri;
+mod uv_sets;
 mod write;
 mod write_material;
 mod write_mesh;
@@ -72,11 +76,13 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
     let (materials, images) = materials::build(&buffers, &used, &turned)?;
     drop(merge);
     drop(buffers);
-    for material in &materials {
+    for (material, index) in materials.iter().zip(&used) {
+        let json = index.and_then(|index| document.materials.get(index));
+        let sets = json.map(uv_sets::UvSets::of).unwrap_or_default();
         for slot in material.all_texture_slots() {
             let uvs = if slot.uv_set == 0 { &mesh.uvs } else { &mesh.uvs1 };
             if uvs.is_empty() {
-                let (name, set) = (&material.name, slot.uv_set);
+                let (name, set) = (&material.name, sets.document_set(slot.uv_set.into()));
                 context
                     .warn(format!("material {name:?} uses texture coordinate set {set}, which no mesh has"));
             }
