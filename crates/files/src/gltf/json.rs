@@ -30,6 +30,26 @@ pub(super) struct Document {
     pub samplers: Vec<Sampler>,
     pub skins: Vec<Ignored>,
     pub animations: Vec<Ignored>,
+    pub extensions: DocumentExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct DocumentExtensions {
+    #[serde(rename = "KHR_materials_variants")]
+    pub variants: Option<Variants>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Variants {
+    pub variants: Vec<Variant>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Variant {
+    pub name: String,
 }
 
 #[derive(Debug, Deserialize)]

@@ -1,7 +1,8 @@
 //! glTF 2.0 and GLB, in and out.
 //!
-//! Understood are triangles, the metallic-roughness material with all its textures, and
-//! parallax maps.
+//! Understood are triangles, also compressed by Draco and meshoptimizer, the metallic-roughness
+//! material with all its textures, specular-glossiness, the factors of other material extensions,
+//! and parallax maps.
 //! Skins, morph targets and animations are passed over with a warning: the mesh
 //! is taken as its nodes place it.
 
@@ -14,8 +15,10 @@ mod extensions;
 mod ignored;
 mod integer;
 mod json;
+mod json_extensions;
 mod json_material;
 mod locate;
+mod material_extensions;
 mod materials;
 mod merge;
 mod meshopt;
@@ -24,6 +27,7 @@ mod parallax;
 mod references;
 mod runs;
 mod scene;
+mod specular_glossiness;
 mod textures;
 mod topology;
 mod uri;
@@ -146,6 +150,13 @@ fn mention_motion(document: &json::Document, context: &Context<'_>) {
     }
     if !document.animations.is_empty() {
         context.warn("the model has animations; it is taken as it stands before they begin");
+    }
+    if let Some(variants) = document.extensions.variants.as_ref().filter(|v| !v.variants.is_empty()) {
+        let names: Vec<String> = variants.variants.iter().map(|v| format!("{:?}", v.name)).collect();
+        context.warn(format!(
+            "the model has variants ({}); its materials are taken as they are by default",
+            names.join(", ")
+        ));
     }
 }
 

@@ -1,6 +1,7 @@
 //! Reading glTF: tiny documents made by hand.
 
 mod compressed;
+mod extensions;
 mod parallax;
 mod textures;
 mod writing;

@@ -84,9 +84,13 @@ fn materials_are_understood() {
     assert_eq!(read.base_color, [0.5, 1.0, 0.0, 0.25]);
     assert_eq!((read.normal_scale, read.normal_texture.map(|t| t.image)), (0.5, Some(0)));
     document["materials"][0]["extensions"] = json!({ "KHR_materials_pbrSpecularGlossiness": {
-        "diffuseFactor": [0, 0, 1, 1], "diffuseTexture": { "index": 0 } } });
-    let read = material(&document);
-    assert_eq!((read.base_color, read.base_color_texture.is_some()), ([0.0, 0.0, 1.0, 1.0], true));
+        "specularFactor": [0, 0, 0], "diffuseFactor": [0, 0, 0.96, 1], "diffuseTexture": { "index": 0 } } });
+    let model = read_value(&document).unwrap().model;
+    let slot = model.materials[0].base_color_texture.unwrap();
+    assert_eq!(
+        (model.materials[0].base_color, model.images[slot.image].pixels[0]),
+        ([1.0; 4], [0, 0, 3, 255])
+    );
 }
 
 /// Protects the rest of the material: glTF's defaults where it says nothing, and numbers out of
@@ -129,11 +133,11 @@ fn factors_have_defaults_and_ranges() {
     assert_eq!(material(&document), expected);
     document["materials"][0] = json!({ "emissiveFactor": [1, 1] });
     assert!(read_value(&document).unwrap_err().contains("/materials/0/emissiveFactor"));
-    // The older way to give a material has gloss instead of roughness, and no metal.
+    // The older way to give a material has gloss instead of roughness; specular white is a metal.
     document["materials"][0] = json!({ "extensions": { "KHR_materials_pbrSpecularGlossiness": {
         "glossinessFactor": 0.75 } }, "pbrMetallicRoughness": { "roughnessFactor": 0.5 } });
     let read = material(&document);
-    assert_eq!((read.metallic, read.roughness), (0.0, 0.25));
+    assert!(read.metallic > 0.999 && read.roughness == 0.25);
 }
 
 /// Protects textures that nothing renders yet: their images are read, and what is wrong with them is
