@@ -20,6 +20,7 @@ pub const LIMITS: Limits = Limits {
     max_image_pixels: 1 << 20,
     max_total_pixels: 1 << 22,
     max_json_objects: 10_000,
+    confine: true,
 };
 
 /// One file that stands beside the model under every name.

@@ -19,6 +19,7 @@ mod model_in;
 mod model_out;
 mod obj;
 mod resources;
+mod search;
 mod unit;
 mod words;
 

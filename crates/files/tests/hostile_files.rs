@@ -20,6 +20,7 @@ const LIMITS: Limits = Limits {
     max_image_pixels: 1 << 24,
     max_total_pixels: 1 << 26,
     max_json_objects: 200_000,
+    confine: true,
 };
 
 const MOST_MEMORY: u64 = 1_000_000_000;

@@ -7,6 +7,7 @@ use super::json::{Document, Meshopt};
 use super::meshopt;
 use super::uri::{Uri, parse};
 use crate::context::Context;
+use crate::search::is_refusal;
 use crate::words::shown;
 use crate::{FileError, Place};
 use std::borrow::Cow;
@@ -64,7 +65,7 @@ impl<'a> Buffers<'a> {
                 let uri_place = || pointer(format!("/buffers/{index}/uri"));
                 match parse(uri).map_err(|reason| self.context.invalid(uri_place(), reason))? {
                     Uri::Data(bytes) => Cow::Owned(bytes),
-                    Uri::Relative(path) => Cow::Owned(self.external(&path, uri_place())?),
+                    Uri::Relative(path) => Cow::Owned(self.external(&path, uri_place())??),
                 }
             }
             (None, Some(binary)) if index == 0 => Cow::Borrowed(binary),
@@ -82,16 +83,22 @@ impl<'a> Buffers<'a> {
         Ok(bytes)
     }
 
-    /// The bytes of another file, all such together within the limit.
-    pub fn external(&self, path: &str, place: Place) -> Result<Vec<u8>, FileError> {
+    /// The bytes of another file, all such together within the limit. The inner error is that of a
+    /// file that is not there or cannot be read, without which a model may do; the outer one is not.
+    pub fn external(&self, path: &str, place: Place) -> Result<Result<Vec<u8>, FileError>, FileError> {
         let left = self.context.limits.max_file_bytes.saturating_sub(self.total.get());
-        let read = self.context.read(path, left).map_err(|e| {
-            // The file's own name helps more than the pointer to where it is named.
-            let source = std::io::Error::new(e.kind(), format!("{:?}: {e}", shown(path)));
-            FileError::Read { path: self.context.path.into(), place, source }
-        })?;
+        let read = match self.context.read(path, left) {
+            Ok(read) => read,
+            Err(error) => {
+                let refused = is_refusal(&error);
+                // The file's own name helps more than the pointer to where it is named.
+                let source = std::io::Error::new(error.kind(), format!("{:?}: {error}", shown(path)));
+                let error = FileError::Read { path: self.context.path.into(), place, source };
+                return if refused { Err(error) } else { Ok(Err(error)) };
+            }
+        };
         self.total.set(self.total.get() + read.len() as u64);
-        Ok(read)
+        Ok(Ok(read))
     }
 
     /// Counts bytes that are about to be made from compressed ones.

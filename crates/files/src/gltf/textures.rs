@@ -135,9 +135,9 @@ impl<'a, 'd> TextureReader<'a, 'd> {
         };
         let bytes = match parse(uri) {
             Ok(Uri::Data(bytes)) => bytes,
-            Ok(Uri::Relative(path)) => match self.buffers.external(&path, pointer(format!("{here}/uri"))) {
+            Ok(Uri::Relative(path)) => match self.buffers.external(&path, pointer(format!("{here}/uri")))? {
                 Ok(bytes) => bytes,
-                Err(FileError::Read { source, .. }) if source.kind() != std::io::ErrorKind::FileTooLarge => {
+                Err(FileError::Read { source, .. }) => {
                     context.warn(format!("image {source}; the material goes without it"));
                     return Ok(None);
                 }
