@@ -3,6 +3,7 @@
 //! and what must hold of them after writing and after repair.
 
 pub mod built;
+pub mod compressed;
 pub mod repaired;
 pub mod written;
 
@@ -19,6 +20,7 @@ pub const LIMITS: Limits = Limits {
     max_image_pixels: 1 << 20,
     max_total_pixels: 1 << 22,
     max_json_objects: 10_000,
+    confine: true,
 };
 
 /// One file that stands beside the model under every name.

@@ -97,6 +97,14 @@ pub struct Talk {
     pub quiet: bool,
 }
 
+/// What models may make the command read.
+#[derive(Args, Debug, Clone, Copy)]
+pub struct Reading {
+    /// Read no file outside a model's own folder, whatever it names: for models from strangers
+    #[arg(long)]
+    pub confine: bool,
+}
+
 /// Arguments of `bake`.
 #[derive(Args, Debug)]
 pub struct BakeCommand {
@@ -129,6 +137,10 @@ pub struct BakeCommand {
     /// How to bake
     #[command(flatten)]
     pub bake: BakeOptions,
+
+    /// What to read
+    #[command(flatten, next_help_heading = IO)]
+    pub reading: Reading,
 
     /// What to tell
     #[command(flatten, next_help_heading = IO)]
@@ -168,6 +180,10 @@ pub struct CompressCommand {
     /// How to do it
     #[command(flatten)]
     pub bake: BakeOptions,
+
+    /// What to read
+    #[command(flatten, next_help_heading = IO)]
+    pub reading: Reading,
 
     /// What to tell
     #[command(flatten, next_help_heading = IO)]
@@ -259,6 +275,10 @@ pub struct VariantsCommand {
     #[command(flatten, next_help_heading = "Comparison")]
     pub variants: VariantsOptions,
 
+    /// What to read
+    #[command(flatten, next_help_heading = IO)]
+    pub reading: Reading,
+
     /// What to tell
     #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
@@ -289,6 +309,10 @@ pub struct EvalCommand {
     #[command(flatten, next_help_heading = "Comparison")]
     pub evaluate: EvaluateOptions,
 
+    /// What to read
+    #[command(flatten, next_help_heading = IO)]
+    pub reading: Reading,
+
     /// What to tell
     #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
@@ -313,6 +337,10 @@ pub struct TurntableCommand {
     /// How to film
     #[command(flatten, next_help_heading = "Film")]
     pub turntable: TurntableOptions,
+
+    /// What to read
+    #[command(flatten, next_help_heading = IO)]
+    pub reading: Reading,
 
     /// What to tell
     #[command(flatten, next_help_heading = IO)]
@@ -380,6 +408,10 @@ pub struct CheckCommand {
     #[arg(long, value_name = "COUNT", default_value_t = 0)]
     pub threads: usize,
 
+    /// What to read
+    #[command(flatten, next_help_heading = IO)]
+    pub reading: Reading,
+
     /// What to tell
     #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
@@ -402,6 +434,10 @@ pub struct SimplifyCommand {
     /// Subdivide instead: split each triangle into four, 1 to 6 times
     #[arg(long, value_name = "TIMES", conflicts_with = "triangles")]
     pub subdivide: Option<u32>,
+
+    /// What to read
+    #[command(flatten, next_help_heading = IO)]
+    pub reading: Reading,
 
     /// What to tell
     #[command(flatten, next_help_heading = IO)]

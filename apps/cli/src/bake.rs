@@ -9,7 +9,7 @@ use crate::progress::{Console, interrupted};
 use crate::rules;
 use clap::ArgMatches;
 use parbake::{
-    BakeOptions, BakeReport, Baked, Comparison, Convention, Limits, Loaded, Message, Model, NormalY, Stage,
+    BakeOptions, BakeReport, Baked, Comparison, Convention, Loaded, Message, Model, NormalY, Stage,
     StageTime, Watcher, Work, bake, compare_bake, read_model, with_normal_y, with_threads, write_file,
     write_glb, write_obj,
 };
@@ -28,7 +28,7 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
     check_output(output)?;
     check_not_input(output, &inputs)?;
     check_beside(Some(output), command.json.as_ref(), command.report.as_ref(), &inputs)?;
-    let console = Console::for_bake(command.talk, options.time_budget);
+    let console = Console::for_bake(command.talk, options.time_budget).confined(command.reading);
     with_threads(options.threads, || {
         let pair = read_pair(&command.high, &command.low, &console)?;
         if command.strict {
@@ -84,7 +84,7 @@ pub fn check_textures(warnings: &[String]) -> Result<(), Failure> {
 /// Reads one model and passes its warnings on.
 pub fn read(path: &Path, console: &Console) -> Result<Loaded, Failure> {
     check_input(path)?;
-    let loaded = read_model(path, &Limits::default())?;
+    let loaded = read_model(path, console.limits())?;
     for warning in &loaded.warnings {
         console.message(Message::Warning(warning.clone()));
     }

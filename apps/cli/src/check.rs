@@ -19,7 +19,7 @@ pub fn run(command: &CheckCommand) -> Result<Ending, Failure> {
     }
     check_json(command.json.as_ref(), &[&command.model])?;
     let to_stdout = command.json.as_ref().is_some_and(|path| is_stdout(path));
-    let console = Console::new(command.talk);
+    let console = Console::new(command.talk).confined(command.reading);
     with_threads(command.threads, || {
         let model = read(&command.model, &console)?.model;
         let found = check_model(&model, size, gutter);

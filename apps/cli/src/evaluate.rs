@@ -12,7 +12,7 @@ use parbake::{ViewFigures, evaluate, with_threads};
 pub fn run(command: &EvalCommand) -> Result<Ending, Failure> {
     command.evaluate.check()?;
     check_json(command.json.as_ref(), &[&command.high, &command.low])?;
-    let console = Console::new(command.talk);
+    let console = Console::new(command.talk).confined(command.reading);
     with_threads(command.threads, || {
         let pair = read_pair(&command.high, &command.low, &console)?;
         let evaluation = evaluate(&pair.high, &pair.low, &command.evaluate, &console)?;

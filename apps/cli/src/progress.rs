@@ -1,9 +1,9 @@
 //! What a person sees while waiting, and the two ways of ending early: Ctrl-C and
 //! the time budget.
 
-use crate::arguments::Talk;
+use crate::arguments::{Reading, Talk};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use parbake::{Estimate, Message, Stage, Watcher};
+use parbake::{Estimate, Limits, Message, Stage, Watcher};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
@@ -32,6 +32,7 @@ fn catch_interrupts(what_becomes: &'static str) {
 /// Draws messages on standard error.
 pub struct Console {
     talk: Talk,
+    limits: Limits,
     deadline: Option<Instant>,
     begin: Instant,
     bar: ProgressBar,
@@ -46,6 +47,17 @@ impl Console {
     /// For work that has nothing to show before its end: Ctrl-C ends it at once.
     pub fn new(talk: Talk) -> Self {
         Self::with_deadline(talk, None)
+    }
+
+    /// The same, with models that may keep reading to their own folders.
+    pub fn confined(mut self, reading: Reading) -> Self {
+        self.limits.confine = reading.confine;
+        self
+    }
+
+    /// What models may ask for.
+    pub fn limits(&self) -> &Limits {
+        &self.limits
     }
 
     /// For a bake, which Ctrl-C ends with the best state so far. Begins the clock of
@@ -93,7 +105,7 @@ impl Console {
         if let Ok(style) = ProgressStyle::with_template("{msg:24} {bar:30} {pos}/{len}{prefix}") {
             bar.set_style(style);
         }
-        Self { talk, deadline, begin, bar, state: Mutex::default() }
+        Self { talk, limits: Limits::default(), deadline, begin, bar, state: Mutex::default() }
     }
 
     /// A line for people, unless they asked for quiet.

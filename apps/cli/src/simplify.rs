@@ -14,7 +14,7 @@ pub fn run(command: &SimplifyCommand) -> Result<Ending, Failure> {
     if command.triangles < 4 {
         return Err(Failure::Usage(format!("--triangles {}: at least 4", command.triangles)));
     }
-    let console = Console::new(command.talk);
+    let console = Console::new(command.talk).confined(command.reading);
     let model = read(&command.model, &console)?.model;
     let result = match command.subdivide {
         Some(times @ 1..=6) => (0..times).fold(model.clone(), |m, _| subdivided(&m)),

@@ -38,6 +38,30 @@ fn group(groups: &[(String, String)], heading: &str) -> String {
     found.unwrap_or_else(|| panic!("no heading {heading}")).1.clone()
 }
 
+/// Protects services: with `--confine` a model cannot make any command read a file outside its folder.
+#[test]
+fn confined_commands_refuse_files_outside() {
+    let folder = tempfile::tempdir().unwrap();
+    let inside = folder.path().join("in");
+    fs::create_dir(&inside).unwrap();
+    fs::write(folder.path().join("a.mtl"), "newmtl a\n").unwrap();
+    let obj = "mtllib ../a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n";
+    fs::write(inside.join("m.obj"), obj).unwrap();
+    run(folder.path(), &["check", "in/m.obj"]);
+    for command in [
+        &["check", "in/m.obj"][..],
+        &["bake", "in/m.obj", "in/m.obj"],
+        &["compress", "in/m.obj"],
+        &["eval", "in/m.obj", "in/m.obj"],
+        &["variants", "in/m.obj", "in/m.obj"],
+        &["turntable", "in/m.obj", "in/m.obj"],
+        &["simplify", "in/m.obj", "-o", "s.glb"],
+    ] {
+        let (code, error) = refusal(folder.path(), &[command, &["--confine"]].concat());
+        assert!(code == Some(1) && error.contains("outside the model's folder"), "{command:?}: {error}");
+    }
+}
+
 /// Protects people who choose options: each is in its group, in one order, and research switches stand
 /// apart.
 #[test]

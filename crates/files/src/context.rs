@@ -2,6 +2,7 @@
 //! warnings so far.
 
 use crate::image_in::{decode, texels};
+use crate::search;
 use crate::words::shown;
 use crate::{FileError, Limits, Place, Resources};
 use parbake_model::Image;
@@ -50,11 +51,62 @@ impl<'a> Context<'a> {
         self.count("", bytes);
     }
 
-    /// Reads a file that the model names.
-    pub fn read(&self, relative: &str, max_bytes: u64) -> io::Result<Vec<u8>> {
-        let bytes = self.resources.read(relative, max_bytes)?;
-        self.count(relative, &bytes);
+    /// Reads a file that the model names; where nothing is at an absolute path, the file of that name
+    /// beside the model, with a warning.
+    pub fn read(&self, named: &str, max_bytes: u64) -> io::Result<Vec<u8>> {
+        let error = match self.read_there(named, max_bytes) {
+            Ok(bytes) => return Ok(bytes),
+            Err(error) if search::is_absolute(named) && error.kind() != io::ErrorKind::FileTooLarge => error,
+            Err(error) => return Err(error),
+        };
+        match self.read_by_name(named, "", max_bytes)? {
+            Some((_, bytes)) => Ok(bytes),
+            None if search::is_refusal(&error) => Err(error),
+            None => {
+                let reason = "nothing is at this absolute path, and no file of its name is beside the model";
+                Err(io::Error::new(error.kind(), reason))
+            }
+        }
+    }
+
+    /// Reads a file exactly where the model says.
+    pub fn read_there(&self, named: &str, max_bytes: u64) -> io::Result<Vec<u8>> {
+        // The resources are a caller's own and need not know about confinement.
+        if self.limits.confine && (search::is_absolute(named) || search::leaves(named)) {
+            return Err(search::outside());
+        }
+        if !search::may_be_here(named) {
+            return Err(io::Error::from(io::ErrorKind::NotFound));
+        }
+        let bytes = self.resources.read(named, max_bytes)?;
+        self.count(named, &bytes);
         Ok(bytes)
+    }
+
+    /// Looks for a file by its name alone, in `folder` and beside the model; a warning says where it
+    /// was found.
+    pub fn read_by_name(
+        &self,
+        named: &str,
+        folder: &str,
+        max_bytes: u64,
+    ) -> io::Result<Option<(String, Vec<u8>)>> {
+        for place in search::by_name(named, folder) {
+            // These are our own guesses: one that a confined reading may not make is not an error.
+            if place == named || (self.limits.confine && search::leaves(&place)) {
+                continue;
+            }
+            match self.read_there(&place, max_bytes) {
+                Ok(bytes) => {
+                    let (named, found) = (shown(named), shown(&place));
+                    self.warn(format!("nothing is at {named:?}; {found:?} beside the model was taken"));
+                    return Ok(Some((place, bytes)));
+                }
+                Err(error) if search::is_refusal(&error) => return Err(error),
+                Err(_) => {}
+            }
+        }
+        Ok(None)
     }
 
     fn count(&self, name: &str, bytes: &[u8]) {

@@ -1,4 +1,4 @@
-//! Pictures in: PNG, JPEG and WebP to 8-bit RGBA.
+//! Pictures in: PNG, JPEG, WebP and KTX2 (`ktx2.rs`) to 8-bit RGBA.
 //!
 //! The format is told by the first bytes, not by the name. Samples of 16 bits are
 //! rounded to 8, greys and palettes become RGB, a missing alpha becomes 255. Colour
@@ -7,6 +7,8 @@
 //! Contract: the declared size is held against the limits before any pixel memory
 //! is reserved.
 
+use crate::guard::guarded;
+use crate::ktx2;
 use crate::resources::read_file;
 use crate::{FileError, Limits, Place};
 use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
@@ -14,7 +16,7 @@ use parbake_model::Image;
 use std::io::Cursor;
 use std::path::Path;
 
-const SUPPORTED: &str = "PNG, JPEG and WebP";
+const SUPPORTED: &str = "PNG, JPEG, WebP and KTX2 (Basis Universal)";
 
 /// The most pixels that one byte of a whole file can stand for: a PNG of one bit a
 /// pixel, at the 1032 bytes that deflate makes of one; a JPEG's 64 pixels a bit, and
@@ -93,12 +95,24 @@ pub fn decode_image(name: &str, bytes: &[u8], limits: &Limits) -> Result<Image, 
 /// The number of texels that a picture declares, if that is believable and within
 /// the limits. Costs next to nothing.
 pub(crate) fn texels(bytes: &[u8], limits: &Limits) -> Result<u64, ImageTrouble> {
-    let (decoder, _) = open(bytes, limits)?;
-    let (width, height) = decoder.dimensions();
+    let (width, height) = if ktx2::is_ktx2(bytes) {
+        let header = ktx2::header(bytes)?;
+        within(header.width, header.height, limits)?;
+        (header.width, header.height)
+    } else {
+        open(bytes, limits)?.0.dimensions()
+    };
     Ok(u64::from(width) * u64::from(height))
 }
 
 pub(crate) fn decode(name: &str, bytes: &[u8], limits: &Limits) -> Result<Image, ImageTrouble> {
+    if ktx2::is_ktx2(bytes) {
+        let header = ktx2::header(bytes)?;
+        within(header.width, header.height, limits)?;
+        let pixels = ktx2::decode(bytes, header)?;
+        let (width, height) = (header.width as usize, header.height as usize);
+        return Ok(Image { name: name.into(), width, height, pixels });
+    }
     let (decoder, format) = open(bytes, limits)?;
     // The decoder would fill up what is missing with grey.
     if format == ImageFormat::Jpeg && !jpeg_has_end(bytes) {
@@ -106,7 +120,10 @@ pub(crate) fn decode(name: &str, bytes: &[u8], limits: &Limits) -> Result<Image,
     }
     let (width, height) = decoder.dimensions();
     let (width, height) = (width as usize, height as usize);
-    let pixels = rgba(decoder, width * height).map_err(damaged)?;
+    // None of these decoders is known to panic; what a stranger sent must not be what finds one that does.
+    let pixels = guarded(|| rgba(decoder, width * height))
+        .unwrap_or_else(|| Err(ImageError::IoError(std::io::Error::other("the decoder failed"))))
+        .map_err(damaged)?;
     Ok(Image { name: name.into(), width, height, pixels })
 }
 
@@ -123,6 +140,18 @@ fn open<'b>(
     reader.limits(decoder_limits(limits));
     let decoder = reader.into_decoder().map_err(damaged)?;
     let (width, height) = decoder.dimensions();
+    let pixels = within(width, height, limits)?;
+    if pixels > most_pixels_a_byte(format).saturating_mul(bytes.len() as u64) {
+        return Err(ImageTrouble::Damaged(format!(
+            "the picture declares {width} × {height} pixels but has only {} bytes",
+            bytes.len()
+        )));
+    }
+    Ok((decoder, format))
+}
+
+/// The number of texels, if it is within the limits.
+fn within(width: u32, height: u32, limits: &Limits) -> Result<u64, ImageTrouble> {
     let side = u64::from(width.max(height));
     let pixels = u64::from(width) * u64::from(height);
     if pixels == 0 {
@@ -134,13 +163,7 @@ fn open<'b>(
     if pixels > limits.max_image_pixels {
         return Err(ImageTrouble::Pixels(pixels));
     }
-    if pixels > most_pixels_a_byte(format).saturating_mul(bytes.len() as u64) {
-        return Err(ImageTrouble::Damaged(format!(
-            "the picture declares {width} × {height} pixels but has only {} bytes",
-            bytes.len()
-        )));
-    }
-    Ok((decoder, format))
+    Ok(pixels)
 }
 
 fn damaged(error: ImageError) -> ImageTrouble {

@@ -10,13 +10,16 @@ mod context;
 mod error;
 mod finish;
 mod gltf;
+mod guard;
 mod image_in;
 mod image_out;
+mod ktx2;
 mod limits;
 mod model_in;
 mod model_out;
 mod obj;
 mod resources;
+mod search;
 mod unit;
 mod words;
 

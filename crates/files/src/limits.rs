@@ -1,4 +1,4 @@
-//! How much a file may ask for. Everything that a file *declares* is held against
+//! How much a file may ask for, and where. Everything that a file *declares* is held against
 //! these before memory is reserved for it, so that a few hostile bytes cannot ask
 //! for gigabytes.
 
@@ -20,6 +20,11 @@ pub struct Limits {
     /// JSON objects in a glTF document, each of which costs a few hundred bytes in
     /// memory; also primitives placed by its nodes, instances counted.
     pub max_json_objects: usize,
+    /// Whether every file that a model names must lie in the model's own folder or below it, links
+    /// resolved: for services that read what strangers send. `..` that leads out, absolute paths and
+    /// links to elsewhere are then errors, but for absolute paths of which a file of the same name lies
+    /// beside the model. Otherwise `..`, links and absolute paths are followed. Default: not confined.
+    pub confine: bool,
 }
 
 impl Default for Limits {
@@ -32,6 +37,7 @@ impl Default for Limits {
             max_image_pixels: 1 << 28,
             max_total_pixels: 1 << 29,
             max_json_objects: 2_000_000,
+            confine: false,
         }
     }
 }

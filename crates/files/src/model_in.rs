@@ -44,12 +44,13 @@ fn read(path: &Path, limits: &Limits, textures: Textures) -> Result<Loaded, File
     let extension = path.extension().map(|e| e.to_ascii_lowercase()).unwrap_or_default();
     let known = ["obj", "gltf", "glb"].iter().any(|e| extension == *e);
     let unreadable = |source| FileError::Read { path: path.into(), place: Place::File, source };
+    let resources = Folder::beside(path).confined(limits.confine);
+    let file = resources.model(path).map_err(unreadable)?;
     // What is no model may be gigabytes long; its first bytes are enough to say so.
-    if !known && !begins_with(path, gltf::MAGIC).map_err(unreadable)? {
+    if !known && !begins_with(&file, gltf::MAGIC).map_err(unreadable)? {
         return Err(FileError::UnknownFormat { path: path.into(), supported: SUPPORTED });
     }
-    let bytes = read_file(path, limits.max_file_bytes).map_err(unreadable)?;
-    let resources = Folder::beside(path);
+    let bytes = read_file(&file, limits.max_file_bytes).map_err(unreadable)?;
     let context = Context::new(path, &resources, limits, textures);
     let mut loaded = if bytes.starts_with(gltf::MAGIC) || extension != "obj" {
         gltf::read(context, &bytes)
@@ -121,6 +122,86 @@ mod tests {
         let named =
             |warning: &String| ["chair.obj", "oak", "oak_color.png"].iter().all(|n| warning.contains(n));
         assert!(warnings.len() == 1 && named(&warnings[0]), "{warnings:?}");
+    }
+
+    const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n";
+
+    fn confined() -> Limits {
+        Limits { confine: true, ..Limits::default() }
+    }
+
+    /// Protects artists' files: absolute paths, of Windows too, lead to the picture that lies beside the
+    /// model, and a warning says so; where there is none, the warning names the path.
+    #[test]
+    fn absolute_paths_lead_to_files_beside_the_model() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("model");
+        std::fs::create_dir_all(folder.join("textures")).unwrap();
+        let png = crate::encode_png(&parbake_model::Image::solid("", 1, 1, [9, 9, 9, 255])).unwrap();
+        std::fs::write(folder.join("textures/oak.png"), png).unwrap();
+        let path = folder.join("m.obj");
+        std::fs::write(folder.join("my lib.mtl"), "newmtl a\nmap_Kd C:\\Users\\me\\My Pictures\\oak.png\n")
+            .unwrap();
+        std::fs::write(&path, format!("mtllib /home/me/my work/my lib.mtl\n{TRIANGLE}")).unwrap();
+        for limits in [Limits::default(), confined()] {
+            let loaded = read_model(&path, &limits).unwrap();
+            assert!(loaded.model.materials[0].base_color_texture.is_some(), "{:?}", loaded.warnings);
+            assert!(
+                loaded.warnings[0].contains("my lib.mtl")
+                    && loaded.warnings[1].contains("\"textures/oak.png\"")
+            );
+        }
+        std::fs::write(folder.join("my lib.mtl"), "newmtl a\nmap_Kd C:\\gone.png\n").unwrap();
+        let warnings = read_model(&path, &Limits::default()).unwrap().warnings;
+        assert!(warnings[1].contains("C:/gone.png"), "{warnings:?}");
+    }
+
+    /// Protects services that read what strangers send: nothing outside the model's folder is read,
+    /// neither as a buffer nor as a picture nor as a library; one's own files are.
+    #[test]
+    fn a_confined_reading_stays_in_the_folder() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("model");
+        std::fs::create_dir(&folder).unwrap();
+        let positions = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let secret = place.path().join("secret.bin");
+        std::fs::write(&secret, positions.map(f32::to_le_bytes).as_flattened()).unwrap();
+        let document = |uri: &str| {
+            serde_json::json!({
+                "asset": { "version": "2.0" }, "buffers": [{ "byteLength": 36, "uri": uri }],
+                "bufferViews": [{ "buffer": 0, "byteLength": 36 }],
+                "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" }],
+                "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 } }] }],
+            })
+            .to_string()
+        };
+        let path = folder.join("m.gltf");
+        let absolute = secret.to_string_lossy().into_owned();
+        for uri in ["../secret.bin", absolute.as_str()] {
+            std::fs::write(&path, document(uri)).unwrap();
+            assert!(read_model(&path, &Limits::default()).is_ok(), "{uri}");
+            let error = read_model(&path, &confined()).unwrap_err().to_string();
+            assert!(
+                error.contains("/buffers/0/uri") && error.contains("outside the model's folder"),
+                "{error}"
+            );
+        }
+        let obj = folder.join("m.obj");
+        for line in ["mtllib ../secret.mtl", "mtllib m.mtl"] {
+            std::fs::write(&obj, format!("{line}\n{TRIANGLE}")).unwrap();
+            std::fs::write(folder.join("m.mtl"), "newmtl a\nmap_Kd ../secret.png\n").unwrap();
+            assert!(read_model(&obj, &Limits::default()).is_ok(), "{line}");
+            let error = read_model(&obj, &confined()).unwrap_err().to_string();
+            assert!(error.contains("secret.") && error.contains("outside the model's folder"), "{error}");
+        }
+        #[cfg(unix)]
+        {
+            let link = folder.join("link.gltf");
+            std::fs::write(place.path().join("there.gltf"), document("secret.bin")).unwrap();
+            std::os::unix::fs::symlink(place.path().join("there.gltf"), &link).unwrap();
+            let error = read_model(&link, &confined()).unwrap_err().to_string();
+            assert!(error.contains("outside the model's folder"), "{error}");
+        }
     }
 
     /// Protects capital extensions, as old exporters write them.

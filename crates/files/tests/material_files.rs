@@ -9,7 +9,9 @@ mod common;
 use common::keep;
 use parbake_files::{Limits, Loaded, glb_bytes, read_model, write_glb, write_obj};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
-use parbake_model::{AlphaMode, Image, Material, Mesh, Model, TextureSlot, UvTransform, Wrap};
+use parbake_model::{
+    AlphaMode, Image, Material, MaterialExtensions, Mesh, Model, TextureSlot, UvTransform, Wrap,
+};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -62,6 +64,7 @@ fn rich() -> Material {
         double_sided: true,
         unlit: false,
         parallax: None,
+        extensions: MaterialExtensions::default(),
     }
 }
 
@@ -104,6 +107,8 @@ fn glb_keeps_whole_materials() {
         double_sided,
         unlit,
         parallax: _,
+        // Read, and not written yet.
+        extensions: _,
     } = bare;
     assert!(rich.base_color.iter().zip(base_color).all(|(a, b)| *a != b));
     assert!(rich.emissive.iter().zip(emissive).all(|(a, b)| *a != b));

@@ -27,6 +27,7 @@ const LIMITS: Limits = Limits {
     max_image_pixels: 1 << 20,
     max_total_pixels: 1 << 22,
     max_json_objects: 5000,
+    confine: true,
 };
 
 const MOST_MEMORY: u64 = 300_000_000;

@@ -77,6 +77,7 @@ fn factors(material: &Material) -> Material {
     factors.occlusion_texture = None;
     factors.emissive_texture = None;
     factors.parallax = None;
+    factors.extensions = Default::default();
     if material.alpha_mode != AlphaMode::Mask {
         factors.alpha_cutoff = 0.5;
     }

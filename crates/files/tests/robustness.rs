@@ -20,6 +20,7 @@ const LIMITS: Limits = Limits {
     max_image_pixels: 1 << 16,
     max_total_pixels: 1 << 18,
     max_json_objects: 1000,
+    confine: true,
 };
 
 const OBJ: &[u8] = b"mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1e0 -.5\nv 1 1 0\nvt 0 0\nvt 1 .5\nvn 0 0 1\n\

@@ -11,6 +11,7 @@
 mod cutout;
 mod image;
 mod material;
+mod material_extensions;
 mod mesh;
 mod parallax;
 mod parallax_fault;
@@ -21,6 +22,10 @@ pub use cutout::CutoutMap;
 pub use glam;
 pub use image::Image;
 pub use material::{AlphaMode, Material, TextureSlot, UvTransform, Wrap};
+pub use material_extensions::{
+    Anisotropy, Clearcoat, DiffuseTransmission, Iridescence, MaterialExtensions, Sheen, Specular,
+    Transmission, Volume,
+};
 pub use mesh::Mesh;
 pub use parallax::{DepthMap, ShParallaxMap};
 pub use parallax_fault::ParallaxFault;

@@ -4,7 +4,7 @@
 //!
 //! Files carry all of it. What the renderer and the fit use of it is said there.
 
-use crate::ShParallaxMap;
+use crate::{MaterialExtensions, ShParallaxMap};
 use glam::Vec2;
 
 /// What happens to texture coordinates outside `[0, 1)`.
@@ -122,6 +122,8 @@ pub struct Material {
     pub unlit: bool,
     /// Shifts of the texture coordinates with the direction of view, and what is cut out.
     pub parallax: Option<ShParallaxMap>,
+    /// What extensions say beyond all this; nothing here is rendered or fitted.
+    pub extensions: MaterialExtensions,
 }
 
 impl Material {
@@ -175,6 +177,7 @@ impl Default for Material {
             double_sided: true,
             unlit: false,
             parallax: None,
+            extensions: MaterialExtensions::default(),
         }
     }
 }

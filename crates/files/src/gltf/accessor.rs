@@ -6,12 +6,13 @@
 //! one large accessor.
 
 use super::buffers::{Buffers, pointer};
+use super::draco::Attribute;
 use super::json;
 use crate::FileError;
 
 /// A component's type.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Component {
+pub(super) enum Component {
     I8,
     U8,
     I16,
@@ -155,9 +156,30 @@ impl<'a> Accessor<'a> {
         Ok(Self { count: json.count, width, component, base, normalized, replaced, pointer: here })
     }
 
-    /// Whether there is nothing but zeros in it: no data at all.
-    pub fn is_empty(&self) -> bool {
-        self.base.is_none() && self.replaced.is_none()
+    /// The values that a Draco stream has for accessor `index`, `count` of them.
+    pub fn decoded(
+        buffers: &'a Buffers<'_>,
+        index: usize,
+        from: &str,
+        widths: &[usize],
+        attribute: &'a Attribute,
+        count: usize,
+    ) -> Result<Self, FileError> {
+        let Some(json) = buffers.document.accessors.get(index) else {
+            return Err(buffers.missing(from, "accessor", index, buffers.document.accessors.len()));
+        };
+        let here = format!("/accessors/{index}");
+        let (component, width) = (attribute.component, attribute.width);
+        if !widths.contains(&width) {
+            let reason = format!("the Draco stream's attribute of {width} components does not fit {from}");
+            return Err(buffers.context.invalid(pointer(format!("{here}/type")), reason));
+        }
+        let stride = component.size() * width;
+        let base = Some(Strided { bytes: &attribute.bytes, stride, component });
+        // An accessor of floats says nothing about integers: then the stream's own word counts.
+        let floats = Component::of(json.component_type) == Some(Component::F32);
+        let normalized = if floats { attribute.normalized } else { json.normalized };
+        Ok(Self { count, width, component, base, normalized, replaced: None, pointer: here })
     }
 
     /// Whether it may hold indices: whole numbers, one by one.

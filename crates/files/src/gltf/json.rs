@@ -30,6 +30,26 @@ pub(super) struct Document {
     pub samplers: Vec<Sampler>,
     pub skins: Vec<Ignored>,
     pub animations: Vec<Ignored>,
+    pub extensions: DocumentExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct DocumentExtensions {
+    #[serde(rename = "KHR_materials_variants")]
+    pub variants: Option<Variants>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Variants {
+    pub variants: Vec<Variant>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Variant {
+    pub name: String,
 }
 
 #[derive(Debug, Deserialize)]
@@ -122,7 +142,16 @@ pub(super) struct Primitive {
 #[serde(default)]
 pub(super) struct PrimitiveExtensions {
     #[serde(rename = "KHR_draco_mesh_compression")]
-    pub draco: Option<Ignored>,
+    pub draco: Option<Draco>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct Draco {
+    #[serde(deserialize_with = "optional_integer")]
+    pub buffer_view: Option<usize>,
+    /// Not accessors but the stream's own numbers of its attributes.
+    pub attributes: Attributes,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -138,8 +167,37 @@ pub(super) struct Attributes {
     pub texcoord_0: Option<usize>,
     #[serde(rename = "TEXCOORD_1", deserialize_with = "optional_integer")]
     pub texcoord_1: Option<usize>,
+    #[serde(rename = "TEXCOORD_2", deserialize_with = "optional_integer")]
+    pub texcoord_2: Option<usize>,
+    #[serde(rename = "TEXCOORD_3", deserialize_with = "optional_integer")]
+    pub texcoord_3: Option<usize>,
+    #[serde(rename = "TEXCOORD_4", deserialize_with = "optional_integer")]
+    pub texcoord_4: Option<usize>,
+    #[serde(rename = "TEXCOORD_5", deserialize_with = "optional_integer")]
+    pub texcoord_5: Option<usize>,
+    #[serde(rename = "TEXCOORD_6", deserialize_with = "optional_integer")]
+    pub texcoord_6: Option<usize>,
+    #[serde(rename = "TEXCOORD_7", deserialize_with = "optional_integer")]
+    pub texcoord_7: Option<usize>,
     #[serde(rename = "COLOR_0", deserialize_with = "optional_integer")]
     pub color_0: Option<usize>,
+}
+
+impl Attributes {
+    /// The texture coordinates of a set; none beyond the eighth.
+    pub fn texcoord(&self, set: usize) -> Option<usize> {
+        let sets = [
+            self.texcoord_0,
+            self.texcoord_1,
+            self.texcoord_2,
+            self.texcoord_3,
+            self.texcoord_4,
+            self.texcoord_5,
+            self.texcoord_6,
+            self.texcoord_7,
+        ];
+        sets.get(set).copied().flatten()
+    }
 }
 
 #[derive(Debug, Deserialize)]
@@ -199,6 +257,33 @@ pub(super) struct BufferView {
     pub byte_length: usize,
     #[serde(default, deserialize_with = "optional_integer")]
     pub byte_stride: Option<usize>,
+    pub extensions: Option<Box<BufferViewExtensions>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct BufferViewExtensions {
+    #[serde(rename = "EXT_meshopt_compression")]
+    pub ext_meshopt: Option<Meshopt>,
+    #[serde(rename = "KHR_meshopt_compression")]
+    pub khr_meshopt: Option<Meshopt>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Meshopt {
+    #[serde(deserialize_with = "integer")]
+    pub buffer: usize,
+    #[serde(default, deserialize_with = "integer")]
+    pub byte_offset: usize,
+    #[serde(deserialize_with = "integer")]
+    pub byte_length: usize,
+    #[serde(deserialize_with = "integer")]
+    pub byte_stride: usize,
+    #[serde(deserialize_with = "integer")]
+    pub count: usize,
+    pub mode: String,
+    pub filter: Option<String>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -224,6 +309,8 @@ pub(super) struct Texture {
 pub(super) struct TextureExtensions {
     #[serde(rename = "EXT_texture_webp")]
     pub webp: Option<TextureSource>,
+    #[serde(rename = "KHR_texture_basisu")]
+    pub basisu: Option<TextureSource>,
 }
 
 #[derive(Debug, Default, Deserialize)]

@@ -5,6 +5,10 @@
 
 use super::ignored::Ignored;
 use super::integer::{integer, optional_integer};
+use super::json_extensions::{
+    Anisotropy, Clearcoat, DiffuseTransmission, Dispersion, Ior, Iridescence, Sheen, Specular, Transmission,
+    Volume,
+};
 use serde::Deserialize;
 
 #[derive(Debug, Default, Deserialize)]
@@ -43,6 +47,26 @@ pub(super) struct MaterialExtensions {
     pub specular_glossiness: Option<SpecularGlossiness>,
     #[serde(rename = "PARBAKE_materials_parallax_sh")]
     pub parallax_sh: Option<Box<ParallaxSh>>,
+    #[serde(rename = "KHR_materials_clearcoat")]
+    pub clearcoat: Option<Clearcoat>,
+    #[serde(rename = "KHR_materials_sheen")]
+    pub sheen: Option<Sheen>,
+    #[serde(rename = "KHR_materials_transmission")]
+    pub transmission: Option<Transmission>,
+    #[serde(rename = "KHR_materials_diffuse_transmission")]
+    pub diffuse_transmission: Option<DiffuseTransmission>,
+    #[serde(rename = "KHR_materials_volume")]
+    pub volume: Option<Volume>,
+    #[serde(rename = "KHR_materials_iridescence")]
+    pub iridescence: Option<Iridescence>,
+    #[serde(rename = "KHR_materials_anisotropy")]
+    pub anisotropy: Option<Anisotropy>,
+    #[serde(rename = "KHR_materials_specular")]
+    pub specular: Option<Specular>,
+    #[serde(rename = "KHR_materials_ior")]
+    pub ior: Option<Ior>,
+    #[serde(rename = "KHR_materials_dispersion")]
+    pub dispersion: Option<Dispersion>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -86,7 +110,8 @@ pub(super) struct SpecularGlossiness {
     pub diffuse_factor: Option<[f32; 4]>,
     pub diffuse_texture: Option<TextureInfo>,
     pub glossiness_factor: Option<f32>,
-    pub specular_glossiness_texture: Option<Ignored>,
+    pub specular_factor: Option<[f32; 3]>,
+    pub specular_glossiness_texture: Option<TextureInfo>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -1,13 +1,17 @@
-//! Materials (glTF 2.0, 3.9), with KHR_materials_emissive_strength, KHR_materials_unlit, the
-//! diffuse part of KHR_materials_pbrSpecularGlossiness and parallax maps (`parallax.rs`); their
-//! textures come from `textures.rs`.
+//! Materials (glTF 2.0, 3.9), with KHR_materials_emissive_strength, KHR_materials_unlit,
+//! KHR_materials_pbrSpecularGlossiness (`specular_glossiness.rs`), the factors of other extensions
+//! (`material_extensions.rs`) and parallax maps (`parallax.rs`); their textures come from
+//! `textures.rs`.
 //!
 //! Factors out of range are clamped; those without a range that are not finite become the default.
 
 use super::buffers::Buffers;
 use super::json_material;
+use super::material_extensions;
 use super::parallax;
+use super::specular_glossiness::{self, Pending};
 use super::textures::TextureReader;
+use super::uv_sets::UvSets;
 use crate::FileError;
 use parbake_model::{AlphaMode, Image, Material};
 
@@ -20,19 +24,30 @@ pub(super) fn build(
 ) -> Result<(Vec<Material>, Vec<Image>), FileError> {
     let mut textures = TextureReader::new(buffers);
     let mut materials = Vec::with_capacity(indices.len());
+    let mut pending = Vec::new();
     for index in indices {
+        let number = materials.len();
         materials.push(match index {
             None => Material { name: "default".into(), ..Material::gltf_default() },
-            Some(index) => material(&mut textures, *index)?,
+            Some(index) => material(&mut textures, *index, number, &mut pending)?,
         });
     }
-    let images = textures.decode()?;
+    let mut images = textures.decode()?;
+    material_extensions::warn(&materials, buffers.context);
+    specular_glossiness::convert(&pending, &mut materials, &mut images, buffers.context)?;
     parallax::leave_out(&mut materials, turned, &images, buffers.context);
     Ok((materials, images))
 }
 
-fn material(textures: &mut TextureReader<'_, '_>, index: usize) -> Result<Material, FileError> {
+/// Material `index` of the document, number `number` of ours.
+fn material(
+    textures: &mut TextureReader<'_, '_>,
+    index: usize,
+    number: usize,
+    pending: &mut Vec<Pending>,
+) -> Result<Material, FileError> {
     let json = &textures.buffers.document.materials[index];
+    textures.uv_sets = UvSets::of(json);
     let here = format!("/materials/{index}");
     let name = if json.name.is_empty() { format!("material {index}") } else { json.name.clone() };
     let mut material = Material { name, ..Material::gltf_default() };
@@ -44,22 +59,13 @@ fn material(textures: &mut TextureReader<'_, '_>, index: usize) -> Result<Materi
     material.alpha_cutoff = from_zero(json.alpha_cutoff, material.alpha_cutoff);
     material.double_sided = json.double_sided;
     material.unlit = json.extensions.unlit.is_some();
-    let (factor, texture, part) = match (&json.extensions.specular_glossiness, &json.pbr_metallic_roughness) {
-        (Some(s), _) => (
-            s.diffuse_factor,
-            &s.diffuse_texture,
-            "extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture",
-        ),
-        (None, Some(p)) => {
-            (p.base_color_factor, &p.base_color_texture, "pbrMetallicRoughness/baseColorTexture")
+    material.extensions = material_extensions::read(&json.extensions);
+    match &json.extensions.specular_glossiness {
+        Some(glossy) => {
+            pending.extend(specular_glossiness::read(&mut material, number, textures, glossy, &here)?);
         }
-        (None, None) => (None, &None, ""),
-    };
-    material.base_color = factor.unwrap_or([1.0; 4]).map(|x| x.clamp(0.0, 1.0));
-    if let Some(info) = texture {
-        material.base_color_texture = textures.slot(info, &format!("{here}/{part}"))?;
+        None => metallic_roughness(&mut material, textures, json, &here)?,
     }
-    metal_and_roughness(&mut material, textures, json, &here)?;
     if let Some(info) = &json.normal_texture {
         material.normal_texture = textures.slot(info, &format!("{here}/normalTexture"))?;
         material.normal_scale = info.scale.filter(|s| s.is_finite()).unwrap_or(1.0);
@@ -80,25 +86,23 @@ fn material(textures: &mut TextureReader<'_, '_>, index: usize) -> Result<Materi
     Ok(material)
 }
 
-fn metal_and_roughness(
+fn metallic_roughness(
     material: &mut Material,
     textures: &mut TextureReader<'_, '_>,
     json: &json_material::Material,
     here: &str,
 ) -> Result<(), FileError> {
-    if let Some(glossy) = &json.extensions.specular_glossiness {
-        material.metallic = 0.0;
-        // The factor means little without its texture, which is no roughness map.
-        if glossy.specular_glossiness_texture.is_none() {
-            material.roughness = 1.0 - glossy.glossiness_factor.unwrap_or(1.0).clamp(0.0, 1.0);
-        }
-    } else if let Some(pbr) = &json.pbr_metallic_roughness {
-        material.metallic = pbr.metallic_factor.unwrap_or(1.0).clamp(0.0, 1.0);
-        material.roughness = pbr.roughness_factor.unwrap_or(1.0).clamp(0.0, 1.0);
-        if let Some(info) = &pbr.metallic_roughness_texture {
-            let here = format!("{here}/pbrMetallicRoughness/metallicRoughnessTexture");
-            material.metallic_roughness_texture = textures.slot(info, &here)?;
-        }
+    let Some(pbr) = &json.pbr_metallic_roughness else { return Ok(()) };
+    let here = format!("{here}/pbrMetallicRoughness");
+    material.base_color = pbr.base_color_factor.unwrap_or([1.0; 4]).map(|x| x.clamp(0.0, 1.0));
+    material.metallic = pbr.metallic_factor.unwrap_or(1.0).clamp(0.0, 1.0);
+    material.roughness = pbr.roughness_factor.unwrap_or(1.0).clamp(0.0, 1.0);
+    if let Some(info) = &pbr.base_color_texture {
+        material.base_color_texture = textures.slot(info, &format!("{here}/baseColorTexture"))?;
+    }
+    if let Some(info) = &pbr.metallic_roughness_texture {
+        material.metallic_roughness_texture =
+            textures.slot(info, &format!("{here}/metallicRoughnessTexture"))?;
     }
     Ok(())
 }

@@ -7,10 +7,12 @@
 
 use super::accessor::Accessor;
 use super::buffers::{Buffers, pointer};
-use super::json::Primitive;
+use super::draco::Decoded;
+use super::json::{self, Primitive};
 use super::parallax::turns;
 use super::scene::Instance;
 use super::topology::{has_triangles, triangles};
+use super::uv_sets::UvSets;
 use crate::{FileError, Place};
 use parbake_model::Mesh;
 use parbake_model::glam::{DAffine3, DMat3, Vec2, Vec3, Vec4};
@@ -29,6 +31,8 @@ pub(super) struct Merge<'a, 'd> {
     pub turned: Vec<bool>,
     material_ids: HashMap<Option<usize>, u32>,
     has: Attributes,
+    /// For each of the document's materials, and by default for the one that says nothing.
+    uv_sets: Vec<UvSets>,
     /// Primitives placed so far: even those without triangles take time.
     placed: u64,
     /// From a primitive's element numbers to vertices; all `UNUSED` between primitives.
@@ -57,16 +61,19 @@ struct Sources<'a> {
 impl<'a, 'd> Merge<'a, 'd> {
     pub fn new(buffers: &'a Buffers<'d>) -> Self {
         let all = || buffers.document.meshes.iter().flat_map(|m| &m.primitives).filter(|p| has_triangles(p));
+        let uv_sets: Vec<UvSets> = buffers.document.materials.iter().map(UvSets::of).collect();
         let any = |has: fn(&Primitive) -> bool| all().any(has);
+        let uvs =
+            |place| all().any(|p| p.attributes.texcoord(sets_of(&uv_sets, p).document_set(place)).is_some());
         let has = Attributes {
             normals: any(|p| p.attributes.normal.is_some()),
             tangents: all().all(|p| p.attributes.tangent.is_some() && p.attributes.normal.is_some()),
-            uvs: any(|p| p.attributes.texcoord_0.is_some()),
-            uvs1: any(|p| p.attributes.texcoord_1.is_some()),
+            uvs: uvs(0),
+            uvs1: uvs(1),
             colors: any(|p| p.attributes.color_0.is_some()),
         };
         let (mesh, materials, turned, material_ids, placed, places) = Default::default();
-        Self { buffers, mesh, materials, turned, material_ids, has, placed, places }
+        Self { buffers, mesh, materials, turned, material_ids, has, uv_sets, placed, places }
     }
 
     /// Adds one placing of a mesh.
@@ -97,12 +104,14 @@ impl<'a, 'd> Merge<'a, 'd> {
 
     fn add_primitive(&mut self, primitive: &Primitive, here: &str, at: &Instance) -> Result<(), FileError> {
         let context = self.buffers.context;
-        let Some(sources) = Sources::open(self.buffers, primitive, here, &self.has)? else {
+        let stream = draco_stream(self.buffers, primitive, here)?;
+        let sets = sets_of(&self.uv_sets, primitive);
+        let Some(sources) = Sources::open(self.buffers, primitive, here, &self.has, sets, stream)? else {
             context.warn(format!("{here} has no positions and was left out"));
             return Ok(());
         };
         let already = self.mesh.triangles.len();
-        let triangles = triangles(self.buffers, primitive, here, sources.position.count, already)?;
+        let triangles = triangles(self.buffers, primitive, here, sources.position.count, already, stream)?;
         if triangles.is_empty() {
             return Ok(());
         }
@@ -218,34 +227,68 @@ impl<'a, 'd> Merge<'a, 'd> {
     }
 }
 
+/// The sets of texture coordinates that a primitive's material asks for.
+fn sets_of(uv_sets: &[UvSets], primitive: &Primitive) -> UvSets {
+    primitive.material.and_then(|index| uv_sets.get(index)).copied().unwrap_or_default()
+}
+
+/// The Draco stream of a primitive, where that is what it has its positions from: where they also
+/// stand uncompressed, for readers without Draco, these lose less and cost nothing.
+fn draco_stream<'a>(
+    buffers: &'a Buffers<'_>,
+    primitive: &Primitive,
+    here: &str,
+) -> Result<Option<&'a Decoded>, FileError> {
+    let Some(draco) = primitive.extensions.as_ref().and_then(|e| e.draco.as_ref()) else { return Ok(None) };
+    let position = primitive.attributes.position.and_then(|index| buffers.document.accessors.get(index));
+    let uncompressed = position.is_some_and(|p| p.buffer_view.is_some() || p.sparse.is_some());
+    if uncompressed || primitive.attributes.position.is_none() {
+        return Ok(None);
+    }
+    let here = format!("{here}/extensions/KHR_draco_mesh_compression");
+    match (draco.buffer_view, draco.attributes.position) {
+        (Some(view), Some(_)) => buffers.stream(view, &here).map(Some),
+        _ => Err(buffers.context.invalid(pointer(here), "it has no buffer view or no POSITION")),
+    }
+}
+
 impl<'a> Sources<'a> {
-    /// `None` when the primitive has no positions.
+    /// `None` when the primitive has no positions. What a Draco stream has is taken from there.
     fn open(
         buffers: &'a Buffers<'_>,
         primitive: &Primitive,
         here: &str,
         has: &Attributes,
+        sets: UvSets,
+        stream: Option<&'a Decoded>,
     ) -> Result<Option<Self>, FileError> {
-        let attributes = &primitive.attributes;
-        let draco = primitive.extensions.as_ref().is_some_and(|e| e.draco.is_some());
-        let open = |index: Option<usize>, name: &str, widths: &[usize], wanted: bool| {
+        let draco = primitive.extensions.as_ref().and_then(|e| e.draco.as_ref());
+        type Which<'w> = &'w dyn Fn(&json::Attributes) -> Option<usize>;
+        let open = |which: Which<'_>, name: &str, widths: &[usize], wanted: bool| {
             let from = format!("{here}/attributes/{name}");
-            match index.filter(|_| wanted) {
-                None => Ok(None),
-                Some(index) => Accessor::new(buffers, index, &from, widths).map(Some),
-            }
+            let Some(index) = which(&primitive.attributes).filter(|_| wanted) else { return Ok(None) };
+            let id = draco.and_then(|draco| which(&draco.attributes));
+            let (Some(stream), Some(id)) = (stream, id) else {
+                return Accessor::new(buffers, index, &from, widths).map(Some);
+            };
+            let Some(attribute) = stream.attribute(id) else {
+                let place = format!("{here}/extensions/KHR_draco_mesh_compression/attributes/{name}");
+                let reason = format!("the Draco stream has no attribute {id}");
+                return Err(buffers.context.invalid(pointer(place), reason));
+            };
+            Accessor::decoded(buffers, index, &from, widths, attribute, stream.points).map(Some)
         };
-        let position = open(attributes.position, "POSITION", &[3], true)?;
-        if draco && position.as_ref().is_none_or(Accessor::is_empty) {
-            return Err(super::extensions::unsupported(buffers.context, here, "KHR_draco_mesh_compression"));
-        }
-        let Some(position) = position else { return Ok(None) };
+        let Some(position) = open(&|a| a.position, "POSITION", &[3], true)? else { return Ok(None) };
+        let uv = |place: usize| {
+            let set = sets.document_set(place);
+            open(&|a| a.texcoord(set), &format!("TEXCOORD_{set}"), &[2], true)
+        };
         let sources = Self {
-            normal: open(attributes.normal, "NORMAL", &[3], true)?,
-            tangent: open(attributes.tangent, "TANGENT", &[4], has.tangents)?,
-            uv: open(attributes.texcoord_0, "TEXCOORD_0", &[2], true)?,
-            uv1: open(attributes.texcoord_1, "TEXCOORD_1", &[2], true)?,
-            color: open(attributes.color_0, "COLOR_0", &[3, 4], true)?,
+            normal: open(&|a| a.normal, "NORMAL", &[3], true)?,
+            tangent: open(&|a| a.tangent, "TANGENT", &[4], has.tangents)?,
+            uv: uv(0)?,
+            uv1: uv(1)?,
+            color: open(&|a| a.color_0, "COLOR_0", &[3, 4], true)?,
             position,
         };
         let count = sources.position.count;

@@ -1,7 +1,8 @@
 //! glTF 2.0 and GLB, in and out.
 //!
-//! Understood are triangles, the metallic-roughness material with all its textures, and
-//! parallax maps.
+//! Understood are triangles, also compressed by Draco and meshoptimizer, the metallic-roughness
+//! material with all its textures, specular-glossiness, the factors of other material extensions,
+//! and parallax maps.
 //! Skins, morph targets and animations are passed over with a warning: the mesh
 //! is taken as its nodes place it.
 
@@ -9,21 +10,28 @@ mod accessor;
 mod binary;
 mod buffers;
 mod container;
+mod draco;
 mod extensions;
 mod ignored;
 mod integer;
 mod json;
+mod json_extensions;
 mod json_material;
 mod locate;
+mod material_extensions;
 mod materials;
 mod merge;
+mod meshopt;
+mod meshopt_filter;
 mod parallax;
 mod references;
 mod runs;
 mod scene;
+mod specular_glossiness;
 mod textures;
 mod topology;
 mod uri;
+mod uv_sets;
 mod write;
 mod write_material;
 mod write_mesh;
@@ -72,11 +80,13 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
     let (materials, images) = materials::build(&buffers, &used, &turned)?;
     drop(merge);
     drop(buffers);
-    for material in &materials {
+    for (material, index) in materials.iter().zip(&used) {
+        let json = index.and_then(|index| document.materials.get(index));
+        let sets = json.map(uv_sets::UvSets::of).unwrap_or_default();
         for slot in material.all_texture_slots() {
             let uvs = if slot.uv_set == 0 { &mesh.uvs } else { &mesh.uvs1 };
             if uvs.is_empty() {
-                let (name, set) = (&material.name, slot.uv_set);
+                let (name, set) = (&material.name, sets.document_set(slot.uv_set.into()));
                 context
                     .warn(format!("material {name:?} uses texture coordinate set {set}, which no mesh has"));
             }
@@ -140,6 +150,13 @@ fn mention_motion(document: &json::Document, context: &Context<'_>) {
     }
     if !document.animations.is_empty() {
         context.warn("the model has animations; it is taken as it stands before they begin");
+    }
+    if let Some(variants) = document.extensions.variants.as_ref().filter(|v| !v.variants.is_empty()) {
+        let names: Vec<String> = variants.variants.iter().map(|v| format!("{:?}", v.name)).collect();
+        context.warn(format!(
+            "the model has variants ({}); its materials are taken as they are by default",
+            names.join(", ")
+        ));
     }
 }
 

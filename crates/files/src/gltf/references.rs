@@ -48,6 +48,10 @@ pub(super) fn check(buffers: &Buffers<'_>) -> Result<(), FileError> {
         for (k, primitive) in mesh.primitives.iter().enumerate() {
             let here = || format!("/meshes/{i}/primitives/{k}");
             see(Part::Material, primitive.material, &|| here() + "/material");
+            let draco = primitive.extensions.as_ref().and_then(|e| e.draco.as_ref());
+            see(Part::BufferView, draco.and_then(|d| d.buffer_view), &|| {
+                here() + "/extensions/KHR_draco_mesh_compression/bufferView"
+            });
             for (accessor, name) in accessors(primitive) {
                 see(Part::Accessor, accessor, &|| format!("{}/{name}", here()));
             }
@@ -64,6 +68,15 @@ pub(super) fn check(buffers: &Buffers<'_>) -> Result<(), FileError> {
     }
     for (i, view) in document.buffer_views.iter().enumerate() {
         see(Part::Buffer, Some(view.buffer), &|| format!("/bufferViews/{i}/buffer"));
+        let extensions = view.extensions.as_deref();
+        for (meshopt, name) in [
+            (extensions.and_then(|e| e.ext_meshopt.as_ref()), "EXT_meshopt_compression"),
+            (extensions.and_then(|e| e.khr_meshopt.as_ref()), "KHR_meshopt_compression"),
+        ] {
+            see(Part::Buffer, meshopt.map(|m| m.buffer), &|| {
+                format!("/bufferViews/{i}/extensions/{name}/buffer")
+            });
+        }
     }
     for (i, image) in document.images.iter().enumerate() {
         see(Part::BufferView, image.buffer_view, &|| format!("/images/{i}/bufferView"));

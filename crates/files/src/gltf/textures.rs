@@ -1,4 +1,5 @@
-//! Textures, samplers and images (glTF 2.0, 3.8), with KHR_texture_transform and EXT_texture_webp.
+//! Textures, samplers and images (glTF 2.0, 3.8), with KHR_texture_transform,
+//! EXT_texture_webp and KHR_texture_basisu.
 //!
 //! Images are decoded once each, and only those that a material uses. An image that is not there
 //! is a warning; one that cannot be decoded is an error.
@@ -7,6 +8,7 @@ use super::buffers::{Buffers, pointer};
 use super::json;
 use super::json_material::{TextureInfo, TextureTransform};
 use super::uri::{Uri, parse};
+use super::uv_sets::{self, UvSets};
 use crate::FileError;
 use crate::context::{NamedBytes, Textures};
 use parbake_model::glam::Vec2;
@@ -16,6 +18,8 @@ use std::collections::HashMap;
 /// Finds what textures refer to, and remembers the images until all are known.
 pub(super) struct TextureReader<'a, 'd> {
     pub buffers: &'a Buffers<'d>,
+    /// Those of the material whose textures are asked for.
+    pub uv_sets: UvSets,
     /// Those in use, to be decoded at the end.
     pictures: Vec<NamedBytes<'a>>,
     /// From the document's images to ours; `None` where one could not be found.
@@ -24,7 +28,7 @@ pub(super) struct TextureReader<'a, 'd> {
 
 impl<'a, 'd> TextureReader<'a, 'd> {
     pub fn new(buffers: &'a Buffers<'d>) -> Self {
-        Self { buffers, pictures: Vec::new(), places: HashMap::new() }
+        Self { buffers, uv_sets: UvSets::default(), pictures: Vec::new(), places: HashMap::new() }
     }
 
     /// The images of all slots so far, in their order.
@@ -57,19 +61,19 @@ impl<'a, 'd> TextureReader<'a, 'd> {
             }
         };
         let transform = info.extensions.transform.as_ref();
-        let set = transform.and_then(|t| t.tex_coord).unwrap_or(info.tex_coord);
-        let uv_set = match set {
-            0 => 0,
-            1 => 1,
-            _ => {
-                let feature = format!("texture coordinate set {set}");
-                let advice = "move it to set 0 or 1";
-                return Err(buffers.context.unsupported(pointer(here.into()), feature, advice));
-            }
+        let set = uv_sets::set(info);
+        let Some(uv_set) = self.uv_sets.place(set) else {
+            buffers.context.warn(format!(
+                "{here}: {} has textures of more than two sets of coordinates; this one, of set {set}, was left out",
+                named(document, here)
+            ));
+            return Ok(None);
         };
-        // Both sources may be given; a PNG or JPEG needs no extension.
-        let webp = texture.extensions.webp.as_ref().and_then(|w| w.source);
-        let Some(source) = texture.source.or(webp) else {
+        // Several sources may be given: a PNG or JPEG needs no extension, and loses least.
+        let extensions = &texture.extensions;
+        let source_of = |extension: &Option<json::TextureSource>| extension.as_ref().and_then(|e| e.source);
+        let source = texture.source.or(source_of(&extensions.webp)).or(source_of(&extensions.basisu));
+        let Some(source) = source else {
             let index = info.index;
             buffers
                 .context
@@ -131,9 +135,9 @@ impl<'a, 'd> TextureReader<'a, 'd> {
         };
         let bytes = match parse(uri) {
             Ok(Uri::Data(bytes)) => bytes,
-            Ok(Uri::Relative(path)) => match self.buffers.external(&path, pointer(format!("{here}/uri"))) {
+            Ok(Uri::Relative(path)) => match self.buffers.external(&path, pointer(format!("{here}/uri")))? {
                 Ok(bytes) => bytes,
-                Err(FileError::Read { source, .. }) if source.kind() != std::io::ErrorKind::FileTooLarge => {
+                Err(FileError::Read { source, .. }) => {
                     context.warn(format!("image {source}; the material goes without it"));
                     return Ok(None);
                 }

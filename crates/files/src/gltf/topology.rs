@@ -2,6 +2,7 @@
 
 use super::accessor::Accessor;
 use super::buffers::{Buffers, pointer};
+use super::draco::Decoded;
 use super::json::Primitive;
 use crate::{FileError, Place};
 
@@ -11,7 +12,7 @@ pub(super) fn has_triangles(primitive: &Primitive) -> bool {
 }
 
 /// The triangles of a primitive at the pointer `here`, as element numbers below
-/// `vertices`. `already` triangles were read before: all together are held against
+/// `vertices`; those of its Draco `stream`, where that is what it is made from. `already` triangles were read before: all together are held against
 /// the limit before any are made.
 pub(super) fn triangles(
     buffers: &Buffers<'_>,
@@ -19,8 +20,15 @@ pub(super) fn triangles(
     here: &str,
     vertices: usize,
     already: usize,
+    stream: Option<&Decoded>,
 ) -> Result<Vec<[u32; 3]>, FileError> {
     let context = buffers.context;
+    let limit = context.limits.max_triangles as u64;
+    if let Some(stream) = stream {
+        let found = (already as u64).saturating_add(stream.triangles.len() as u64);
+        context.within(pointer(here.into()), "triangles", found, limit)?;
+        return Ok(stream.triangles.clone());
+    }
     let from = format!("{here}/indices");
     let indices = match primitive.indices {
         Some(index) => Some(Accessor::new(buffers, index, &from, &[1])?),
@@ -44,7 +52,6 @@ pub(super) fn triangles(
             "{here}: {count} corners are no whole number of triangles; the last are passed over"
         ));
     }
-    let limit = context.limits.max_triangles as u64;
     context.within(
         pointer(here.into()),
         "triangles",

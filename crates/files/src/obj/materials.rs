@@ -12,12 +12,13 @@
 use super::lex::text;
 use super::mtl::{self, Map, Section};
 use crate::context::{Context, NamedBytes, Textures};
+use crate::search::{is_absolute, is_refusal};
 use crate::words::shown;
 use crate::{FileError, Place};
 use parbake_model::glam::Vec2;
 use parbake_model::{AlphaMode, Image, Material, TextureSlot, UvTransform, Wrap};
 use std::collections::HashMap;
-use std::io::ErrorKind;
+use std::io;
 
 /// More are not looked for: each may cost a search on the disk.
 const MOST_LIBRARIES: usize = 1000;
@@ -83,6 +84,16 @@ fn read_libraries(libraries: &[Vec<u8>], context: &Context<'_>) -> Result<HashMa
         seen.push(words);
         let whole = text(words).replace("\\ ", " ").replace('\\', "/");
         let several = split_names(&text(words), MOST_LIBRARIES);
+        if is_absolute(&whole) {
+            // Blanks are in folders' names, above all in those of Windows.
+            match read_absolute(&whole, "", context)? {
+                Some((file, bytes)) => add(&file, &bytes),
+                None => context.warn(format!(
+                    "material library {whole:?} was not found, nor a file of its name beside the model; put it there"
+                )),
+            }
+            continue;
+        }
         // One name with blanks is likelier than several names; but both occur.
         if let Some(bytes) = read_beside(&whole, context)? {
             add(&whole, &bytes);
@@ -108,14 +119,36 @@ fn split_names(words: &str, most: usize) -> Vec<String> {
 
 /// `None` when there is no such file.
 fn read_beside(file: &str, context: &Context<'_>) -> Result<Option<Vec<u8>>, FileError> {
-    match context.read(file, context.limits.max_file_bytes) {
-        Ok(bytes) => Ok(Some(bytes)),
-        Err(source) if source.kind() == ErrorKind::FileTooLarge => {
+    found(context.read_there(file, context.limits.max_file_bytes), file, context)
+}
+
+/// Folders and forbidden files are as good as missing; what is too large, or outside where reading
+/// is confined, is not.
+fn found<T>(read: io::Result<T>, file: &str, context: &Context<'_>) -> Result<Option<T>, FileError> {
+    match read {
+        Ok(read) => Ok(Some(read)),
+        Err(source) if is_refusal(&source) => {
             let place = Place::Image(shown(file));
             Err(FileError::Read { path: context.path.into(), place, source })
         }
-        // Absolute paths, folders and forbidden files are as good as missing.
         Err(_) => Ok(None),
+    }
+}
+
+/// A file at an absolute path, or, with a warning, the one of that name beside the model.
+fn read_absolute(
+    file: &str,
+    folder: &str,
+    context: &Context<'_>,
+) -> Result<Option<(String, Vec<u8>)>, FileError> {
+    let most = context.limits.max_file_bytes;
+    let there = context.read_there(file, most);
+    if let Ok(bytes) = there {
+        return Ok(Some((file.into(), bytes)));
+    }
+    match found(context.read_by_name(file, folder, most), file, context)?.flatten() {
+        Some(read) => Ok(Some(read)),
+        None => Ok(found(there, file, context)?.map(|bytes| (file.into(), bytes))),
     }
 }
 
@@ -206,16 +239,36 @@ impl Pictures<'_, '_> {
     }
 
     fn load(&mut self, key: &str, map: &Map, folder: &str) -> Result<Option<usize>, FileError> {
-        // Many libraries carry the paths of the machine they were written on.
-        let base = map.file.rsplit('/').next().unwrap_or_default();
-        let candidates = [key.to_string(), map.file.clone(), format!("{folder}{base}"), base.to_string()];
-        for candidate in &candidates {
-            if let Some(bytes) = read_beside(candidate, self.context)? {
-                self.found.push((candidate.clone(), bytes.into()));
-                return Ok(Some(self.found.len() - 1));
+        let found = if is_absolute(&map.file) {
+            read_absolute(&map.file, folder, self.context)?
+        } else {
+            let mut places = vec![key];
+            // Some libraries name pictures as the model sees them. With confinement, what leads out of
+            // the library's folder may stay in the model's, and the other way round.
+            if !folder.is_empty() {
+                places.push(&map.file);
             }
-        }
-        Ok(None)
+            let mut found = None;
+            for place in places {
+                found = read_beside(place, self.context)?.map(|bytes| (place.to_string(), bytes));
+                if found.is_some() {
+                    break;
+                }
+            }
+            match found {
+                Some(found) => Some(found),
+                // Many libraries carry the paths of the machine they were written on.
+                None => {
+                    let most = self.context.limits.max_file_bytes;
+                    let read = self.context.read_by_name(&map.file, folder, most);
+                    self::found(read, &map.file, self.context)?.flatten()
+                }
+            }
+        };
+        Ok(found.map(|(place, bytes)| {
+            self.found.push((place, bytes.into()));
+            self.found.len() - 1
+        }))
     }
 }
 
@@ -229,7 +282,7 @@ fn transform(map: &Map) -> UvTransform {
 mod tests {
     use super::*;
     use crate::{Limits, NoResources, Resources, encode_png};
-    use std::io;
+    use std::io::ErrorKind;
     use std::path::Path;
 
     struct Shelf(Vec<(&'static str, Vec<u8>)>);

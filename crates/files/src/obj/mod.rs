@@ -163,7 +163,10 @@ mod tests {
         let text = b"mtllib sub dir\\m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl \xe4\nf 1 2 3\nusemtl \xf6\nf 1/1 2/1 3/1";
         let shelf = Shelf(encode_png(&Image::solid("", 1, 1, [9; 4])).unwrap());
         let loaded = read_obj_bytes(Path::new("a.obj"), text, &shelf, &Limits::default()).unwrap();
-        assert_eq!(loaded.warnings, ["took (0, 0) for 3 face corners without a texture coordinate"]);
+        let elsewhere =
+            "nothing is at \"C:/tex/B\u{e4}r.png\"; \"sub dir/B\u{e4}r.png\" beside the model was taken";
+        let expected = ["took (0, 0) for 3 face corners without a texture coordinate", elsewhere];
+        assert_eq!(loaded.warnings, expected);
         let [red, textured] = &loaded.model.materials[..] else { panic!("two materials") };
         assert_eq!((red.name.as_str(), red.base_color), ("\u{e4}", [1.0, 0.0, 0.0, 1.0]));
         let slot = textured.base_color_texture.unwrap();

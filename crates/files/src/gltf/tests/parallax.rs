@@ -151,7 +151,7 @@ fn broken_maps_are_left_out() {
         (|_, x| x["coefficientTextures"][0]["index"] = 7.into(), "/coefficientTextures/0/index"),
         (|_, x| x["depthTexture"] = json!({ "index": 7 }), "/depthTexture/index"),
         (|_, x| x["baseColorTexture"] = json!({ "index": 7 }), "/baseColorTexture/index"),
-        (|_, x| x["normalTexture"] = json!({ "index": 0, "texCoord": 5 }), "coordinate set 5"),
+        (|_, x| x["normalTexture"] = json!({ "index": 9, "texCoord": 5 }), "/normalTexture/index"),
         (|d, _| d["textures"] = json!([{ "source": 4 }]), "/textures/0/source"),
         (|d, _| d["textures"] = json!([{}]), "its picture is not there"),
         (
