@@ -1,10 +1,6 @@
 //! The command as scripts and people meet it: files, exit codes, words, bytes.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{SMALL, demo_pair, json, parbake, run, text};
+use crate::common::{SMALL, demo_pair, json, parbake, run, text};
 use std::fs;
 
 /// Protects the first minute: everything from nothing, and better than projected.
@@ -127,6 +123,6 @@ fn obj_and_glb_look_the_same() {
         let arguments = ["bake", "demo_high.glb", "demo_low.glb", "-q", "-o", name];
         run(folder, &[&arguments[..], &SMALL].concat());
     }
-    let same = common::psnr(folder, "a.glb".as_ref(), "a.obj".as_ref());
+    let same = crate::common::psnr(folder, "a.glb".as_ref(), "a.obj".as_ref());
     assert!(same > 60.0, "{same} dB");
 }

@@ -2,11 +2,7 @@
 //! PARBAKE_DATA; the floors lie 0.3 dB below what was measured, since another
 //! machine's mathematics may differ in the last digit, not in decibels.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{psnr, real_models, run};
+use crate::common::{psnr, real_models, run};
 use std::path::{Path, PathBuf};
 
 fn obj_in(folder: &Path) -> PathBuf {

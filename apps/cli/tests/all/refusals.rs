@@ -1,10 +1,6 @@
 //! What the command says before it works: help in groups, and one sentence for each wrong usage.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{SMALL, demo_pair, json, parbake, run, text};
+use crate::common::{SMALL, demo_pair, json, parbake, run, text};
 use parbake::{Limits, read_model};
 use std::fs;
 use std::path::Path;

@@ -1,10 +1,6 @@
 //! JSON outputs of real runs against the committed schema, `docs/report.schema.json`.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{SMALL, demo_pair, json, run};
+use crate::common::{SMALL, demo_pair, json, run};
 use serde_json::Value;
 use std::path::Path;
 

@@ -1,0 +1,5 @@
+//! Vertices through public functions: one program for all of them, since each
+//! would be linked with everything anew.
+
+mod points;
+mod triangle_quality;
