@@ -22,7 +22,7 @@ const HELP_IN_COMPRESS: [(&str, &str); 3] = [
         "Steps of the UV optimiser, 0 to 10000 [default: by preset 80, 240, 480; with --method paper 800]",
     ),
     (
-        "outlier",
+        "robust_scale",
         "Scale of the robust (Cauchy) loss of the texture solve on models with a normal map, in display units, \
 0.01 to 1000. Lower it if surfaces look mottled; 1000 is least squares [default: 1, with --method paper 1000]",
     ),

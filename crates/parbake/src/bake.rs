@@ -88,7 +88,7 @@ pub fn prepare_high_poly(high: &Model, options: &BakeOptions) -> Result<HighPoly
 /// Bakes a prepared high-poly's look onto a low-poly; the result is that of [`bake`].
 ///
 /// # Errors
-/// As of [`bake`]; options whose `convention` or `reach` are not those that the high-poly was prepared with.
+/// As of [`bake`]; options whose `convention` or `max_distance` are not those that the high-poly was prepared with.
 pub fn bake_prepared(
     high: &HighPoly,
     low: &Model,
@@ -118,7 +118,7 @@ fn conventions(options: &BakeOptions) -> Conventions {
         interpretation: options.convention.interpretation(),
         display: options.convention.display(),
         rig: RIG,
-        max_distance: 2.0 * options.reach,
+        max_distance: 2.0 * options.max_distance,
     }
 }
 

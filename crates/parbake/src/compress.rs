@@ -78,7 +78,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         scene: &scene,
         surface: None,
         visibilities: &visibilities,
-        reach: 0.0,
+        max_distance: 0.0,
         brightened: 0.0,
         normals: false,
         pixel: sample_width(&surface, options.texture_size),

@@ -47,7 +47,9 @@ pub enum BakeError {
     #[error(transparent)]
     Prepare(#[from] parbake_views::PrepareError),
     /// A high-poly was prepared for bakes of another kind.
-    #[error("{model} was prepared with another convention or reach; prepare it with the options of the bake")]
+    #[error(
+        "{model} was prepared with another convention or --max-distance; prepare it with the options of the bake"
+    )]
     OtherConventions {
         /// The high-poly's name.
         model: String,

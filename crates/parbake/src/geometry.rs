@@ -63,7 +63,7 @@ pub fn move_geometry<W: Watcher>(
         scene: &high.scene,
         surface: (!same).then_some(&high.surface),
         visibilities: &[],
-        reach: high.conventions.max_distance,
+        max_distance: high.conventions.max_distance,
         brightened: if high.conventions.srgb() { 1.0 } else { 0.0 },
         normals: true,
         pixel: Source::PIXEL,

@@ -59,7 +59,9 @@ pub use image::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
 pub use memory::peak_memory;
 pub use models::{demo_pair, laid_out, simplified, subdivided, wall_pair};
 pub use normal_y::{NormalY, with_normal_y};
-pub use options::{Backdrop, BakeOptions, Convention, Method, Parallax, Preset, ShapeMode, UvMode};
+pub use options::{
+    BakeOptions, Convention, Method, Parallax, Preset, ShapeMode, SilhouetteBackground, UvMode,
+};
 #[cfg(feature = "clap")]
 pub use options::{heading, parse_texels};
 pub use parbake_atlas::{LayoutCheck, ModelCheck, UvCheck, check_mesh, check_model};

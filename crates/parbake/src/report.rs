@@ -96,7 +96,7 @@ pub struct BakeReport {
     pub unseen_texels: usize,
     /// Texels that several triangles claim.
     pub overlapping_texels: usize,
-    /// Texels on the surface for which projection found nothing within its reach; they took
+    /// Texels on the surface for which projection found nothing within `max_distance`; they took
     /// the closest point.
     pub missed_texels: usize,
     /// The check of the texture coordinates that are written.

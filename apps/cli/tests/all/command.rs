@@ -66,7 +66,7 @@ fn mistakes_are_named() {
         (with(&["--json", "nowhere/never.json"]), 2, "nowhere"),
         (with(&["--json", "never.glb"]), 2, "two outputs"),
         (with(&["--threads", "99999"]), 2, "0 to 256"),
-        (with(&["--reach", "-1"]), 2, "0 to 1"),
+        (with(&["--max-distance", "-1"]), 2, "0 to 1"),
         (pair("demo_high.glb", "far.obj"), 1, "outside of every view"),
         (vec!["eval", "demo_high.glb", "demo_low.glb", "--background", "1,red,0"], 2, "R,G,B"),
     ];

@@ -50,7 +50,7 @@ fn help_of_bake_has_groups() {
         ("Shape", &["--shape", "--silhouette"]),
         ("Parallax", &["--parallax", "--cutout-size", "--no-cutout"]),
         ("Advanced", &["--normal-y", "--seed", "--threads"]),
-        ("Research", &["--method", "--no-content-aware", "--outlier"]),
+        ("Research", &["--method", "--no-content-aware", "--robust-scale"]),
     ] {
         let below = group(&groups, heading);
         for option in options {
@@ -70,7 +70,9 @@ fn help_of_bake_has_groups() {
 fn help_shows_what_acts() {
     let groups_of_compress = groups("compress");
     let all: String = groups_of_compress.iter().map(|(_, below)| below.as_str()).collect();
-    for absent in ["--shape", "--parallax", "--cutout", "--silhouette", "--backdrop", "--reach"] {
+    for absent in
+        ["--shape", "--parallax", "--cutout", "--silhouette", "--silhouette-background", "--max-distance"]
+    {
         assert!(!all.contains(absent), "{absent}");
     }
     assert!(group(&groups_of_compress, "UV").contains("--more-triangles"));
@@ -99,7 +101,11 @@ fn options_without_effect_are_refused() {
         (&bake, &["--parallax", "sh", "--method", "paper", "--cutout-size", "32"], "with --method paper"),
         (&bake, &["--no-content-aware"], "without --method paper"),
         (&bake, &["--uv", "keep", "--uv-steps", "3"], "without --uv optimize"),
-        (&bake, &["--silhouette", "0", "--backdrop", "white"], "--backdrop does nothing"),
+        (
+            &bake,
+            &["--silhouette", "0", "--silhouette-background", "white"],
+            "--silhouette-background does nothing",
+        ),
         (&bake, &["--more-triangles", "3"], "acts in compress only"),
         (&compress, &["--shape", "free"], "--shape does nothing in compress"),
         (&compress, &["--silhouette", "1"], "--silhouette does nothing in compress"),
