@@ -229,19 +229,19 @@ fn tell_of_shape(console: &Console, report: &BakeReport) {
             100.0 * shape.gap[1]
         ));
     }
-    if let Some(depth) = &report.depth {
+    if let Some(depth) = &report.parallax_maps {
         if let Some([before, after]) = depth.misplaced.map(|shares| shares.map(|share| 100.0 * share)) {
             console.say(&format!(
                 "cutout: {before:.1} % of the pixels near outlines were wrong, {after:.1} % are"
             ));
         }
-        let [before, after] = depth.strayed.map(|share| 100.0 * share);
+        let [before, after] = depth.cross_chart.map(|share| 100.0 * share);
         let anew = match depth.begun_anew {
             0 => "",
             _ => ", started again for the finer texture, since it had only made up for the coarse one's blur",
         };
         console.say(&format!(
-            "parallax: {} steps{anew}; {before:.3} % of the pixels strayed into another chart, {after:.3} % do",
+            "parallax: {} steps{anew}; {before:.3} % of the pixels fetched from another chart, {after:.3} % do",
             depth.steps
         ));
     }

@@ -58,7 +58,7 @@ fn summary(report: &BakeReport, [before, after]: [u64; 2], output: &Path, second
     if let Some(comparison) = &report.comparison {
         let before = match report.losses.first().map(|first| first.moved.as_str()) {
             Some("delivered") => "coordinates as they are",
-            Some("mended") => "UVs repaired",
+            Some("repaired") => "UVs repaired",
             _ => "ray-cast",
         };
         let gains = gains(comparison, before, "compressed").replace("HIGH BAKED", "MODEL COMPRESSED");

@@ -153,11 +153,11 @@ fn run(
     let low = turned.as_ref().map_or(low, |(model, _)| model);
     let delivered = low;
     warnings.tell(turned.iter().flat_map(|(_, of_normals)| of_normals.clone()));
-    let Geometry { unfolded, shape, map } = move_geometry(low, work, high, options, &scope, &mut clock)?;
-    let low = unfolded.as_ref().map_or(low, |u| &u.model);
+    let Geometry { uv_stage, shape, map } = move_geometry(low, work, high, options, &scope, &mut clock)?;
+    let low = uv_stage.as_ref().map_or(low, |u| &u.model);
     let prepared = LowPoly::new(low, &high.frame, size)?;
     warnings.tell(prepared.warnings.iter().cloned());
-    let repaired = unfolded.iter().flat_map(|u| &u.report.mended);
+    let repaired = uv_stage.iter().flat_map(|u| &u.report.repaired);
     warnings.tell(repaired.map(|done| format!("{}: {done}", low.name)));
     clock.lap(Stage::Prepare);
 
@@ -223,8 +223,8 @@ fn run(
     let report = BakeReport {
         work,
         shape,
-        depth: parallax_report,
-        unfold: unfolded.as_ref().filter(|_| options.uv != UvMode::Keep).map(|u| u.report.clone()),
+        parallax_maps: parallax_report,
+        uv_stage: uv_stage.as_ref().filter(|_| options.uv != UvMode::Keep).map(|u| u.report.clone()),
         options: options.clone(),
         high_triangles: high.triangles,
         low_triangles: low.mesh.triangles.len(),
@@ -246,7 +246,7 @@ fn run(
         ray_cast,
         model: textured(low, written, fitted.images, maps.as_ref()),
         report,
-        uv_moves: unfolded.and_then(|u| u.moves),
+        uv_moves: uv_stage.and_then(|u| u.moves),
     })
 }
 

@@ -9,7 +9,7 @@ pub enum BakeError {
     /// Reading or writing a file.
     #[error(transparent)]
     File(#[from] FileError),
-    /// Texture coordinates could not be made or mended.
+    /// Texture coordinates could not be made or repaired.
     #[error(transparent)]
     Atlas(#[from] parbake_atlas::AtlasError),
     /// An option is out of range.

@@ -54,7 +54,7 @@ pub use comparison::{
 pub use compress::compress;
 pub use error::BakeError;
 pub use evaluate::options::EvaluateOptions;
-pub use evaluate::{Evaluation, ViewFigures, evaluate, evaluate_before};
+pub use evaluate::{Evaluation, ViewFigures, evaluate, evaluate_on};
 pub use image::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
 pub use memory::peak_memory;
 pub use models::{demo_pair, laid_out, simplified, subdivided, wall_pair};

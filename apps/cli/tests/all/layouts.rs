@@ -1,4 +1,4 @@
-//! Commands that mend, make and move texture coordinates, as scripts and people meet them.
+//! Commands that repair, make and move texture coordinates, as scripts and people meet them.
 
 use crate::common::{demo_pair, parbake, psnr, run, text};
 use std::fs;

@@ -123,7 +123,7 @@ fn a_bake_writes_maps_that_are_read_again() {
     let map = model.materials[0].parallax.as_ref().unwrap();
     assert_eq!((map.order, map.cutout.as_ref().unwrap().order), (2, 4));
     let report = crate::common::json(&folder.join("deep.json"));
-    assert!(report["depth"]["steps"].as_u64().unwrap() > 0);
+    assert!(report["parallax_maps"]["steps"].as_u64().unwrap() > 0);
     assert!(report["shape"]["moved"][1].as_f64().unwrap() > 0.0);
     let shown = psnr(folder, "demo_high.glb", "deep.glb", &[]);
     assert!(shown != psnr(folder, "demo_high.glb", "deep.glb", &["--no-parallax"]));

@@ -49,7 +49,7 @@ pub fn evaluate(
     options: &EvaluateOptions,
     watcher: &impl Watcher,
 ) -> Result<Evaluation, BakeError> {
-    let mut all = evaluate_before(high, low, options, &[&options.background], watcher)?;
+    let mut all = evaluate_on(high, low, options, &[&options.background], watcher)?;
     Ok(all.remove(0))
 }
 
@@ -58,7 +58,7 @@ pub fn evaluate(
 ///
 /// # Errors
 /// As of [`evaluate`].
-pub fn evaluate_before(
+pub fn evaluate_on(
     high: &Model,
     low: &Model,
     options: &EvaluateOptions,

@@ -56,12 +56,12 @@ pub struct Used {
 impl Used {
     /// What this run used.
     pub fn of(report: &BakeReport) -> Self {
-        let unfold = report.unfold.as_ref();
+        let uv_stage = report.uv_stage.as_ref();
         let own = report.work == Work::Compress;
         Self {
             views: Some(report.views),
-            gutter: unfold.map(|unfold| unfold.gutter),
-            uv_steps: unfold.map(|unfold| unfold.steps).or(Some(0)),
+            gutter: uv_stage.map(|uv_stage| uv_stage.gutter),
+            uv_steps: uv_stage.map(|uv_stage| uv_stage.steps).or(Some(0)),
             more_triangles: Some(if own {
                 report.low_triangles.saturating_sub(report.high_triangles)
             } else {
