@@ -68,7 +68,7 @@ pub fn bake(
     high: &Model,
     low: &Model,
     options: &BakeOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<Baked, BakeError> {
     options.check()?;
     let begin = Instant::now();
@@ -93,7 +93,7 @@ pub fn bake_prepared(
     high: &HighPoly,
     low: &Model,
     options: &BakeOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<Baked, BakeError> {
     options.check()?;
     if high.conventions != conventions(options) {
@@ -106,7 +106,7 @@ pub fn bake_prepared(
 pub(crate) fn bake_onto_itself(
     model: &Model,
     options: &BakeOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<Baked, BakeError> {
     options.check()?;
     let begin = Instant::now();
@@ -131,10 +131,12 @@ fn run(
     low: &Model,
     work: Work,
     options: &BakeOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
     begin: Instant,
 ) -> Result<Baked, BakeError> {
     check_budget(options)?;
+    // Of one type from here on, so that the stages are compiled once and not for each caller's.
+    let watcher = &watcher;
     let mut plan = options.plan();
     let same = work == Work::Compress;
     if same {

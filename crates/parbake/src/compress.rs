@@ -46,7 +46,7 @@ const BRIGHTENED: f32 = 0.5;
 ///
 /// # Errors
 /// As of [`crate::bake`].
-pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) -> Result<Baked, BakeError> {
+pub fn compress(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<Baked, BakeError> {
     if options.parallax != Parallax::None {
         let (option, range) = ("parallax", "none where a model is compressed: its surface stays".into());
         return Err(BakeError::Option { option, value: "sh".into(), range });
@@ -64,7 +64,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         return bake_onto_itself(model, options, watcher);
     }
     let begin = Instant::now();
-    let watcher = &ProgressScope::new(watcher, begin, options.time_budget);
+    let watcher = &ProgressScope::new(&watcher, begin, options.time_budget);
     // Coordinates are all that takes long; a texture is solved for those before and after.
     watcher.message(Message::Plan(vec![(Stage::Uv, 4.0), (Stage::Evaluate, 1.0)]));
     let mut clock = Clock::new(begin);
