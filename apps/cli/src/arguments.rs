@@ -122,7 +122,7 @@ pub struct BakeCommand {
     #[arg(long, value_name = "FILE", help_heading = IO)]
     pub report: Option<PathBuf>,
 
-    /// Fail if a texture that a model names is missing, instead of warning
+    /// Fail if a texture or material that a model names is missing, instead of warning
     #[arg(long, help_heading = IO)]
     pub strict: bool,
 
@@ -161,7 +161,7 @@ pub struct CompressCommand {
     #[arg(long, value_name = "FILE", help_heading = IO)]
     pub report: Option<PathBuf>,
 
-    /// Fail if a texture that a model names is missing, instead of warning
+    /// Fail if a texture or material that a model names is missing, instead of warning
     #[arg(long, help_heading = IO)]
     pub strict: bool,
 

@@ -33,11 +33,12 @@ fn texels(texture_size: usize) -> f64 {
     (texture_size as f64).powi(2)
 }
 
-/// Refuses a time budget that a texture of this size cannot keep, and says what is possible.
+/// Refuses a time budget that a texture of this size cannot keep, and says what is possible. [`crate::bake`] and
+/// [`crate::compress`] do so themselves; front ends ask before they read files.
 ///
 /// # Errors
 /// [`BakeError::Budget`].
-pub(crate) fn check_budget(options: &BakeOptions) -> Result<(), BakeError> {
+pub fn check_budget(options: &BakeOptions) -> Result<(), BakeError> {
     let size = options.texture_size;
     let Some(budget) = options.time_budget else { return Ok(()) };
     let least = FIXED * texels(size);

@@ -4,6 +4,9 @@
 
 use crate::error::BakeError;
 use crate::normal_y::NormalY;
+#[cfg(feature = "clap")]
+use crate::texels::parse_texels;
+use crate::texels::texels;
 use parbake_image::display::{Curve, Display};
 use parbake_render::interpretation::Interpretation;
 pub use parbake_uv::mode::{Method, UvMode};
@@ -24,23 +27,6 @@ pub mod heading {
     pub const ADVANCED: &str = "Advanced";
     /// What reproduces earlier work or serves experiments.
     pub const RESEARCH: &str = "Research";
-}
-
-/// Reads a number of texels: `512`, or `1k`, `2k`, `4k` and `8k` for multiples of 1024.
-///
-/// # Errors
-/// A sentence that says what a number of texels looks like.
-#[cfg(feature = "clap")]
-pub fn parse_texels(text: &str) -> Result<usize, String> {
-    let (digits, unit) = match text.strip_suffix(['k', 'K']) {
-        Some(digits) => (digits, 1024),
-        None => (text, 1),
-    };
-    digits
-        .parse()
-        .ok()
-        .and_then(|number: usize| number.checked_mul(unit))
-        .ok_or_else(|| "give a whole number of texels, such as 512, or 1k, 2k, 4k or 8k".into())
 }
 
 /// Time against quality.
@@ -161,6 +147,7 @@ impl SilhouetteBackground {
 pub struct BakeOptions {
     /// Side of the baked textures in texels, 16 to 8192; 1k, 2k, 4k and 8k mean 1024, 2048, 4096 and 8192
     #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 512, value_parser = parse_texels, help_heading = heading::QUALITY))]
+    #[serde(deserialize_with = "texels")]
     pub texture_size: usize,
 
     /// Trades time for quality
@@ -192,11 +179,13 @@ pub struct BakeOptions {
     pub cutout_order: usize,
 
     /// Side of the cutout map in texels, 4 to 1024; needs --parallax sh
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 128, help_heading = heading::PARALLAX))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 128, value_parser = parse_texels, help_heading = heading::PARALLAX))]
+    #[serde(deserialize_with = "texels")]
     pub cutout_size: usize,
 
     /// Side of the parallax map in texels, 4 to 1024; needs --parallax sh
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 64, help_heading = heading::PARALLAX))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 64, value_parser = parse_texels, help_heading = heading::PARALLAX))]
+    #[serde(deserialize_with = "texels")]
     pub parallax_size: usize,
 
     /// Padding between charts (UV islands) in texels, 0 to 64 [default: texture size / 256, at least 1, at most 8;
@@ -328,7 +317,10 @@ impl BakeOptions {
         self.more_triangles.unwrap_or((self.texture_size * self.texture_size / 32).min(2000))
     }
 
-    /// Checks every range; the error names the option and what it may be.
+    /// Checks every range and combination; the error names the option and what it may be.
+    ///
+    /// # Errors
+    /// [`BakeError::Option`].
     pub fn check(&self) -> Result<(), BakeError> {
         let within = |option: &'static str, value: f64, low: f64, high: f64| {
             if (low..=high).contains(&value) {
@@ -338,9 +330,9 @@ impl BakeOptions {
             }
         };
         within("texture-size", self.texture_size as f64, 16.0, 8192.0)?;
-        within("max_distance", f64::from(self.max_distance), 0.0, 1.0)?;
+        within("max-distance", f64::from(self.max_distance), 0.0, 1.0)?;
         within("silhouette", f64::from(self.silhouette.unwrap_or(0.0)), 0.0, 1.0)?;
-        within("robust_scale", f64::from(self.robust_scale.unwrap_or(1.0)), 0.01, 1000.0)?;
+        within("robust-scale", f64::from(self.robust_scale.unwrap_or(1.0)), 0.01, 1000.0)?;
         within("views", self.views.unwrap_or(1) as f64, 1.0, 4096.0)?;
         within("view-size", self.view_size.unwrap_or(32) as f64, 32.0, 2048.0)?;
         within("rounds", self.rounds.unwrap_or(0) as f64, 0.0, 100.0)?;

@@ -150,7 +150,8 @@ fn wrong_values_get_sentences() {
     }
 }
 
-/// Protects minutes of work: a place that cannot be written is found before the models are read.
+/// Protects minutes of work: a place that cannot be written, and a time budget that cannot hold, are found
+/// before the models are read.
 #[test]
 fn outputs_are_checked_first() {
     let folder = tempfile::tempdir().unwrap();
@@ -171,6 +172,8 @@ fn outputs_are_checked_first() {
         (bake("a.glb", &["--json", "nowhere/a.json"]), "there is no folder nowhere"),
         (vec!["compress", "missing.glb", "-o", "a.glb", "--report", "nowhere/a.html"], "no folder"),
         (vec!["eval", "missing.glb", "missing.glb", "--json", "nowhere/a.json"], "no folder"),
+        (vec!["image", "missing.png", "-o", "a.glb", "--animation", "a.mp4"], "must end in .gif"),
+        (bake("a.glb", &["--texture-size", "8k", "--time-budget", "10"]), "94 s"),
     ] {
         let (code, said) = refusal(folder, &arguments);
         assert_eq!(code, Some(2), "{arguments:?}: {said}");
@@ -205,6 +208,9 @@ fn strict_wants_all_textures() {
         let error = said.lines().find(|line| line.starts_with("error: ")).unwrap();
         assert!(error.contains("lost.png") && error.contains("--strict"), "{said}");
     }
+    fs::remove_file(folder.join("high.mtl")).unwrap();
+    let (code, said) = refusal(folder, &[&bake[..], &["--strict"]].concat());
+    assert!(code == Some(1) && said.contains("high.mtl"), "a missing material library: {said}");
     assert!(!folder.join("a.glb").exists() && !folder.join("b.glb").exists());
 }
 
