@@ -8,3 +8,4 @@ mod gradients;
 mod optimise;
 mod optimise_random;
 mod paper;
+mod stages;
