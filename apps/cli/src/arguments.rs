@@ -22,7 +22,7 @@ const HELP_IN_COMPRESS: [(&str, &str); 3] = [
         "Steps of the UV optimiser, 0 to 10000 [default: by preset 80, 240, 480; with --method paper 800]",
     ),
     (
-        "outlier",
+        "robust_scale",
         "Scale of the robust (Cauchy) loss of the texture solve on models with a normal map, in display units, \
 0.01 to 1000. Lower it if surfaces look mottled; 1000 is least squares [default: 1, with --method paper 1000]",
     ),
@@ -130,7 +130,7 @@ pub struct BakeCommand {
     #[arg(long, value_name = "FILE", help_heading = IO)]
     pub report: Option<PathBuf>,
 
-    /// Fail if a texture that a model names is missing, instead of warning
+    /// Fail if a texture or material that a model names is missing, instead of warning
     #[arg(long, help_heading = IO)]
     pub strict: bool,
 
@@ -173,7 +173,7 @@ pub struct CompressCommand {
     #[arg(long, value_name = "FILE", help_heading = IO)]
     pub report: Option<PathBuf>,
 
-    /// Fail if a texture that a model names is missing, instead of warning
+    /// Fail if a texture or material that a model names is missing, instead of warning
     #[arg(long, help_heading = IO)]
     pub strict: bool,
 

@@ -10,8 +10,8 @@ use crate::rules;
 use clap::ArgMatches;
 use parbake::{
     BakeOptions, BakeReport, Baked, Comparison, Convention, Loaded, Message, Model, NormalY, Stage,
-    StageTime, Watcher, Work, bake, compare_bake, read_model, with_normal_y, with_threads, write_file,
-    write_glb, write_obj,
+    StageTime, Warning, WarningKind, Watcher, Work, bake, check_budget, compare_bake, read_model,
+    with_normal_y, with_threads, write_file, write_glb, write_obj,
 };
 use parbake_report::html_report;
 use std::io::Write;
@@ -23,6 +23,7 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
     let options = merged(&command.bake, given, file)?;
     rules::check(Work::Bake, &options, given, file)?;
     options.check()?;
+    check_budget(&options)?;
     let (output, inputs) = (&command.output, [command.high.as_path(), command.low.as_path()]);
     check_maps(output, &options)?;
     check_output(output)?;
@@ -70,13 +71,11 @@ pub fn check_input(path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// What readers say of a texture that is not there.
-const MISSING: &str = "goes without it";
-
-/// With `--strict` a missing texture is an error.
-pub fn check_textures(warnings: &[String]) -> Result<(), Failure> {
-    match warnings.iter().find(|warning| warning.contains(MISSING)) {
-        Some(warning) => Err(Failure::Strict(warning.clone())),
+/// With `--strict` a missing texture or material is an error.
+pub fn check_textures(warnings: &[Warning]) -> Result<(), Failure> {
+    let is_missing = |kind| matches!(kind, WarningKind::MissingTexture | WarningKind::MissingMaterial);
+    match warnings.iter().find(|warning| is_missing(warning.kind)) {
+        Some(warning) => Err(Failure::Strict(warning.text.clone())),
         None => Ok(()),
     }
 }
@@ -86,7 +85,7 @@ pub fn read(path: &Path, console: &Console) -> Result<Loaded, Failure> {
     check_input(path)?;
     let loaded = read_model(path, console.limits())?;
     for warning in &loaded.warnings {
-        console.message(Message::Warning(warning.clone()));
+        console.message(Message::Warning(warning.text.clone()));
     }
     Ok(loaded)
 }
@@ -98,7 +97,7 @@ pub struct Pair {
     /// The coarse one.
     pub low: Model,
     /// What their readers had to say.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     /// Seconds that reading took; none for models that were not read.
     pub seconds: Option<f64>,
 }
@@ -124,7 +123,7 @@ pub fn bake_and_write(
     let begin = console.seconds();
     write_model(output, &with_normal_y(&baked.model, options.normal_y))?;
     let report = &mut baked.report;
-    report.warnings.splice(0..0, pair.warnings.iter().cloned());
+    report.warnings.splice(0..0, pair.warnings.iter().map(|warning| warning.text.clone()));
     let reading = pair.seconds.map(|seconds| StageTime { stage: Stage::Read, seconds });
     report.stages.splice(0..0, reading);
     report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
@@ -229,19 +228,19 @@ fn tell_of_shape(console: &Console, report: &BakeReport) {
             100.0 * shape.gap[1]
         ));
     }
-    if let Some(depth) = &report.depth {
+    if let Some(depth) = &report.parallax_maps {
         if let Some([before, after]) = depth.misplaced.map(|shares| shares.map(|share| 100.0 * share)) {
             console.say(&format!(
                 "cutout: {before:.1} % of the pixels near outlines were wrong, {after:.1} % are"
             ));
         }
-        let [before, after] = depth.strayed.map(|share| 100.0 * share);
+        let [before, after] = depth.cross_chart.map(|share| 100.0 * share);
         let anew = match depth.begun_anew {
             0 => "",
             _ => ", started again for the finer texture, since it had only made up for the coarse one's blur",
         };
         console.say(&format!(
-            "parallax: {} steps{anew}; {before:.3} % of the pixels strayed into another chart, {after:.3} % do",
+            "parallax: {} steps{anew}; {before:.3} % of the pixels fetched from another chart, {after:.3} % do",
             depth.steps
         ));
     }

@@ -9,7 +9,7 @@ use crate::outputs::{check_beside, check_not_input, check_output, is_stdout};
 use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;
-use parbake::{BakeReport, Stage, StageTime, Work, compress, with_normal_y, with_threads};
+use parbake::{BakeReport, Stage, StageTime, Work, check_budget, compress, with_normal_y, with_threads};
 use std::path::Path;
 
 /// Runs the command.
@@ -18,6 +18,7 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
     let options = merged(&command.bake, given, file)?;
     rules::check(Work::Compress, &options, given, file)?;
     options.check()?;
+    check_budget(&options)?;
     let (output, inputs) = (&command.output, [command.model.as_path()]);
     check_output(output)?;
     check_not_input(output, &inputs)?;
@@ -31,7 +32,7 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
         let mut baked = compress(&loaded.model, &options, &console)?;
         let begin = console.seconds();
         let bytes = [loaded.bytes, write_model(output, &with_normal_y(&baked.model, options.normal_y))?];
-        baked.report.warnings.splice(0..0, loaded.warnings);
+        baked.report.warnings.splice(0..0, loaded.warnings.iter().map(|warning| warning.text.clone()));
         baked.report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
         if !command.talk.quiet || command.json.is_some() || command.report.is_some() {
             compare(&loaded.model, &mut baked, command.report.is_some(), &console)?;
@@ -58,7 +59,7 @@ fn summary(report: &BakeReport, [before, after]: [u64; 2], output: &Path, second
     if let Some(comparison) = &report.comparison {
         let before = match report.losses.first().map(|first| first.moved.as_str()) {
             Some("delivered") => "coordinates as they are",
-            Some("mended") => "UVs repaired",
+            Some("repaired") => "UVs repaired",
             _ => "ray-cast",
         };
         let gains = gains(comparison, before, "compressed").replace("HIGH BAKED", "MODEL COMPRESSED");

@@ -9,7 +9,7 @@ use crate::pictures::write_pictures;
 use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;
-use parbake::{Work, demo_pair, wall_pair, with_threads, write_glb};
+use parbake::{Work, check_budget, demo_pair, wall_pair, with_threads, write_glb};
 use std::path::Path;
 
 /// File of the pictures.
@@ -19,6 +19,7 @@ const PICTURE: &str = "demo.webp";
 pub fn run(command: &DemoCommand, given: &ArgMatches) -> Result<Ending, Failure> {
     rules::check(Work::Bake, &command.bake, given, None)?;
     command.bake.check()?;
+    check_budget(&command.bake)?;
     let folder = &command.output;
     make_folder(folder)?;
     check_place(&folder.join("demo.glb"))?;

@@ -39,7 +39,7 @@ pub enum Failure {
     Usage(String),
     /// The report or JSON could not be made or written: 1.
     Output(String),
-    /// A texture is missing, and `--strict` was given: 1.
+    /// A texture or material is missing, and `--strict` was given: 1.
     Strict(String),
     /// The paper's experiments could not be run: 2 for options, 1 for everything else.
     Reproduce(ReproduceError),

@@ -4,7 +4,7 @@ use crate::arguments::ImageCommand;
 use crate::bake::{check_input, print, write_model};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
-use crate::outputs::{check_beside, check_not_input, check_output, check_place, is_stdout};
+use crate::outputs::{check_animation, check_beside, check_not_input, check_output, is_stdout};
 use crate::progress::{Console, interrupted};
 use crate::rules;
 use clap::ArgMatches;
@@ -22,8 +22,8 @@ pub fn run(command: &ImageCommand, given: &ArgMatches) -> Result<Ending, Failure
     check_not_input(output, &inputs)?;
     check_beside(Some(output), command.json.as_ref(), None, &inputs)?;
     if let Some(animation) = &command.animation {
-        check_place(animation)?;
         check_not_input(animation, &inputs)?;
+        check_animation(animation)?;
     }
     let console = Console::for_bake(command.talk, None);
     with_threads(command.options.threads, || {

@@ -80,11 +80,17 @@ fn position(text: &str, name: &str) -> String {
     format!("line {}, column {column}", before.matches('\n').count() + 1)
 }
 
+/// Options that count texels along a side.
+const TEXELS: [&str; 3] = ["texture_size", "parallax_size", "cutout_size"];
+
 /// What an option may be, by its default.
 fn expected(name: &str, default: &Value) -> String {
     match default {
         Value::Bool(_) => "true or false".into(),
         Value::Number(number) if number.is_f64() => "a number".into(),
+        Value::Number(_) if TEXELS.contains(&name) => {
+            r#"a whole number of texels, or a text such as "1k""#.into()
+        }
         Value::Number(_) => "a whole number that is not negative".into(),
         Value::Null => "a number, whole where it counts something, or null for the default".into(),
         _ => {
@@ -114,7 +120,8 @@ mod tests {
             ("[1]", "no object"),
             ("{\n  \"texture_sise\": 64}", "line 2, column 3: there is no option \"texture_sise\""),
             ("{\"preset\": \"quick\"}", "expected one of \"fast\", \"balanced\", \"best\""),
-            ("{\"texture_size\": \"big\"}", "expected a whole number"),
+            ("{\"texture_size\": \"big\"}", "expected a whole number of texels"),
+            ("{\"parallax_order\": \"1k\"}", "expected a whole number that is not negative"),
             ("{\"keep_normals\": 1}", "expected true or false"),
             ("{\"gutter\": []}", "line 1, column 2"),
         ] {
@@ -123,5 +130,6 @@ mod tests {
         }
         let options = options_in(r#"{"work": "bake", "options": {"gutter": 2}}"#).unwrap();
         assert_eq!(options["gutter"], 2.0);
+        assert_eq!(options_in(r#"{"texture_size": "1k"}"#).unwrap()["texture_size"], 1024);
     }
 }

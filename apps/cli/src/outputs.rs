@@ -19,6 +19,12 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
     check_place(path)
 }
 
+/// Refuses a film of moving UVs that is no GIF.
+pub fn check_animation(path: &Path) -> Result<(), Failure> {
+    check_extension(path, &["gif"], "the animation")?;
+    check_place(path)
+}
+
 fn check_extension(path: &Path, allowed: &[&str], what: &str) -> Result<(), Failure> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     if allowed.contains(&extension.as_str()) {

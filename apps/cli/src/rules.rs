@@ -14,7 +14,7 @@ use std::path::Path;
 /// Options of a bake that do nothing where a model's own texture is replaced: the surface stays.
 pub const NOT_IN_COMPRESS: [&str; 10] = [
     "shape",
-    "backdrop",
+    "silhouette_background",
     "silhouette",
     "parallax",
     "parallax_order",
@@ -22,7 +22,7 @@ pub const NOT_IN_COMPRESS: [&str; 10] = [
     "no_cutout",
     "cutout_order",
     "cutout_size",
-    "reach",
+    "max_distance",
 ];
 
 /// Options that act in `compress` on models with a normal map alone, which are baked as a pair is.
@@ -82,7 +82,7 @@ pub fn check(
     }
     if options.silhouette_weight() == 0.0 {
         refuse(
-            &["backdrop"],
+            &["silhouette_background"],
             "does nothing where --silhouette is 0, its default with a cutout; give --silhouette as well",
         )?;
     }

@@ -17,7 +17,7 @@ use crate::unwrap::corners::{Corners, Surface};
 use crate::unwrap::long::{LEAST_COVER, cut_across};
 use crate::unwrap::sound::{at_fault, settled};
 use crate::{AtlasError, ChartScale, Layout, PackOptions, UnwrapOptions, UvCheck, check, unwrap};
-use faults::{Found, fresh_triangles, unfold};
+use faults::{Found, cut_along_folds, fresh_triangles};
 use parbake_model::Mesh;
 
 /// What [`repair()`] aims at.
@@ -83,7 +83,7 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> Result<(Mesh, Vec<String>
         }
         sentences.push("Texture coordinates outside the square were brought into it.".into());
     }
-    let mut found = unfold(&surface, &mut corners);
+    let mut found = cut_along_folds(&surface, &mut corners);
     let fresh = fresh_triangles(&surface, &mut corners, &mut found, options.max_chart_angle);
     tell(&mut sentences, &found, fresh);
     let pack = PackOptions { chart_scale: ChartScale::Keep, ..options.pack.clone() };

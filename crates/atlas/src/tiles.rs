@@ -1,4 +1,4 @@
-//! Charts in other tiles of a repeated texture, brought home.
+//! Charts in other tiles of a repeated texture, moved back into the square.
 //!
 //! A texture that repeats shows the same in every unit square of the plane, so a chart may move by
 //! whole tiles and shows what it showed, texel by texel.

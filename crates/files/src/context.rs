@@ -4,7 +4,7 @@
 use crate::image_in::{decode, texels};
 use crate::search;
 use crate::words::shown;
-use crate::{FileError, Limits, Place, Resources};
+use crate::{FileError, Limits, Place, Resources, Warning, WarningKind};
 use parbake_model::Image;
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -34,7 +34,7 @@ pub(crate) struct Context<'a> {
     resources: &'a dyn Resources,
     pub limits: &'a Limits,
     pub textures: Textures,
-    warnings: RefCell<Vec<String>>,
+    warnings: RefCell<Vec<Warning>>,
     seen: RefCell<BTreeSet<String>>,
     /// Bytes of each file that was read, the model's own under the empty name.
     read: RefCell<BTreeMap<String, u64>>,
@@ -118,22 +118,32 @@ impl<'a> Context<'a> {
         self.read.borrow().values().sum()
     }
 
-    /// Adds a warning, once.
+    /// Adds a warning of no kind of its own, once.
     pub fn warn(&self, text: impl Into<String>) {
+        self.warn_of(WarningKind::Other, text);
+    }
+
+    /// Adds a warning, once. The first of each kind is always kept, however many there are: programs decide by
+    /// kinds.
+    pub fn warn_of(&self, kind: WarningKind, text: impl Into<String>) {
         let text = shown(&text.into());
+        let mut warnings = self.warnings.borrow_mut();
         let mut seen = self.seen.borrow_mut();
         // The set is bounded too: a hostile file could warn about a million names.
-        if seen.len() < 10 * MOST_WARNINGS && seen.insert(text.clone()) && seen.len() <= MOST_WARNINGS {
-            self.warnings.borrow_mut().push(text);
+        let is_first = kind != WarningKind::Other && warnings.iter().all(|warning| warning.kind != kind);
+        let is_new = (is_first || seen.len() < 10 * MOST_WARNINGS) && seen.insert(text.clone());
+        if is_new && (is_first || seen.len() <= MOST_WARNINGS) {
+            warnings.push(Warning { kind, text });
         }
     }
 
     /// All warnings, in order.
-    pub fn into_warnings(self) -> Vec<String> {
+    pub fn into_warnings(self) -> Vec<Warning> {
         let mut warnings = self.warnings.into_inner();
         let seen = self.seen.borrow().len();
         if seen > warnings.len() {
-            warnings.push(format!("and {} or more further warnings", seen - warnings.len()));
+            let text = format!("and {} or more further warnings", seen - warnings.len());
+            warnings.push(Warning { kind: WarningKind::Other, text });
         }
         warnings
     }
@@ -219,6 +229,18 @@ mod tests {
         let warnings = context.into_warnings();
         assert_eq!(warnings.len(), MOST_WARNINGS + 1);
         assert_eq!(warnings[1], "number 1");
-        assert!(warnings[MOST_WARNINGS].starts_with("and 360 or more"));
+        assert!(warnings[MOST_WARNINGS].text.starts_with("and 360 or more"));
+    }
+
+    /// Protects `--strict` from a missing texture that is lost among warnings about other things.
+    #[test]
+    fn the_first_warning_of_a_kind_is_kept() {
+        let limits = Limits::default();
+        let context = Context::new(Path::new("a"), &NoResources, &limits, Textures::Decode);
+        (0..100_000).for_each(|i| context.warn(format!("number {i}")));
+        (0..9).for_each(|i| context.warn_of(WarningKind::MissingTexture, format!("picture {i}")));
+        let kinds: Vec<_> = context.into_warnings().iter().map(|warning| warning.kind).collect();
+        assert_eq!(kinds.iter().filter(|kind| **kind == WarningKind::MissingTexture).count(), 1);
+        assert!(kinds.len() <= MOST_WARNINGS + 2);
     }
 }

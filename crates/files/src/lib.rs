@@ -3,7 +3,7 @@
 //! Readers turn any file into a [`Model`](parbake_model::Model) that keeps the
 //! model's contract or into a [`FileError`] that names the file and the place;
 //! they never panic and reserve no memory that a file only claims to need
-//! ([`Limits`]). What is odd but can be lived with becomes a warning.
+//! ([`Limits`]). What is odd but can be lived with becomes a [`Warning`].
 
 mod atomic;
 mod context;
@@ -21,6 +21,7 @@ mod obj;
 mod resources;
 mod search;
 mod unit;
+mod warning;
 mod words;
 
 pub use atomic::{write_atomically, write_streamed};
@@ -32,3 +33,4 @@ pub use limits::Limits;
 pub use model_in::{Loaded, read_geometry, read_model};
 pub use obj::{read_obj_bytes, write_obj};
 pub use resources::{Folder, NoResources, Resources};
+pub use warning::{Warning, WarningKind};

@@ -3,7 +3,7 @@
 use crate::context::{Context, Textures};
 use crate::resources::{begins_with, read_file};
 use crate::words::shown;
-use crate::{FileError, Folder, Limits, Place, gltf, obj};
+use crate::{FileError, Folder, Limits, Place, Warning, gltf, obj};
 use parbake_model::Model;
 use std::path::Path;
 
@@ -15,7 +15,7 @@ pub struct Loaded {
     /// Keeps the model's contract; has at least one triangle, and every triangle an area.
     pub model: Model,
     /// One sentence each, to show to people; where a file was read, each begins with the file's name.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     /// Bytes of its file and of all others that were read for it.
     pub bytes: u64,
 }
@@ -59,14 +59,14 @@ fn read(path: &Path, limits: &Limits, textures: Textures) -> Result<Loaded, File
     }?;
     // Two models are read for a bake: each warning names the one it is about.
     let name = shown(&path.file_name().unwrap_or_default().to_string_lossy());
-    loaded.warnings.iter_mut().for_each(|warning| *warning = format!("{name}: {warning}"));
+    loaded.warnings.iter_mut().for_each(|warning| warning.text = format!("{name}: {}", warning.text));
     Ok(loaded)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::glb_bytes;
+    use crate::{WarningKind, glb_bytes};
     use parbake_model::glam::Vec3;
     use parbake_model::{Material, Mesh};
 
@@ -119,9 +119,11 @@ mod tests {
         write("chair.mtl", "newmtl oak\nmap_Kd oak_color.png\n");
         write("chair.obj", "mtllib chair.mtl\nusemtl oak\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
         let warnings = read_model(&path, &Limits::default()).unwrap().warnings;
-        let named =
-            |warning: &String| ["chair.obj", "oak", "oak_color.png"].iter().all(|n| warning.contains(n));
+        let named = |warning: &Warning| {
+            ["chair.obj", "oak", "oak_color.png"].iter().all(|n| warning.text.contains(n))
+        };
         assert!(warnings.len() == 1 && named(&warnings[0]), "{warnings:?}");
+        assert_eq!(warnings[0].kind, WarningKind::MissingTexture);
     }
 
     const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n";

@@ -1,4 +1,4 @@
-//! Which chart each texel belongs to, all over the texture, and shifts that stay at home.
+//! Which chart each texel belongs to, all over the texture, and shifts that stay in their chart.
 //!
 //! A shifted coordinate that lands in another chart shows what that chart has for its own
 //! surface: right by luck, and wrong as soon as either is minified. So every texel belongs to
@@ -111,5 +111,27 @@ mod tests {
         };
         assert!(!strays(0.2, 0.25) && strays(0.3, 0.25));
         assert!(!strays(0.2, 0.75) && strays(0.3, 0.75));
+    }
+
+    /// Protects other charts' colours from shifted fetches, and shifts that end in their own chart from being
+    /// made smaller: those stay to the bit.
+    #[test]
+    fn crossing_shifts_shrink_and_others_stay() {
+        let label = (0..64).map(|i| u32::from(i % 8 >= 4)).collect();
+        let chart_ownership = ChartOwnership::new(&Atlas { size: 8, label, covered: vec![true; 64] });
+        let mut map = ShParallax::zeros(0, 8);
+        map.coefficients.fill(Vec2::new(0.05, 0.0));
+        let before = map.clone();
+        // Seen at a grazing angle, where a coefficient of 0.05 shifts by 0.056: only the last one crosses.
+        let views = [vec![ViewSample::at(Vec2::new(0.2, 0.2)), ViewSample::at(Vec2::new(0.3, 0.2))]];
+        assert_eq!(clamp_to_chart(&views, &chart_ownership, &mut map), [0.0, 0.0]);
+        assert!(map == before);
+        let views = [vec![ViewSample::at(Vec2::new(0.2, 0.2)), ViewSample::at(Vec2::new(0.47, 0.8))]];
+        assert_eq!(clamp_to_chart(&views, &chart_ownership, &mut map), [0.5, 0.0]);
+        let read = map.taps(Vec2::new(0.47, 0.8)).index;
+        for (texel, (now, old)) in map.coefficients.iter().zip(&before.coefficients).enumerate() {
+            let shrinks = read.contains(&(texel as u32));
+            assert!(if shrinks { now.x > 0.0 && now.x < old.x } else { now == old }, "{texel}: {now}");
+        }
     }
 }

@@ -100,4 +100,31 @@ mod tests {
             assert!((value(i) - level).abs() < 0.02, "{i} {} {level}", value(i));
         }
     }
+
+    /// Protects charts from each other, and a state that is the start: there is no edge between charts, texels
+    /// of no chart that nothing is known of have no equation, and nothing pulls.
+    #[test]
+    fn charts_are_apart_and_the_start_is_at_rest() {
+        let label = (0..16).map(|i| if i < 8 { (i % 4 / 2) as u32 } else { NO_CHART }).collect();
+        let atlas = Atlas { size: 4, label, covered: vec![true; 16] };
+        let mut start = FloatImage::solid(4, Vec4::ZERO);
+        start.texels.iter_mut().enumerate().for_each(|(i, texel)| *texel = Vec4::splat(i as f32));
+        let membrane = Membrane { stiffness: 0.5, tether: 0.25 };
+        let mut rows = vec![Row::<Diagonal>::default(); 16];
+        add_membrane(&mut rows, &atlas, &start, &start, &membrane);
+        assert!(rows.iter().all(|row| row.right == Vec4::ZERO));
+        let east: Vec<f32> = rows.iter().map(|row| row.east.trace() / 3.0).collect();
+        assert_eq!(east[..8], [-0.5, 0.0, -0.5, 0.0, -0.5, 0.0, -0.5, 0.0]);
+        let centre: Vec<f32> = rows.iter().map(|row| row.centre.trace() / 3.0).collect();
+        // Two neighbours in the chart and the tether.
+        assert!(
+            centre[..8].iter().all(|&c| (c - 1.25).abs() < 1e-6) && centre[8..].iter().all(|&c| c == 0.0)
+        );
+        // One texel off the start is pulled back, and its neighbours follow it.
+        let mut x = start.clone();
+        x.texels[1] += Vec4::ONE;
+        let mut rows = vec![Row::<Diagonal>::default(); 16];
+        add_membrane(&mut rows, &atlas, &x, &start, &membrane);
+        assert_eq!([0, 1, 2, 5].map(|i| rows[i].right.x), [0.5, -1.25, 0.0, 0.5]);
+    }
 }

@@ -10,7 +10,7 @@
 //!
 //! The textures that are fitted along are small and are thrown away: what is written is
 //! solved for afterwards, with the cutout and the shifts that a reader of the file will see.
-//! What shifts mended with a coarse texture may have been its blur rather than depth: a map
+//! What shifts made up for with a coarse texture may have been its blur rather than depth: a map
 //! that hardly betters the next, finer texture begins anew with it.
 //!
 //! Contract: maps are as they come back from 8 bits.
@@ -91,7 +91,7 @@ pub struct ParallaxReport {
     pub misplaced: Option<[f64; 2]>,
     /// Share of pixels whose shift led into another chart, before such shifts were made smaller
     /// and after.
-    pub strayed: [f64; 2],
+    pub cross_chart: [f64; 2],
     /// Steps that the parallax map took.
     pub steps: usize,
     /// Passes that began anew, because the coarser pass's map did too little for their textures.
@@ -226,7 +226,7 @@ pub fn fit_parallax_maps(
     report.mean_square = losses.iter().map(ends).collect();
     let LowPoly { placed, map: texels, .. } = LowPoly::new(low, &high.frame, TERRITORY)?;
     let chart_ownership = ChartOwnership::new(&Atlas::new(&texels, &charts(&placed), TERRITORY));
-    report.strayed = clamp_to_chart(&views, &chart_ownership, &mut map);
+    report.cross_chart = clamp_to_chart(&views, &chart_ownership, &mut map);
     let parallax = map.as_stored();
     if let Some(maps) = textures {
         let mut state = State { map, maps };

@@ -50,7 +50,7 @@ pub struct Schedule {
     pub damping: f32,
     /// Length of a pixel's display differences at which it counts half where it is too bright
     /// ([`Cauchy`]), more than 0; infinity for least squares.
-    pub outlier: f32,
+    pub robust_scale: f32,
 }
 
 impl Default for Schedule {
@@ -65,7 +65,7 @@ impl Default for Schedule {
             color_membrane: Membrane { stiffness: 1e-2, tether: 1e-5 },
             normal_membrane: Membrane { stiffness: 0.2, tether: 1e-3 },
             damping: 6.0,
-            outlier: f32::INFINITY,
+            robust_scale: f32::INFINITY,
         }
     }
 }
@@ -250,7 +250,8 @@ pub fn fit_textures<B: Brdf, K: Backend>(
 ) -> Fitted {
     let Comparison { backend, brdf, display, srgb } = *comparison;
     let display = &DisplayTable::new(&display);
-    let problem = ShadedProblem { samples, atlas, display, brdf, outliers: Cauchy::new(schedule.outlier) };
+    let problem =
+        ShadedProblem { samples, atlas, display, brdf, outliers: Cauchy::new(schedule.robust_scale) };
     fit_maps(&problem, start, backend, srgb, schedule, watcher)
 }
 

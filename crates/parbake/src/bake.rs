@@ -65,7 +65,7 @@ pub fn bake(
     high: &Model,
     low: &Model,
     options: &BakeOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<Baked, BakeError> {
     options.check()?;
     let begin = Instant::now();
@@ -85,12 +85,12 @@ pub fn prepare_high_poly(high: &Model, options: &BakeOptions) -> Result<HighPoly
 /// Bakes a prepared high-poly's look onto a low-poly; the result is that of [`bake`].
 ///
 /// # Errors
-/// As of [`bake`]; options whose `convention` or `reach` are not those that the high-poly was prepared with.
+/// As of [`bake`]; options whose `convention` or `max_distance` are not those that the high-poly was prepared with.
 pub fn bake_prepared(
     high: &HighPoly,
     low: &Model,
     options: &BakeOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<Baked, BakeError> {
     options.check()?;
     if high.conventions != conventions(options) {
@@ -103,7 +103,7 @@ pub fn bake_prepared(
 pub(crate) fn bake_onto_itself(
     model: &Model,
     options: &BakeOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<Baked, BakeError> {
     options.check()?;
     let begin = Instant::now();
@@ -119,7 +119,7 @@ fn conventions(options: &BakeOptions) -> Conventions {
             Shading::Auto => None,
             shading => Some(shading == Shading::Pbr),
         },
-        max_distance: 2.0 * options.reach,
+        max_distance: 2.0 * options.max_distance,
     }
 }
 
@@ -141,10 +141,12 @@ fn run(
     low: &Model,
     work: Work,
     options: &BakeOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
     begin: Instant,
 ) -> Result<Baked, BakeError> {
     check_budget(options)?;
+    // Of one type from here on, so that the stages are compiled once and not for each caller's.
+    let watcher = &watcher;
     let mut plan = options.plan();
     let same = work == Work::Compress;
     if same {
@@ -162,11 +164,11 @@ fn run(
     let low = turned.as_ref().map_or(low, |(model, _)| model);
     let delivered = low;
     warnings.tell(turned.iter().flat_map(|(_, of_normals)| of_normals.clone()));
-    let Geometry { unfolded, shape, map } = move_geometry(low, work, high, options, &scope, &mut clock)?;
-    let low = unfolded.as_ref().map_or(low, |u| &u.model);
+    let Geometry { uv_stage, shape, map } = move_geometry(low, work, high, options, &scope, &mut clock)?;
+    let low = uv_stage.as_ref().map_or(low, |u| &u.model);
     let prepared = LowPoly::new(low, &high.frame, size)?;
     warnings.tell(prepared.warnings.iter().cloned());
-    let repaired = unfolded.iter().flat_map(|u| &u.report.mended);
+    let repaired = uv_stage.iter().flat_map(|u| &u.report.repaired);
     warnings.tell(repaired.map(|done| format!("{}: {done}", low.name)));
     clock.lap(Stage::Prepare);
 
@@ -201,8 +203,8 @@ fn run(
     let report = BakeReport {
         work,
         shape,
-        depth: parallax_report,
-        unfold: unfolded.as_ref().filter(|_| options.uv != UvMode::Keep).map(|u| u.report.clone()),
+        parallax_maps: parallax_report,
+        uv_stage: uv_stage.as_ref().filter(|_| options.uv != UvMode::Keep).map(|u| u.report.clone()),
         options: options.clone(),
         high_triangles: high.triangles,
         low_triangles: low.mesh.triangles.len(),
@@ -224,7 +226,7 @@ fn run(
         ray_cast,
         model: look.textured(low, written, fitted.images, parallax.as_ref()),
         report,
-        uv_moves: unfolded.and_then(|u| u.moves),
+        uv_moves: uv_stage.and_then(|u| u.moves),
     })
 }
 

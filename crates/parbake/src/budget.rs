@@ -33,11 +33,12 @@ fn texels(texture_size: usize) -> f64 {
     (texture_size as f64).powi(2)
 }
 
-/// Refuses a time budget that a texture of this size cannot keep, and says what is possible.
+/// Refuses a time budget that a texture of this size cannot keep, and says what is possible. [`crate::bake`] and
+/// [`crate::compress`] do so themselves; front ends ask before they read files.
 ///
 /// # Errors
 /// [`BakeError::Budget`].
-pub(crate) fn check_budget(options: &BakeOptions) -> Result<(), BakeError> {
+pub fn check_budget(options: &BakeOptions) -> Result<(), BakeError> {
     let size = options.texture_size;
     let Some(budget) = options.time_budget else { return Ok(()) };
     let least = FIXED * texels(size);
@@ -77,7 +78,7 @@ pub(crate) fn stage_weights(options: &BakeOptions) -> Vec<(Stage, f64)> {
         stages.push((Stage::Shape, 60.0));
     }
     if options.uv == UvMode::Optimize && !is_hurried(options) {
-        stages.push((Stage::Unfold, 1.0 + 1.8 * million));
+        stages.push((Stage::Uv, 1.0 + 1.8 * million));
     }
     stages.push((Stage::Reference, 0.08 * pixels));
     if options.parallax != Parallax::None {
@@ -137,7 +138,7 @@ mod tests {
     fn stages_have_weights() {
         let stages = stage_weights(&BakeOptions { parallax: Parallax::Sh, ..BakeOptions::default() });
         assert!(stages.iter().all(|(_, weight)| *weight > 0.0), "{stages:?}");
-        for stage in [Stage::Shape, Stage::Unfold, Stage::Reference, Stage::Parallax, Stage::Solve] {
+        for stage in [Stage::Shape, Stage::Uv, Stage::Reference, Stage::Parallax, Stage::Solve] {
             assert!(stages.iter().any(|(own, _)| *own == stage), "{stage:?}");
         }
     }

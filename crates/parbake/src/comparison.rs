@@ -63,7 +63,7 @@ pub fn compare_bake(
     high: &Model,
     baked: &Baked,
     with_flip: bool,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<Comparison, BakeError> {
     let options = EvaluateOptions { no_flip: !with_flip, ..compared_as(baked.report.options.convention) };
     let views = evaluate_each(high, &[&baked.ray_cast, &baked.model], &options, &BACKGROUNDS, watcher)?;

@@ -7,12 +7,12 @@
 //!
 //! ```text
 //! delivered coordinates ────────────────────────── texture, to compare with
-//! mended, where they are not sound ─┬───────────── texture ─┬ the better one ─ Model
-//!            more triangles, moved ─┴───────────── texture ─┘
+//! repaired, where they are not sound ─┬─────────── texture ─┬ the better one ─ Model
+//!              more triangles, moved ─┴─────────── texture ─┘
 //! ```
 //!
 //! Contract: what is written is sound, unless coordinates are to be kept, and shows the surface no worse
-//! than coordinates that were only mended. Texels are compared as they are stored, as when a picture is
+//! than coordinates that were only repaired. Texels are compared as they are stored, as when a picture is
 //! scaled.
 
 use crate::bake::{Baked, bake_onto_itself};
@@ -46,7 +46,7 @@ const BRIGHTENED: f32 = 0.5;
 ///
 /// # Errors
 /// As of [`crate::bake`].
-pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) -> Result<Baked, BakeError> {
+pub fn compress(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<Baked, BakeError> {
     if options.parallax != Parallax::None {
         let (option, range) = ("parallax", "none where a model is compressed: its surface stays".into());
         return Err(BakeError::Option { option, value: "sh".into(), range });
@@ -64,9 +64,9 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         return bake_onto_itself(model, options, watcher);
     }
     let begin = Instant::now();
-    let watcher = &ProgressScope::new(watcher, begin, options.time_budget);
+    let watcher = &ProgressScope::new(&watcher, begin, options.time_budget);
     // Coordinates are all that takes long; a texture is solved for those before and after.
-    watcher.message(Message::Plan(vec![(Stage::Unfold, 4.0), (Stage::Evaluate, 1.0)]));
+    watcher.message(Message::Plan(vec![(Stage::Uv, 4.0), (Stage::Evaluate, 1.0)]));
     let mut clock = Clock::new(begin);
     let frame = common_frame(model)?;
     let surface = placed(model, &frame);
@@ -78,7 +78,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         scene: &scene,
         surface: None,
         visibilities: &visibilities,
-        reach: 0.0,
+        max_distance: 0.0,
         brightened: 0.0,
         normals: false,
         pixel: sample_width(&surface, options.texture_size),
@@ -92,11 +92,11 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
         .map(|delivered| own.textured(own.unmoved(delivered, &as_it_is, watcher)));
     clock.lap(Stage::Solve);
     let asked = options.uv_stage_for(Work::Compress);
-    let mended = repair_uvs(model, &asked)?;
-    let unmoved = own.unmoved(mended.clone(), &asked, watcher);
+    let repaired = repair_uvs(model, &asked)?;
+    let unmoved = own.unmoved(repaired.clone(), &asked, watcher);
     let shown = Source { brightened: BRIGHTENED, ..stored };
-    let moved = optimise_uvs(mended, &frame, &shown, &asked, watcher);
-    clock.lap(Stage::Unfold);
+    let moved = optimise_uvs(repaired, &frame, &shown, &asked, watcher);
+    clock.lap(Stage::Uv);
     let begun = match &delivered {
         Some(same) if same.low.model.mesh.uvs == unmoved.model.mesh.uvs => {
             Solved { low: unmoved, solved: same.solved.clone() }
@@ -113,7 +113,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &impl Watcher) ->
     }
     clock.lap(Stage::Solve);
 
-    let (kind, baseline) = delivered.as_ref().map_or(("mended", &begun), |solved| ("delivered", solved));
+    let (kind, baseline) = delivered.as_ref().map_or(("repaired", &begun), |solved| ("delivered", solved));
     let losses = vec![loss(kind, &baseline.solved), loss("color", &written.solved)];
     let mut report = own.report(baseline, &written, watcher);
     (report.losses, report.stages) = (losses, clock.stages);
@@ -140,7 +140,7 @@ fn is_in_the_square(mesh: &Mesh, slack: f64) -> bool {
 }
 
 /// Delivered coordinates as a texture that does not repeat can be read with them: charts in other tiles
-/// are brought home. None where one reaches across a tile's border by more than `slack`.
+/// are moved back into the square. None where one reaches across a tile's border by more than `slack`.
 fn in_the_square(mut delivered: RepairedLowPoly, slack: f64) -> Option<RepairedLowPoly> {
     if !is_in_the_square(&delivered.mesh, slack) {
         delivered.mesh.uvs = in_one_tile(&delivered.mesh, slack)?;
@@ -177,11 +177,11 @@ impl OwnSurface<'_> {
     /// Coordinates as they are.
     fn unmoved(
         &self,
-        mended: RepairedLowPoly,
+        repaired: RepairedLowPoly,
         options: &UvStageOptions,
         watcher: &impl Watcher,
     ) -> UvStageResult {
-        optimise_uvs(mended, self.frame, &self.stored, &UvStageOptions { steps: 0, ..*options }, watcher)
+        optimise_uvs(repaired, self.frame, &self.stored, &UvStageOptions { steps: 0, ..*options }, watcher)
     }
 
     fn textured(&self, low: UvStageResult) -> Solved {
@@ -198,17 +198,17 @@ impl OwnSurface<'_> {
     ) -> BakeReport {
         let name = &self.model.name;
         let uv = check_mesh(&written.low.model.mesh, self.options.texture_size);
-        let mended = written.low.report.mended.iter().map(|done| format!("{name}: {done}"));
-        let warnings: Vec<String> = mended.chain(layout_warning(name, &uv)).collect();
+        let repaired = written.low.report.repaired.iter().map(|done| format!("{name}: {done}"));
+        let warnings: Vec<String> = repaired.chain(layout_warning(name, &uv)).collect();
         warnings.iter().for_each(|warning| watcher.message(Message::Warning(warning.clone())));
-        let mut unfold = written.low.report.clone();
+        let mut uv_stage = written.low.report.clone();
         let errors = written.solved.errors.iter().zip(&baseline.solved.errors);
-        unfold.relative_error = errors.map(|(a, b)| a / b.max(1e-12)).collect();
+        uv_stage.relative_error = errors.map(|(a, b)| a / b.max(1e-12)).collect();
         BakeReport {
             work: Work::Compress,
             shape: None,
-            depth: None,
-            unfold: (self.options.uv != UvMode::Keep).then_some(unfold),
+            parallax_maps: None,
+            uv_stage: (self.options.uv != UvMode::Keep).then_some(uv_stage),
             options: self.options.clone(),
             high_triangles: self.model.mesh.triangles.len(),
             low_triangles: written.low.model.mesh.triangles.len(),
@@ -365,7 +365,7 @@ mod tests {
         ));
         let options = BakeOptions { uv: UvMode::Unwrap, ..keep };
         let Baked { model, report, .. } = compress(&model, &options, &()).expect("a box can be unwrapped");
-        assert_eq!(report.losses[0].moved, "mended");
+        assert_eq!(report.losses[0].moved, "repaired");
         // Halfway along edges from black to white; half of the light is stored as 188 of 255.
         let mesh = &model.mesh;
         let [red, ..] = mesh

@@ -9,7 +9,7 @@ pub enum BakeError {
     /// Reading or writing a file.
     #[error(transparent)]
     File(#[from] FileError),
-    /// Texture coordinates could not be made or mended.
+    /// Texture coordinates could not be made or repaired.
     #[error(transparent)]
     Atlas(#[from] parbake_atlas::AtlasError),
     /// An option is out of range.
@@ -47,7 +47,9 @@ pub enum BakeError {
     #[error(transparent)]
     Prepare(#[from] parbake_views::PrepareError),
     /// A high-poly was prepared for bakes of another kind.
-    #[error("{model} was prepared with another convention or reach; prepare it with the options of the bake")]
+    #[error(
+        "{model} was prepared with another convention or --max-distance; prepare it with the options of the bake"
+    )]
     OtherConventions {
         /// The high-poly's name.
         model: String,

@@ -2,8 +2,8 @@
 //! the paper's method, coordinates and then the rest of its Algorithm 1.
 //!
 //! ```text
-//! low ─ mend ─┬─ shape ─── unfold ────────────────── (fit)
-//!             └─────────── unfold ─ algorithm_one ── (paper)
+//! low ─ repair ─┬─ shape ─ UV stage ─────────────────── (fit)
+//!               └───────── UV stage ─ paper_joint_fit ─ (paper)
 //! ```
 //!
 //! Contract: what is not moved keeps its value to the bit; with nothing to move there is no copy.
@@ -24,7 +24,7 @@ use parbake_views::high_poly::HighPoly;
 #[derive(Default)]
 pub struct Geometry {
     /// The low-poly with its coordinates; none where nothing was to move.
-    pub unfolded: Option<UvStageResult>,
+    pub uv_stage: Option<UvStageResult>,
     /// How vertices moved, where they did.
     pub shape: Option<ShapeReport>,
     /// The map of the paper's method, where it was asked for.
@@ -63,19 +63,19 @@ pub fn move_geometry<W: Watcher>(
         scene: &high.scene,
         surface: (!same).then_some(&high.surface),
         visibilities: &[],
-        reach: high.conventions.max_distance,
+        max_distance: high.conventions.max_distance,
         brightened: if high.conventions.srgb() { 1.0 } else { 0.0 },
         normals: true,
         pixel: Source::PIXEL,
     };
-    let mut unfolded = optimise_uvs(low, &high.frame, &source, &uv_options, &scope.share(shares::UV));
-    clock.lap(Stage::Unfold);
+    let mut uv_stage = optimise_uvs(low, &high.frame, &source, &uv_options, &scope.share(shares::UV));
+    clock.lap(Stage::Uv);
     if let Some(plan) = &paper_joint_plan {
         let share = scope.share(shares::PARALLAX);
-        let outcome = paper_joint_fit(&mut unfolded.model, high, plan, options.seed, &share)?;
+        let outcome = paper_joint_fit(&mut uv_stage.model, high, plan, options.seed, &share)?;
         (geometry.shape, geometry.map) = (outcome.report, outcome.map);
         clock.lap(Stage::Shape);
     }
-    geometry.unfolded = Some(unfolded);
+    geometry.uv_stage = Some(uv_stage);
     Ok(geometry)
 }

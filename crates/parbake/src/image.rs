@@ -73,9 +73,10 @@ pub struct ImageReport {
 pub fn bake_image(
     image: &Image,
     options: &ImageOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<BakedImage, BakeError> {
     options.check()?;
+    let watcher = &watcher;
     if !image.is_whole() {
         return Err(BakeError::BrokenImage { image: image.name.clone() });
     }

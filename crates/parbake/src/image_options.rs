@@ -1,9 +1,11 @@
 //! Options of `parbake image`.
 
 use crate::error::BakeError;
+#[cfg(feature = "clap")]
+use crate::options::heading;
 use crate::options::{Method, check_content_aware};
 #[cfg(feature = "clap")]
-use crate::options::{heading, parse_texels};
+use crate::texels::parse_texels;
 use parbake_uv::paper::PaperOptions;
 use parbake_uv::picture::PictureOptions;
 use serde::{Deserialize, Serialize};

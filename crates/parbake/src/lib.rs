@@ -45,29 +45,33 @@ mod options;
 mod plan;
 mod report;
 pub mod studio;
+mod texels;
 mod textures;
 mod threads;
 mod warnings;
 
 pub use bake::{Baked, bake, bake_prepared, prepare_high_poly};
+pub use budget::check_budget;
 pub use comparison::{
     BACKGROUNDS, BeforeAndAfter, COMPARED_VIEWS, Comparison, OnBackground, compare_bake, compared_as,
 };
 pub use compress::compress;
 pub use error::BakeError;
 pub use evaluate::options::EvaluateOptions;
-pub use evaluate::{Evaluation, ViewFigures, evaluate, evaluate_before};
+pub use evaluate::{Evaluation, ViewFigures, evaluate, evaluate_on};
 pub use image::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
 pub use memory::peak_memory;
 pub use models::{demo_pair, laid_out, simplified, subdivided, wall_pair};
 pub use normal_y::{NormalY, with_normal_y};
-pub use options::{Backdrop, BakeOptions, Convention, Method, Parallax, Preset, Shading, ShapeMode, UvMode};
 #[cfg(feature = "clap")]
-pub use options::{heading, parse_texels};
+pub use options::heading;
+pub use options::{
+    BakeOptions, Convention, Method, Parallax, Preset, Shading, ShapeMode, SilhouetteBackground, UvMode,
+};
 pub use parbake_atlas::{LayoutCheck, ModelCheck, UvCheck, check_mesh, check_model};
 pub use parbake_files::{
-    FileError, Limits, Loaded, encode_png, read_image, read_model, write_atomically as write_file, write_glb,
-    write_obj,
+    FileError, Limits, Loaded, Warning, WarningKind, encode_png, read_image, read_model,
+    write_atomically as write_file, write_glb, write_obj,
 };
 pub use parbake_fit::parallax_maps::ParallaxReport;
 pub use parbake_model::{Image as Picture, Model};
@@ -81,6 +85,7 @@ pub use parbake_views::high_poly::HighPoly;
 pub use plan::Plan;
 pub use report::{BakeReport, LossStep, Work};
 pub use studio::{Shot, Studio, Subject};
+pub use texels::parse_texels;
 pub use threads::{MOST_THREADS, join, with_threads};
 
 /// The README's example, compiled as it is pasted.

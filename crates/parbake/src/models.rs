@@ -14,7 +14,7 @@ pub fn simplified(model: &Model, triangles: usize) -> Model {
     Model { mesh: simplify(&model.mesh, options), ..model.clone() }
 }
 
-/// A copy of a model whose texture coordinates are mended or made anew as the mode asks, for a
+/// A copy of a model whose texture coordinates are repaired or made anew as the mode asks, for a
 /// texture of this size, and not moved.
 ///
 /// # Errors

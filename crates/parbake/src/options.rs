@@ -4,6 +4,9 @@
 
 use crate::error::BakeError;
 use crate::normal_y::NormalY;
+#[cfg(feature = "clap")]
+use crate::texels::parse_texels;
+use crate::texels::texels;
 use parbake_image::display::{Curve, Display};
 use parbake_render::interpretation::Interpretation;
 pub use parbake_uv::mode::{Method, UvMode};
@@ -24,23 +27,6 @@ pub mod heading {
     pub const ADVANCED: &str = "Advanced";
     /// What reproduces earlier work or serves experiments.
     pub const RESEARCH: &str = "Research";
-}
-
-/// Reads a number of texels: `512`, or `1k`, `2k`, `4k` and `8k` for multiples of 1024.
-///
-/// # Errors
-/// A sentence that says what a number of texels looks like.
-#[cfg(feature = "clap")]
-pub fn parse_texels(text: &str) -> Result<usize, String> {
-    let (digits, unit) = match text.strip_suffix(['k', 'K']) {
-        Some(digits) => (digits, 1024),
-        None => (text, 1),
-    };
-    digits
-        .parse()
-        .ok()
-        .and_then(|number: usize| number.checked_mul(unit))
-        .ok_or_else(|| "give a whole number of texels, such as 512, or 1k, 2k, 4k or 8k".into())
 }
 
 /// Time against quality.
@@ -145,7 +131,7 @@ pub(crate) fn check_content_aware(method: Method, no_content_aware: bool) -> Res
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
-pub enum Backdrop {
+pub enum SilhouetteBackground {
     /// Black, which shading at grazing angles comes close to by itself.
     #[default]
     Black,
@@ -155,13 +141,13 @@ pub enum Backdrop {
     White,
 }
 
-impl Backdrop {
+impl SilhouetteBackground {
     /// Its linear light.
     pub fn light(self) -> [f32; 3] {
         match self {
-            Backdrop::Black => [0.0; 3],
-            Backdrop::Grey => [crate::evaluate::options::GREY; 3],
-            Backdrop::White => [1.0; 3],
+            SilhouetteBackground::Black => [0.0; 3],
+            SilhouetteBackground::Grey => [crate::evaluate::options::GREY; 3],
+            SilhouetteBackground::White => [1.0; 3],
         }
     }
 }
@@ -175,6 +161,7 @@ impl Backdrop {
 pub struct BakeOptions {
     /// Side of the baked textures in texels, 16 to 8192; 1k, 2k, 4k and 8k mean 1024, 2048, 4096 and 8192
     #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 512, value_parser = parse_texels, help_heading = heading::QUALITY))]
+    #[serde(deserialize_with = "texels")]
     pub texture_size: usize,
 
     /// Trades time for quality
@@ -206,11 +193,13 @@ pub struct BakeOptions {
     pub cutout_order: usize,
 
     /// Side of the cutout map in texels, 4 to 1024; needs --parallax sh
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 128, help_heading = heading::PARALLAX))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 128, value_parser = parse_texels, help_heading = heading::PARALLAX))]
+    #[serde(deserialize_with = "texels")]
     pub cutout_size: usize,
 
     /// Side of the parallax map in texels, 4 to 1024; needs --parallax sh
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 64, help_heading = heading::PARALLAX))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 64, value_parser = parse_texels, help_heading = heading::PARALLAX))]
+    #[serde(deserialize_with = "texels")]
     pub parallax_size: usize,
 
     /// Padding between charts (UV islands) in texels, 0 to 64 [default: texture size / 256, at least 1, at most 8;
@@ -229,8 +218,8 @@ pub struct BakeOptions {
     pub more_triangles: Option<usize>,
 
     /// Background of the training views, where the low-poly overhangs the high-poly's outline
-    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Backdrop::Black, help_heading = heading::SHAPE))]
-    pub backdrop: Backdrop,
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = SilhouetteBackground::Black, help_heading = heading::SHAPE))]
+    pub silhouette_background: SilhouetteBackground,
 
     /// Weight of pixels where the low-poly overhangs the high-poly's outline, 0 to 1. High values darken the
     /// edges: best on black. 0 is neutral: best on varied backgrounds [default: 0.5, with a cutout 0]
@@ -275,7 +264,7 @@ pub struct BakeOptions {
     /// Distance to either side of the low-poly within which projection looks for the high-poly, as a share of
     /// the high-poly's longest side, 0 to 1
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "SHARE", default_value_t = 0.05, help_heading = heading::ADVANCED))]
-    pub reach: f32,
+    pub max_distance: f32,
 
     /// Random seed of the training views, 0 to 2^64 - 1
     #[cfg_attr(feature = "clap", arg(long, value_name = "NUMBER", default_value_t = 0, help_heading = heading::ADVANCED))]
@@ -296,7 +285,7 @@ pub struct BakeOptions {
     /// Scale of the robust (Cauchy) loss of the texture solve, in display units, 0.01 to 1000. Lower it if
     /// surfaces look mottled; 1000 is least squares [default: 1, with --parallax sh 0.5, with --method paper 1000]
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "DIFFERENCE", help_heading = heading::RESEARCH))]
-    pub outlier: Option<f32>,
+    pub robust_scale: Option<f32>,
 }
 
 impl Default for BakeOptions {
@@ -318,13 +307,13 @@ impl Default for BakeOptions {
             uv_steps: None,
             more_triangles: None,
             convention: Convention::Gltf,
-            backdrop: Backdrop::Black,
+            silhouette_background: SilhouetteBackground::Black,
             shading: Shading::Auto,
             silhouette: None,
             keep_normals: false,
             normal_y: NormalY::Up,
-            outlier: None,
-            reach: 0.05,
+            robust_scale: None,
+            max_distance: 0.05,
             views: None,
             view_size: None,
             rounds: None,
@@ -347,7 +336,10 @@ impl BakeOptions {
         self.more_triangles.unwrap_or((self.texture_size * self.texture_size / 32).min(2000))
     }
 
-    /// Checks every range; the error names the option and what it may be.
+    /// Checks every range and combination; the error names the option and what it may be.
+    ///
+    /// # Errors
+    /// [`BakeError::Option`].
     pub fn check(&self) -> Result<(), BakeError> {
         let within = |option: &'static str, value: f64, low: f64, high: f64| {
             if (low..=high).contains(&value) {
@@ -357,9 +349,9 @@ impl BakeOptions {
             }
         };
         within("texture-size", self.texture_size as f64, 16.0, 8192.0)?;
-        within("reach", f64::from(self.reach), 0.0, 1.0)?;
+        within("max-distance", f64::from(self.max_distance), 0.0, 1.0)?;
         within("silhouette", f64::from(self.silhouette.unwrap_or(0.0)), 0.0, 1.0)?;
-        within("outlier", f64::from(self.outlier.unwrap_or(1.0)), 0.01, 1000.0)?;
+        within("robust-scale", f64::from(self.robust_scale.unwrap_or(1.0)), 0.01, 1000.0)?;
         within("views", self.views.unwrap_or(1) as f64, 1.0, 4096.0)?;
         within("view-size", self.view_size.unwrap_or(32) as f64, 32.0, 2048.0)?;
         within("rounds", self.rounds.unwrap_or(0) as f64, 0.0, 100.0)?;
@@ -416,12 +408,12 @@ mod tests {
     /// Protects the paper's method from our loss, and what a user asks for from defaults.
     #[test]
     fn outliers_count_as_the_method_says() {
-        let scale = |options: BakeOptions| options.plan().schedule.outlier;
+        let scale = |options: BakeOptions| options.plan().schedule.robust_scale;
         let own = BakeOptions::default;
         assert_eq!(scale(own()), 1.0);
         assert_eq!(scale(BakeOptions { parallax: Parallax::Sh, ..own() }), 0.5);
         assert_eq!(scale(BakeOptions { parallax: Parallax::Sh, method: Method::Paper, ..own() }), 1000.0);
-        assert_eq!(scale(BakeOptions { parallax: Parallax::Sh, outlier: Some(0.2), ..own() }), 0.2);
-        assert!(BakeOptions { outlier: Some(0.0), ..own() }.check().is_err());
+        assert_eq!(scale(BakeOptions { parallax: Parallax::Sh, robust_scale: Some(0.2), ..own() }), 0.2);
+        assert!(BakeOptions { robust_scale: Some(0.0), ..own() }.check().is_err());
     }
 }

@@ -170,20 +170,20 @@ impl BakeOptions {
     pub(crate) fn beyond(&self) -> UncoveredPixels {
         match self.silhouette_weight() {
             0.0 => UncoveredPixels::Ignore,
-            weight => UncoveredPixels::Background(self.backdrop.light(), weight),
+            weight => UncoveredPixels::Background(self.silhouette_background.light(), weight),
         }
     }
 
     /// Length of a pixel's display difference at which it counts half. What contradicts itself in a
     /// texel that is shifted is a stray pixel, and is worth little; without shifts it is most
     /// of what views show of depth, and to count it less costs decibels.
-    fn outlier(&self) -> f32 {
+    fn robust_scale(&self) -> f32 {
         let own = match (self.method, self.parallax) {
             (Method::Paper, _) => 1000.0,
             (Method::Fit, Parallax::Sh) => 0.5,
             (Method::Fit, Parallax::None) => 1.0,
         };
-        self.outlier.unwrap_or(own)
+        self.robust_scale.unwrap_or(own)
     }
 
     /// What to do with texture coordinates in another mode.
@@ -254,7 +254,7 @@ impl BakeOptions {
                 rounds,
                 normal_steps: if self.keep_normals { 0 } else { Schedule::default().normal_steps },
                 final_steps: if rounds == 0 { 0 } else { final_steps },
-                outlier: self.outlier(),
+                robust_scale: self.robust_scale(),
                 ..Schedule::default()
             },
         }

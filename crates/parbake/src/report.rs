@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LossStep {
     /// What moved: start, color, normal or rounding; where a model is compressed without views, delivered or
-    /// mended for what coordinates were before they moved, and color.
+    /// repaired for what coordinates were before they moved, and color.
     pub moved: String,
     /// Seconds since the fit began.
     pub seconds: f64,
@@ -77,9 +77,9 @@ pub struct BakeReport {
     pub shape: Option<ShapeReport>,
     /// How cutout and parallax map were fitted; none where there are none.
     #[serde(default)]
-    pub depth: Option<ParallaxReport>,
+    pub parallax_maps: Option<ParallaxReport>,
     /// What was done with texture coordinates; none where they were kept.
-    pub unfold: Option<UvStageReport>,
+    pub uv_stage: Option<UvStageReport>,
     /// What was asked.
     pub options: BakeOptions,
     /// Triangles of the high-poly.
@@ -96,7 +96,7 @@ pub struct BakeReport {
     pub unseen_texels: usize,
     /// Texels that several triangles claim.
     pub overlapping_texels: usize,
-    /// Texels on the surface for which projection found nothing within its reach; they took
+    /// Texels on the surface for which projection found nothing within `max_distance`; they took
     /// the closest point.
     pub missed_texels: usize,
     /// The check of the texture coordinates that are written.
@@ -122,7 +122,7 @@ impl BakeReport {
     pub fn start(&self) -> &'static str {
         match (self.views, self.losses.first().map(|loss| loss.moved.as_str())) {
             // Nothing was ray-cast where nothing was looked at.
-            (0, Some("mended")) => "the best texture of this size for UVs that were only repaired",
+            (0, Some("repaired")) => "the best texture of this size for UVs that were only repaired",
             (0, _) => "the best texture of this size for the coordinates as they were",
             _ => "what a ray-cast baker makes of the low-poly as it was delivered",
         }

@@ -12,8 +12,8 @@ pub enum Stage {
     Prepare,
     /// Moving vertices.
     Shape,
-    /// Mending, unwrapping and moving texture coordinates.
-    Unfold,
+    /// Repairing, unwrapping and moving texture coordinates.
+    Uv,
     /// Rendering the high-poly from the training views.
     Reference,
     /// Projecting the high-poly onto the low-poly's texture.
@@ -43,7 +43,7 @@ impl Stage {
             Stage::Read => "reading files",
             Stage::Prepare => "preparing",
             Stage::Shape => "moving vertices",
-            Stage::Unfold => "moving texture coordinates",
+            Stage::Uv => "moving texture coordinates",
             Stage::Reference => "rendering the high-poly",
             Stage::Start => "projecting",
             Stage::Sampling => "finding samples",

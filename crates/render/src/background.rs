@@ -38,7 +38,7 @@ pub enum Background {
 
 /// What is behind the model in one view: a checker of two colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Backdrop {
+pub struct ViewBackground {
     /// Linear colours of the squares whose column + row is even, and odd.
     colors: [[f32; 3]; 2],
     cells: usize,
@@ -70,14 +70,14 @@ fn random_color(seed: u64) -> [f32; 3] {
 
 impl Background {
     /// What it is in the view of this seed. Only [`Background::Random`] depends on it.
-    pub fn for_view(self, seed: u64) -> Backdrop {
-        let solid = |color| Backdrop { colors: [color; 2], cells: 1 };
+    pub fn for_view(self, seed: u64) -> ViewBackground {
+        let solid = |color| ViewBackground { colors: [color; 2], cells: 1 };
         match self {
             Self::Black => solid([0.0; 3]),
             Self::White => solid([1.0; 3]),
             Self::Grey => solid([0.5; 3]),
             Self::Color(color) => solid(color),
-            Self::Checker { cells } => Backdrop { colors: [[0.33; 3], [0.75; 3]], cells: cells.max(1) },
+            Self::Checker { cells } => ViewBackground { colors: [[0.33; 3], [0.75; 3]], cells: cells.max(1) },
             Self::Random => solid(random_color(seed)),
         }
     }
@@ -92,43 +92,43 @@ pub struct Composed {
     pub slope: [f32; 3],
 }
 
-/// Composition of one view's pixels: backdrop and display together.
+/// Composition of one view's pixels: background and display together.
 #[derive(Clone, Debug)]
 pub struct Composer {
-    backdrop: Backdrop,
+    background: ViewBackground,
     gain: f32,
     /// None where the display is linear.
     curve: Option<DisplayTable>,
     /// For each column (and row): is its square an odd one?
     odd: Vec<bool>,
-    /// The bare backdrop's two squares: most pixels of a view are one of them.
+    /// The bare background's two squares: most pixels of a view are one of them.
     bare: [Composed; 2],
 }
 
 impl Composer {
     /// For pictures of `size` pixels along a side.
-    pub fn new(backdrop: Backdrop, display: Display, size: usize) -> Self {
+    pub fn new(background: ViewBackground, display: Display, size: usize) -> Self {
         let of_display = || DisplayTable::new(&Display { gain: 1.0, ..display });
         let curve = (display.curve != Curve::Linear).then(of_display);
-        let bare = backdrop.colors.map(|c| compose(curve.as_ref(), c));
-        let odd = (0..size).map(|i| (i * backdrop.cells / size) & 1 == 1).collect();
-        Self { backdrop, gain: display.gain, curve, odd, bare }
+        let bare = background.colors.map(|c| compose(curve.as_ref(), c));
+        let odd = (0..size).map(|i| (i * background.cells / size) & 1 == 1).collect();
+        Self { background, gain: display.gain, curve, odd, bare }
     }
 
-    /// Which of the backdrop's two colours is behind a pixel.
+    /// Which of the background's two colours is behind a pixel.
     #[inline]
     fn square(&self, column: usize, row: usize) -> usize {
         usize::from(self.odd[column] != self.odd[row])
     }
 
-    /// Forward: a premultiplied linear pixel in front of the backdrop, encoded.
+    /// Forward: a premultiplied linear pixel in front of the background, encoded.
     #[inline]
     pub fn forward(&self, rgba: &[f32; 4], column: usize, row: usize) -> Composed {
         let square = self.square(column, row);
         if *rgba == [0.0; 4] {
             return self.bare[square];
         }
-        let behind = self.backdrop.colors[square];
+        let behind = self.background.colors[square];
         let light = std::array::from_fn(|k| self.gain * rgba[k] + (1.0 - rgba[3]) * behind[k]);
         compose(self.curve.as_ref(), light)
     }
@@ -136,7 +136,7 @@ impl Composer {
     /// Adjoint: the gradient of the display values to that of the premultiplied pixel.
     #[inline]
     pub fn adjoint(&self, composed: &Composed, gradient: [f32; 3], column: usize, row: usize) -> [f32; 4] {
-        let behind = self.backdrop.colors[self.square(column, row)];
+        let behind = self.background.colors[self.square(column, row)];
         let light: [f32; 3] = std::array::from_fn(|k| gradient[k] * composed.slope[k]);
         let alpha = -(light[0] * behind[0] + light[1] * behind[1] + light[2] * behind[2]);
         [light[0] * self.gain, light[1] * self.gain, light[2] * self.gain, alpha]

@@ -71,12 +71,12 @@ pub fn coverage_loss(view: f32, reference: f32) -> (f32, f32) {
 pub struct Reference {
     /// Pixels along a side.
     pub size: usize,
-    /// size² display values in front of the backdrop, and coverage.
+    /// size² display values in front of the background, and coverage.
     pub pixels: Vec<[f32; 4]>,
 }
 
 impl Reference {
-    /// Puts a premultiplied linear picture of size² pixels in front of a backdrop.
+    /// Puts a premultiplied linear picture of size² pixels in front of a background.
     pub fn new(mut pixels: Vec<[f32; 4]>, size: usize, composer: &Composer) -> Self {
         pixels.par_chunks_mut(size.max(1)).enumerate().for_each(|(row, pixels)| {
             for (column, pixel) in pixels.iter_mut().enumerate() {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Backgrounds that models are judged before: the paper's, then "any".
 pub const BACKGROUNDS: [&str; 4] = ["black", "white", "grey", "0.9,0.1,0.2"];
 
-/// How well a result agrees, before one background or at one size.
+/// How well a result agrees, on one background or at one size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Score {
     /// The background; for pictures full, half or quarter.
@@ -58,18 +58,18 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Before black, or at full size.
+    /// On black, or at full size.
     pub fn psnr(&self) -> f64 {
         self.scores.first().map_or(f64::NAN, |score| score.psnr)
     }
 
-    /// The mean over all but the first: before other backgrounds, or minified.
+    /// The mean over all but the first: on other backgrounds, or minified.
     pub fn psnr_elsewhere(&self) -> f64 {
         let others = self.scores.get(1..).unwrap_or_default();
         others.iter().map(|score| score.psnr).sum::<f64>() / others.len() as f64
     }
 
-    /// Before black, or at full size.
+    /// On black, or at full size.
     pub fn ms_ssim(&self) -> Option<f64> {
         self.scores.first().and_then(|score| score.ms_ssim)
     }

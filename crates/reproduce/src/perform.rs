@@ -13,7 +13,7 @@ use crate::variants::{VariantsOptions, compare_variants};
 use image::imageops::FilterType;
 use parbake::{
     BakeError, BakeOptions, BakeReport, EvaluateOptions, ImageOptions, Limits, PictureUv, UvMode, Watcher,
-    bake, bake_image, compress, encode_png, evaluate_before, laid_out, read_image, read_model, subdivided,
+    bake, bake_image, compress, encode_png, evaluate_on, laid_out, read_image, read_model, subdivided,
     wall_pair, write_file, write_glb,
 };
 use parbake_metric::{Rgb, mean_squared_error, ms_ssim, psnr_from_mse};
@@ -124,7 +124,7 @@ impl<O: Observer> Run<'_, O> {
         let path = self.place.join(MODEL);
         write_glb(&path, model)?;
         let sound = &report.uv.orientations;
-        let history = report.unfold.as_ref().and_then(|unfold| unfold.convergence.as_ref());
+        let history = report.uv_stage.as_ref().and_then(|uv_stage| uv_stage.convergence.as_ref());
         Ok(Outcome {
             seconds: self.begin.elapsed().as_secs_f64(),
             bytes: std::fs::metadata(&path).map_or(0, |data| data.len()),
@@ -140,7 +140,7 @@ impl<O: Observer> Run<'_, O> {
     /// Compares the file that was written.
     fn compared(&self, high: &Model, mut outcome: Outcome) -> Result<Outcome, BakeError> {
         let low = model(&self.place.join(MODEL))?;
-        let found = evaluate_before(high, &low, self.evaluate, &BACKGROUNDS, &self.stop)?;
+        let found = evaluate_on(high, &low, self.evaluate, &BACKGROUNDS, &self.stop)?;
         outcome.scores = (found.iter())
             .map(|e| Score { seen: e.options.background.clone(), psnr: e.mean.psnr, ms_ssim: e.mean.ms_ssim })
             .collect();

@@ -2,8 +2,8 @@
 //! agree with the high-poly's.
 //!
 //! ```text
-//! mended low-poly ─┬ provisional texture (projected) ─┬ fit ─ positions, turned normals
-//! high-poly ───────┴ small smooth views ──────────────┘
+//! repaired low-poly ─┬ provisional texture (projected) ─┬ fit ─ positions, turned normals
+//! high-poly ─────────┴ small smooth views ──────────────┘
 //! ```
 //!
 //! Contract: what is not moved keeps its position and its normal to the bit; triangles stay in their

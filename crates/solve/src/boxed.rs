@@ -10,6 +10,15 @@ use rayon::prelude::*;
 /// Rounds of the active set: more change nothing that eight bits would show.
 const ROUNDS: usize = 3;
 
+/// 1 in lanes that may move, 0 in those that are held: lanes on a face of the box, or beyond it, that the residual
+/// pushes outwards.
+pub fn free_lanes(values: &[Vec4], residual: &[Vec4]) -> Vec<Vec4> {
+    let is_free = |x: f32, r: f32| f32::from(!(x <= 0.0 && r < 0.0 || x >= 1.0 && r > 0.0));
+    (values.par_iter().zip(residual))
+        .map(|(x, r)| Vec4::from_array(std::array::from_fn(|k| is_free(x[k], r[k]))))
+        .collect()
+}
+
 /// Moves `values` towards the solution of `A d = b` for their change d, `b` being the matrix's own
 /// right-hand side; values end within [0, 1]. `solve` solves `A d = r` from zero, for a right-hand side r and
 /// lanes that are free (1) or held (0).
@@ -19,16 +28,7 @@ pub fn solve_in_box(
     solve: impl Fn(&[Vec4], &[Vec4]) -> (Vec<Vec4>, Outcome),
 ) -> Outcome {
     let right = matrix.right();
-    // A lane on a face that is pushed outwards is held from the beginning.
-    let mut free: Vec<Vec4> = values
-        .par_iter()
-        .zip(&right)
-        .map(|(x, b)| {
-            Vec4::from(std::array::from_fn::<f32, 4, _>(|k| {
-                f32::from(!(x[k] <= 0.0 && b[k] < 0.0 || x[k] >= 1.0 && b[k] > 0.0))
-            }))
-        })
-        .collect();
+    let mut free = free_lanes(values, &right);
     let begin = values.to_vec();
     let mut total = Outcome { steps: 0, reduction: 1.0 };
     let mut residual = right.clone();

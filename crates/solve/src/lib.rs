@@ -3,7 +3,8 @@
 //! ```text
 //! grid                 a square of texels, summed by bands of rows in a fixed order
 //! stencil              the nine-point normal matrix of a bilinear texture
-//! conjugate_gradient   its solver, boxed: its solver within [0, 1]
+//! operator             what conjugate gradients ask of a matrix
+//! conjugate_gradient   the solver of all of them, boxed: solutions within [0, 1]
 //! thin_plate           resistance to bending, by its gradient
 //! adam                 first-order descent
 //! random               numbers from counters
@@ -13,6 +14,7 @@ pub mod adam;
 pub mod boxed;
 pub mod conjugate_gradient;
 pub mod grid;
+pub mod operator;
 pub mod random;
 pub mod stencil;
 pub mod thin_plate;

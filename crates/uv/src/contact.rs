@@ -19,7 +19,7 @@
 //! - Pairs nearer than 2⁻²² at the start (T-junctions, charts that touch, slivers) have
 //!   their three points fixed: they never come loose, and nothing crosses there.
 //! - Edges that cross at the start ([`Contact::crossings`]) are a fault that this module
-//!   cannot mend: these pairs of edges may do as they like, all others are kept.
+//!   cannot repair: these pairs of edges may do as they like, all others are kept.
 //! - Boundary vertices on the border or outside of the square keep that coordinate.
 //!
 //! Charts that share a point count as one chart here, for no gutter fits between them.

@@ -8,17 +8,20 @@
 //! the blend f of two mip levels taken outside the square: an upper bound of the trilinear
 //! fetch's error (Jensen) whose normal matrix `Σ_l Dˡᵀ Aˡ Dˡ` needs nine points a texel and
 //! level. The last sum, over neighbouring texels, settles texels that no sample reaches.
-//! Solved by conjugate gradients with the diagonal as preconditioner, each channel with its
-//! own step lengths (Hestenes and Stiefel 1952).
+//! Solved by the conjugate gradients of `parbake_solve` with the diagonal as preconditioner, each channel with
+//! its own step lengths.
 //!
 //! The derivative for texture coordinates is in `residual.rs`. Results do not depend on the
 //! number of threads.
 
-use crate::normal_equations::NormalEquations;
+use crate::normal_equations::{NormalEquations, Room};
 pub use crate::parameterized::ParameterizedSignal;
 use crate::rounding::rounded;
 use glam::Vec4;
 use parbake_image::FloatImage;
+use parbake_solve::boxed::free_lanes;
+use parbake_solve::conjugate_gradient::{Stop, descend, squared_norm};
+use parbake_solve::operator::{Inner, Lanes, Operator};
 use rayon::prelude::*;
 
 /// The texture twice as fine, each texel four times.
@@ -105,14 +108,7 @@ impl NormalEquations {
             texture.texels.par_iter_mut().for_each(|t| *t = t.clamp(Vec4::ZERO, Vec4::ONE));
             // A lane at the border stays there while the error wants it further out.
             let slope = self.residual(&texture.texels, &mut self.room());
-            let held =
-                |value: f32, slope: f32| (value <= 0.0 && slope <= 0.0) || (value >= 1.0 && slope >= 0.0);
-            let free: Vec<Vec4> = (texture.texels.par_iter().zip(&slope))
-                .map(|(t, r)| {
-                    let (t, r) = (t.to_array(), r.to_array());
-                    Vec4::from_array(std::array::from_fn(|k| if held(t[k], r[k]) { 0.0 } else { 1.0 }))
-                })
-                .collect();
+            let free = free_lanes(&texture.texels, &slope);
             texture = self.solve(texture, solve, Some(&free));
         }
         texture.texels.par_iter_mut().for_each(|t| *t = t.clamp(Vec4::ZERO, Vec4::ONE));
@@ -121,63 +117,53 @@ impl NormalEquations {
 
     /// `free` holds 0 in lanes that must stay.
     fn solve(&self, mut texture: FloatImage<Vec4>, solve: &Solve, free: Option<&[Vec4]>) -> FloatImage<Vec4> {
-        let size = self.size;
         let x = &mut texture.texels;
-        let mask = |i: usize| free.map_or(Vec4::ONE, |f| f[i]);
-        let weighted = |r: &[Vec4]| -> Vec4 {
-            let rows: Vec<Vec4> = (r.par_chunks(size).zip(self.inverse.par_chunks(size)))
-                .map(|(r, m)| r.iter().zip(m).map(|(r, m)| *r * *r * *m).sum())
-                .collect();
-            sum(&rows)
-        };
-        let room = &mut self.room();
-        let mut r = self.residual(x, room);
-        r.par_iter_mut().enumerate().for_each(|(i, r)| *r *= mask(i));
-        let mut p: Vec<Vec4> = r.par_iter().zip(&self.inverse).map(|(r, m)| *r * *m).collect();
-        let mut rho = weighted(&r);
-        // Measured against the right-hand side, not the start: a good start needs fewer steps.
-        let enough = weighted(&self.right) * (solve.tolerance * solve.tolerance) as f32;
-        for _ in 0..solve.steps {
-            if rho.cmple(enough).all() {
-                break;
-            }
-            let q = self.product(&p, room);
-            let dots: Vec<Vec4> = (p.par_chunks(size).zip(q.par_chunks(size)))
-                .map(|(p, q)| p.iter().zip(q).map(|(a, b)| *a * *b).sum())
-                .collect();
-            let alpha = ratio(rho, sum(&dots));
-            let gain = f64::from((alpha * rho).element_sum());
-            let dots: Vec<Vec4> = (x.par_chunks_mut(size).zip(r.par_chunks_mut(size)))
-                .enumerate()
-                .map(|(row, (x, r))| {
-                    let mut sum = Vec4::ZERO;
-                    for (k, i) in (row * size..(row + 1) * size).enumerate() {
-                        x[k] += p[i] * alpha;
-                        r[k] -= q[i] * mask(i) * alpha;
-                        sum += r[k] * r[k] * self.inverse[i];
-                    }
-                    sum
-                })
-                .collect();
-            if gain < solve.least_gain {
-                break;
-            }
-            let next = sum(&dots);
-            let beta = ratio(next, rho);
-            p.par_iter_mut().zip(&r).zip(&self.inverse).for_each(|((p, r), m)| *p = *r * *m + *p * beta);
-            rho = next;
+        let mut operator = AllLevels { equations: self, room: self.room() };
+        let mut r = self.residual(x, &mut operator.room);
+        if let Some(free) = free {
+            r.par_iter_mut().zip(free).for_each(|(r, free)| *r *= *free);
         }
+        let rho = squared_norm(&operator, &r);
+        // Measured against the right-hand side, not the start: a good start needs fewer steps.
+        let all = squared_norm(&operator, &self.right).0;
+        let enough = Lanes(all * (solve.tolerance * solve.tolerance) as f32);
+        let stop = Stop { steps: solve.steps, enough, least_gain: solve.least_gain };
+        descend(&mut operator, x, &mut r, rho, free, &stop);
         texture
     }
 }
 
-fn ratio(a: Vec4, b: Vec4) -> Vec4 {
-    let least = Vec4::splat(1e-30);
-    Vec4::select(b.cmpgt(least), a / b.max(least), Vec4::ZERO)
+/// The normal equations of all mip levels as one matrix, preconditioned by its diagonal. All channels share it.
+struct AllLevels<'a> {
+    equations: &'a NormalEquations,
+    room: Room,
 }
 
-fn sum(rows: &[Vec4]) -> Vec4 {
-    rows.iter().map(|v| v.as_dvec4()).sum::<glam::DVec4>().as_vec4()
+impl Operator for AllLevels<'_> {
+    type Inner = Lanes;
+
+    fn width(&self) -> usize {
+        self.equations.size
+    }
+
+    fn product(&mut self, p: &[Vec4], q: &mut Vec<Vec4>) -> Lanes {
+        self.equations.product(p, &mut self.room);
+        self.room.exchange(q);
+        let size = self.equations.size;
+        let rows: Vec<Lanes> = (p.par_chunks(size).zip(q.par_chunks(size)))
+            .map(|(p, q)| {
+                let mut sum = Lanes::ZERO;
+                p.iter().zip(q).for_each(|(p, q)| sum.add(*p, *q));
+                sum
+            })
+            .collect();
+        Lanes::total(&rows)
+    }
+
+    #[inline(always)]
+    fn precondition(&self, i: usize, r: Vec4) -> Vec4 {
+        r * self.equations.inverse[i]
+    }
 }
 
 #[cfg(test)]

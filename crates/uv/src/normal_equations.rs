@@ -97,6 +97,13 @@ pub(crate) struct Room {
     products: Vec<Vec<Vec4>>,
 }
 
+impl Room {
+    /// Hands the last product out, in exchange for a vector of its length.
+    pub fn exchange(&mut self, vector: &mut Vec<Vec4>) {
+        std::mem::swap(&mut self.products[0], vector);
+    }
+}
+
 /// What a run of triangles adds to the matrices of the `count` levels.
 fn patches(mapped: &ParameterizedSignal, run: usize, size: usize, count: usize) -> Vec<Patch> {
     let corners = mapped.runs.own_points(run).points.iter().map(|&i| mapped.points[i as usize]);

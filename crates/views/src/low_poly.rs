@@ -43,7 +43,7 @@ pub fn lit(model: &Model) -> (Model, Vec<String>) {
     }
     if had && turned > 0 {
         warnings.push(format!(
-            "{}: {turned} of {} triangles had a normal that looks to their back, where light makes them \
+            "{}: {turned} of {} triangles had a vertex normal that points to their back side, which renders \
              black; it was turned",
             model.name,
             model.mesh.triangles.len()
@@ -121,11 +121,11 @@ mod tests {
         let mut turned = sound.clone();
         ensure_normals(&mut turned.mesh);
         turned.mesh.normals.iter_mut().for_each(|n| *n = -*n);
-        let (mended, warnings) = lit(&turned);
-        assert!(warnings.len() == 1 && warnings[0].contains("looks to their back"), "{warnings:?}");
-        for (index, triangle) in mended.mesh.triangles.iter().enumerate() {
-            let face = mended.mesh.area_normal(index);
-            let looks_back = |&v: &u32| mended.mesh.normals[v as usize].dot(face) < 0.0;
+        let (repaired, warnings) = lit(&turned);
+        assert!(warnings.len() == 1 && warnings[0].contains("points to their back side"), "{warnings:?}");
+        for (index, triangle) in repaired.mesh.triangles.iter().enumerate() {
+            let face = repaired.mesh.area_normal(index);
+            let looks_back = |&v: &u32| repaired.mesh.normals[v as usize].dot(face) < 0.0;
             assert!(!triangle.iter().any(looks_back), "triangle {index}");
         }
     }

@@ -22,7 +22,7 @@ pub(super) fn round(layout: &mut Layout) -> Result<(), AtlasError> {
     let around = triangles_of_points(layout);
     for _ in 0..4 {
         for &t in &left {
-            mend(layout, t as usize, &around, &upright);
+            repair(layout, t as usize, &around, &upright);
         }
         left = spoilt(layout);
         if left.is_empty() {
@@ -49,7 +49,7 @@ fn triangles_of_points(layout: &Layout) -> Vec<Vec<u32>> {
 }
 
 /// Tries the numbers next to a corner's for one that sets all its triangles upright.
-fn mend(layout: &mut Layout, t: usize, around: &[Vec<u32>], upright: &[bool]) {
+fn repair(layout: &mut Layout, t: usize, around: &[Vec<u32>], upright: &[bool]) {
     for p in layout.triangles[t].map(|p| p as usize) {
         let before = layout.points[p];
         let bad = |layout: &Layout| {

@@ -26,7 +26,7 @@ pub(super) struct Found {
 
 /// Mirrors charts back and cuts folded ones. Afterwards all triangles but the `fresh`
 /// ones have a positive area.
-pub(super) fn unfold(surface: &Surface, corners: &mut Corners) -> Found {
+pub(super) fn cut_along_folds(surface: &Surface, corners: &mut Corners) -> Found {
     let mut found = Found::default();
     let delivered = &surface.delivered;
     for triangles in by_chart(delivered) {

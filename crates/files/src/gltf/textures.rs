@@ -9,8 +9,8 @@ use super::json;
 use super::json_material::{TextureInfo, TextureTransform};
 use super::uri::{Uri, parse};
 use super::uv_sets::{self, UvSets};
-use crate::FileError;
 use crate::context::{NamedBytes, Textures};
+use crate::{FileError, WarningKind};
 use parbake_model::glam::Vec2;
 use parbake_model::{Image, TextureSlot, UvTransform, Wrap};
 use std::collections::HashMap;
@@ -75,16 +75,18 @@ impl<'a, 'd> TextureReader<'a, 'd> {
         let source = texture.source.or(source_of(&extensions.webp)).or(source_of(&extensions.basisu));
         let Some(source) = source else {
             let index = info.index;
-            buffers
-                .context
-                .warn(format!("texture {index} has no image that can be read; {here} goes without it"));
+            buffers.context.warn_of(
+                WarningKind::MissingTexture,
+                format!("texture {index} has no image that can be read; {here} goes without it"),
+            );
             return Ok(None);
         };
         let Some(image) = self.image(source, &format!("/textures/{}/source", info.index))? else {
             // Its file was named when it was looked for; here the material that misses it is.
-            buffers
-                .context
-                .warn(format!("{here}: its picture is missing; {} goes without it", named(document, here)));
+            buffers.context.warn_of(
+                WarningKind::MissingTexture,
+                format!("{here}: its picture is missing; {} goes without it", named(document, here)),
+            );
             return Ok(None);
         };
         Ok(Some(TextureSlot {
@@ -138,7 +140,10 @@ impl<'a, 'd> TextureReader<'a, 'd> {
             Ok(Uri::Relative(path)) => match self.buffers.external(&path, pointer(format!("{here}/uri")))? {
                 Ok(bytes) => bytes,
                 Err(FileError::Read { source, .. }) => {
-                    context.warn(format!("image {source}; the material goes without it"));
+                    context.warn_of(
+                        WarningKind::MissingTexture,
+                        format!("image {source}; the material goes without it"),
+                    );
                     return Ok(None);
                 }
                 Err(other) => return Err(other),
@@ -148,7 +153,10 @@ impl<'a, 'd> TextureReader<'a, 'd> {
                 return Err(context.invalid(pointer(format!("{here}/uri")), reason));
             }
             Err(reason) => {
-                context.warn(format!("image {name:?}: {reason}; the material goes without it"));
+                context.warn_of(
+                    WarningKind::MissingTexture,
+                    format!("image {name:?}: {reason}; the material goes without it"),
+                );
                 return Ok(None);
             }
         };

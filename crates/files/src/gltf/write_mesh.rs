@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 /// The primitives of a model's mesh; `used` are the materials that its triangles name, which
 /// primitives name by their places there.
 pub fn primitives(binary: &mut Binary, model: &Model, used: &[usize]) -> Vec<Value> {
-    let mesh = mended(model);
+    let mesh = repaired(model);
     let sets = [&mesh.uvs, &mesh.uvs1].map(|uvs| short_uvs_pay(uvs.len()) && uvs.iter().all(is_short));
     match runs(&mesh, stride(&mesh, sets)) {
         None => whole(binary, &mesh, sets, used),
@@ -52,7 +52,7 @@ fn in_runs(binary: &mut Binary, mesh: &Mesh, sets: [bool; 2], runs: &[Run]) -> V
 /// The mesh as it is written: normals and tangents of unit length, texture coordinates that a
 /// material needs and the mesh lacks zeros, as
 /// [`Mesh::corner_uvs`](parbake_model::Mesh::corner_uvs) has them.
-fn mended(model: &Model) -> Mesh {
+fn repaired(model: &Model) -> Mesh {
     let mut mesh = model.mesh.clone();
     mesh.normals.iter_mut().for_each(|n| *n = unit(*n).unwrap_or(Vec3::Y));
     // Tangents without normals mean nothing.

@@ -162,7 +162,7 @@ mod tests {
     use parbake_model::glam::Vec3;
     use std::path::Path;
 
-    fn run(text: &str) -> (Mesh, Vec<String>) {
+    fn run(text: &str) -> (Mesh, Vec<crate::Warning>) {
         let limits = Limits::default();
         let context = Context::new(Path::new("a.obj"), &NoResources, &limits, Textures::Decode);
         let statements = statements::read(text.as_bytes(), &context).unwrap();
@@ -190,7 +190,7 @@ mod tests {
         assert_eq!(mesh.normals[0], Vec3::X);
         assert_eq!(mesh.normals[mesh.triangles[1][0] as usize], Vec3::Z);
         assert_eq!(mesh.uvs[mesh.triangles[1][0] as usize], Vec2::ZERO);
-        assert!(warnings[0].contains("3 face corners"), "{warnings:?}");
+        assert!(warnings[0].text.contains("3 face corners"), "{warnings:?}");
     }
 
     /// Protects speed and correctness where one position has thousands of vertices.

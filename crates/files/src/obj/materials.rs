@@ -14,7 +14,7 @@ use super::mtl::{self, Map, Section};
 use crate::context::{Context, NamedBytes, Textures};
 use crate::search::{is_absolute, is_refusal};
 use crate::words::shown;
-use crate::{FileError, Place};
+use crate::{FileError, Place, WarningKind};
 use parbake_model::glam::Vec2;
 use parbake_model::{AlphaMode, Image, Material, TextureSlot, UvTransform, Wrap};
 use std::collections::HashMap;
@@ -47,7 +47,10 @@ pub(super) fn build(
             None if name.is_empty() => material.name = "default".into(),
             // Said once and not for each material, where there is no library at all.
             None if sections.is_empty() => {}
-            None => context.warn(format!("material {name:?} is in no material library; it becomes white")),
+            None => context.warn_of(
+                WarningKind::MissingMaterial,
+                format!("material {name:?} is in no material library; it becomes white"),
+            ),
         }
         materials.push(material);
     }
@@ -101,8 +104,10 @@ fn read_libraries(libraries: &[Vec<u8>], context: &Context<'_>) -> Result<HashMa
             for name in &several {
                 match read_beside(name, context)? {
                     Some(bytes) => add(name, &bytes),
-                    None => context
-                        .warn(format!("material library {name:?} was not found; put it beside the model")),
+                    None => context.warn_of(
+                        WarningKind::MissingMaterial,
+                        format!("material library {name:?} was not found; put it beside the model"),
+                    ),
                 }
             }
         }
@@ -229,9 +234,12 @@ impl Pictures<'_, '_> {
         };
         let Some(image) = image else {
             let name = &map.file;
-            self.context.warn(format!(
-                "material {material:?}: picture {name:?} was not found; the material goes without it"
-            ));
+            self.context.warn_of(
+                WarningKind::MissingTexture,
+                format!(
+                    "material {material:?}: picture {name:?} was not found; the material goes without it"
+                ),
+            );
             return Ok(None);
         };
         let wrap = [if map.clamp { Wrap::Clamp } else { Wrap::Repeat }; 2];
@@ -294,7 +302,7 @@ mod tests {
         }
     }
 
-    type Built = Result<(Vec<Material>, Vec<Image>, Vec<String>), FileError>;
+    type Built = Result<(Vec<Material>, Vec<Image>, Vec<crate::Warning>), FileError>;
 
     fn run(resources: &dyn Resources, names: &[&str], libraries: &[&str]) -> Built {
         let limits = Limits::default();
@@ -338,7 +346,7 @@ mod tests {
         assert_eq!(materials[0].normal_scale, 0.5);
         assert_eq!(materials[1].normal_texture, None);
         assert_eq!(materials[2].normal_texture.map(|t| t.image), Some(1));
-        assert!(warnings.len() == 1 && warnings[0].contains("h.png"), "{warnings:?}");
+        assert!(warnings.len() == 1 && warnings[0].text.contains("h.png"), "{warnings:?}");
     }
 
     /// Protects models with missing parts: warnings that name them, and no error.

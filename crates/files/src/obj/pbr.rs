@@ -85,7 +85,7 @@ mod tests {
         }
     }
 
-    fn run(section: &str) -> (Material, usize, Vec<String>) {
+    fn run(section: &str) -> (Material, usize, Vec<crate::Warning>) {
         let text = b"mtllib l.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1";
         let shelf = Shelf(format!("newmtl a\n{section}"));
         let mut loaded = read_obj_bytes(Path::new("a.obj"), text, &shelf, &Limits::default()).unwrap();
@@ -100,7 +100,7 @@ mod tests {
         let (read, _, warnings) = run("Pr 0.25\nPm 3\nKe 0 1 0.5\nmap_Ke gone.png");
         assert_eq!((read.roughness, read.metallic, read.emissive_strength), (0.25, 1.0, 1.0));
         assert!((read.emissive[2] - 0.214_041).abs() < 1e-6 && read.emissive[..2] == [0.0, 1.0], "{read:?}");
-        assert!(warnings.len() == 1 && warnings[0].contains("gone.png"), "{warnings:?}");
+        assert!(warnings.len() == 1 && warnings[0].text.contains("gone.png"), "{warnings:?}");
         let (read, ..) = run("Pr nan\nPm -1\nKe 2 1 nan\nmap_d x.png");
         assert_eq!((read.roughness, read.metallic, read.alpha_mode), (1.0, 0.0, AlphaMode::Mask));
         assert!((read.emissive_strength - 4.953_846).abs() < 1e-5, "{read:?}");
@@ -136,7 +136,7 @@ mod tests {
         ] {
             let (read, images, warnings) = run(&format!("Pr 0.5\nPm 0.25\n{section}"));
             assert_eq!((read.metallic, read.roughness, images), (0.25, 0.5, 0), "{section}");
-            assert!(warnings.len() == 1 && warnings[0].contains("Pm and Pr count"), "{warnings:?}");
+            assert!(warnings.len() == 1 && warnings[0].text.contains("Pm and Pr count"), "{warnings:?}");
         }
     }
 }

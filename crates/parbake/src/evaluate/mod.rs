@@ -47,9 +47,9 @@ pub fn evaluate(
     high: &Model,
     low: &Model,
     options: &EvaluateOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<Evaluation, BakeError> {
-    let mut all = evaluate_before(high, low, options, &[&options.background], watcher)?;
+    let mut all = evaluate_on(high, low, options, &[&options.background], watcher)?;
     Ok(all.remove(0))
 }
 
@@ -58,12 +58,12 @@ pub fn evaluate(
 ///
 /// # Errors
 /// As of [`evaluate`].
-pub fn evaluate_before(
+pub fn evaluate_on(
     high: &Model,
     low: &Model,
     options: &EvaluateOptions,
     backgrounds: &[&str],
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<Vec<Evaluation>, BakeError> {
     let views = evaluate_each(high, &[low], options, backgrounds, watcher)?;
     let of = |(k, &name): (usize, &&str)| {
@@ -84,7 +84,7 @@ pub(crate) fn evaluate_each(
     low: &[&Model],
     options: &EvaluateOptions,
     backgrounds: &[&str],
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<Vec<Vec<Vec<ViewFigures>>>, BakeError> {
     let color =
         |&name: &&str| EvaluateOptions { background: name.into(), ..options.clone() }.checked_background();

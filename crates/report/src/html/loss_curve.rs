@@ -12,7 +12,7 @@ const MOVES: [(&str, &str); 6] = [
     ("normal", "normals"),
     ("rounding", "rounding to 8 bits"),
     ("delivered", "coordinates as delivered"),
-    ("mended", "UVs repaired"),
+    ("repaired", "UVs repaired"),
 ];
 
 /// The chart with its legend, or a sentence when nothing was measured.

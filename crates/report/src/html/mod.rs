@@ -42,7 +42,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 ///
 /// Runs on rayon's current thread pool, for some seconds; the watcher is told of
 /// progress as [`Stage::Evaluate`] and cannot stop it.
-pub fn html_report(high: &Model, baked: &Baked, watcher: &impl Watcher) -> Result<String, BakeError> {
+pub fn html_report(high: &Model, baked: &Baked, watcher: &dyn Watcher) -> Result<String, BakeError> {
     let (done, total) = (AtomicUsize::new(0), parbake::COMPARED_VIEWS + pictures::SIDES);
     let tick = || {
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;

@@ -118,11 +118,11 @@ fn header(name: &str, high: &Model, report: &BakeReport, compared: &Comparison) 
         let [mean, most] = shape.moved.map(|share| 100.0 * f64::from(share));
         facts.push(("vertices", format!("moved {mean:.2} % of the length, {most:.2} % at most")));
     }
-    if let Some([before, after]) = report.depth.as_ref().and_then(|depth| depth.misplaced) {
+    if let Some([before, after]) = report.parallax_maps.as_ref().and_then(|depth| depth.misplaced) {
         let percent = |share: f64| format!("{:.1} %", 100.0 * share);
         facts.push(("outline", format!("{} → {} of its pixels wrong", percent(before), percent(after))));
     }
-    if report.depth.is_some() {
+    if report.parallax_maps.is_some() {
         let options = &report.options;
         facts.push(("parallax", format!("order {}, {}²", options.parallax_order, options.parallax_size)));
     }

@@ -56,12 +56,12 @@ pub struct Used {
 impl Used {
     /// What this run used.
     pub fn of(report: &BakeReport) -> Self {
-        let unfold = report.unfold.as_ref();
+        let uv_stage = report.uv_stage.as_ref();
         let own = report.work == Work::Compress;
         Self {
             views: Some(report.views),
-            gutter: unfold.map(|unfold| unfold.gutter),
-            uv_steps: unfold.map(|unfold| unfold.steps).or(Some(0)),
+            gutter: uv_stage.map(|uv_stage| uv_stage.gutter),
+            uv_steps: uv_stage.map(|uv_stage| uv_stage.steps).or(Some(0)),
             more_triangles: Some(if own {
                 report.low_triangles.saturating_sub(report.high_triangles)
             } else {
@@ -93,7 +93,7 @@ pub fn settings(options: &BakeOptions, work: Work, used: Used) -> String {
                 plain(&used.gutter.unwrap_or_else(|| options.gutter_texels()).into())
             )),
             "silhouette" => Some(options.silhouette_weight().to_string()),
-            "outlier" => Some(plan.schedule.outlier.to_string()),
+            "robust_scale" => Some(plan.schedule.robust_scale.to_string()),
             "more_triangles" => Some(of_at_most(used.more_triangles, options.more_triangles())),
             "uv_steps" => Some(of_at_most(used.uv_steps, options.settled_uv_steps(work))),
             "threads" if options.threads == 0 => Some("one a core".into()),
@@ -137,12 +137,15 @@ mod tests {
         let options = BakeOptions {
             preset: Preset::Fast,
             keep_normals: true,
-            reach: 0.1,
+            max_distance: 0.1,
             time_budget: Some(2.0),
             ..BakeOptions::default()
         };
         let default = BakeOptions::default();
-        assert_eq!(flags(&options, &default), " --keep-normals --preset fast --reach 0.1 --time-budget 2");
+        assert_eq!(
+            flags(&options, &default),
+            " --keep-normals --max-distance 0.1 --preset fast --time-budget 2"
+        );
         assert_eq!(flags(&default, &default), "");
     }
 

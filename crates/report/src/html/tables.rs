@@ -79,7 +79,7 @@ pub fn texels(report: &BakeReport) -> String {
             "missed",
             report.missed_texels,
             covered,
-            "of those projection found no high-poly for within its reach",
+            "of those projection found no high-poly for within --max-distance",
         ),
         (
             "overlapping",

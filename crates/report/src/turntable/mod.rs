@@ -76,7 +76,7 @@ pub fn turntable(
     options: &TurntableOptions,
     format: FilmFormat,
     file: &mut (dyn Write + Send),
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<(), BakeError> {
     options.check()?;
     options.check_size(1 + lows.len(), format)?;
@@ -109,7 +109,7 @@ pub fn write_turntable(
     lows: &[&Model],
     options: &TurntableOptions,
     format: FilmFormat,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<(), BakeError> {
     write_streamed(path, |file| match turntable(high, lows, options, format, file, watcher) {
         Err(BakeError::Film { source }) => Err(FileError::Write { path: path.into(), source }.into()),
@@ -122,7 +122,7 @@ fn wind(
     set: &Set,
     options: &TurntableOptions,
     mut reel: Box<dyn Reel + '_>,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<(), BakeError> {
     let samples = (options.resolution * options.supersample).pow(2);
     let batch = (LIVE_SAMPLES / samples).clamp(1, rayon::current_num_threads());

@@ -16,10 +16,10 @@ use parbake::BakeOptions;
 use parbake_report::page::charts::{Bar, BarChart, BarGroup, LineChart, Series};
 
 /// How to read Figure 16.
-pub const LEAD_PARTS: &str = "LOD-3, before black: decibels over the fit of textures alone. SH without vertices has no \
+pub const LEAD_PARTS: &str = "LOD-3, on black: decibels over the fit of textures alone. SH without vertices has no \
 cutout; all of it has one. The paper's gains over NVDiffModeling are ticks, where they are known.";
 /// How to read Figure 17.
-pub const LEAD_ORDERS: &str = "LOD-3, before black, by the order of the spherical harmonics: SH alone, without cutout, \
+pub const LEAD_ORDERS: &str = "LOD-3, on black, by the order of the spherical harmonics: SH alone, without cutout, \
 on kept vertices and coordinates; and everything together on the first model.";
 
 /// What moves, from little to much.

@@ -48,7 +48,7 @@ pub fn draw(scope: &Scope, results: &Results) -> Drawn {
         "paper's gain of UV",
         "bytes",
     ];
-    let mut table = Table::new("The same model with a smaller texture, before black", &columns);
+    let mut table = Table::new("The same model with a smaller texture, on black", &columns);
     let mut gains = Vec::new();
     for &size in scope.sizes() {
         for model in &scope.catalogue.models {

@@ -1,5 +1,5 @@
-//! Tables 8, 9 and 10: low-polys of three levels, three texture sizes, before black as in the
-//! paper, and before other backgrounds, where carving with black texels shows.
+//! Tables 8, 9 and 10: low-polys of three levels, three texture sizes, on black as in the
+//! paper, and on other backgrounds, where carving with black texels shows.
 
 use super::drawn::Drawn;
 use super::methods::Moves;
@@ -13,7 +13,7 @@ use crate::scope::Scope;
 use crate::table::{Cell, Table};
 
 /// How to read them.
-pub const LEAD: &str = "PSNR in dB and MS-SSIM, before black. Each column of ours stands before the paper's that comes \
+pub const LEAD: &str = "PSNR in dB and MS-SSIM, on black. Each column of ours stands before the paper's that comes \
 closest: projection beside Blender's ray casting, the fit of textures with fixed coordinates beside NVDiffModeling. \
 Gains are over the fixed coordinates of the same row. The paper's setting is not fully known: compare gains, not \
 absolute decibels.";
@@ -31,7 +31,7 @@ pub fn experiments(scope: &Scope, level: Level) -> Vec<Experiment> {
 
 /// Draws the tables of a level; `number` is the paper's.
 pub fn draw(scope: &Scope, results: &Results, level: Level, number: u8) -> Drawn {
-    let black = format!("{}, before black", level.name());
+    let black = format!("{}, on black", level.name());
     let mut head = vec!["model, texture".to_string()];
     for moves in Moves::LEVELS {
         head.push(moves.label().into());
@@ -43,7 +43,7 @@ pub fn draw(scope: &Scope, results: &Results, level: Level, number: u8) -> Drawn
     let mut table = Table { caption: black, columns: head, rows: Vec::new() };
     let others =
         ["model, texture", "fixed UV", "UV, SH", "plain glTF", "all", "gain of plain", "gain of all"];
-    let mut elsewhere = Table::new(&format!("{}, mean before white, grey and red", level.name()), &others);
+    let mut elsewhere = Table::new(&format!("{}, mean on white, grey and red", level.name()), &others);
     let mut gains = Vec::new();
     for &size in scope.sizes() {
         for model in &scope.catalogue.models {
@@ -58,10 +58,10 @@ pub fn draw(scope: &Scope, results: &Results, level: Level, number: u8) -> Drawn
                 }
             }
             let fixed = made(Moves::Textures);
-            let mut row_gain = |of: fn(&Outcome) -> f64, moves: Moves, before: &str| {
+            let mut row_gain = |of: fn(&Outcome) -> f64, moves: Moves, background: &str| {
                 let gain = gain(of, made(moves), fixed);
                 let what = if moves == Moves::All { "all" } else { "plain" };
-                let key = format!("{} {} {size} {what} before {before}", model.name, level.name());
+                let key = format!("{} {} {size} {what} on {background}", model.name, level.name());
                 gains.extend(gain.map(|gain| (key, gain)));
                 Cell::or_missing(gain.map(Cell::Gain))
             };

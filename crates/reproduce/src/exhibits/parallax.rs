@@ -14,7 +14,7 @@ use crate::variants::{VariantFigures, VariantsOptions};
 use parbake::{BakeOptions, Convention, ShapeMode};
 
 /// How to read it.
-pub const LEAD: &str = "LOD-3, before black. Ours in the first table are bakes: what is named moves, all else stays. \
+pub const LEAD: &str = "LOD-3, on black. Ours in the first table are bakes: what is named moves, all else stays. \
 Ours in the second are fitted alike on kept vertices and coordinates, and cannot be written to files but for SH; gains \
 there are over the same fit without any parallax.";
 
@@ -89,7 +89,7 @@ pub fn draw(scope: &Scope, results: &Results) -> Drawn {
         columns.extend(papers.map(|papers| format!("paper: {papers}")));
     }
     let mut table =
-        Table { caption: format!("What moves, LOD-3, {size}², before black"), columns, rows: Vec::new() };
+        Table { caption: format!("What moves, LOD-3, {size}², on black"), columns, rows: Vec::new() };
     let mut columns = vec!["model".to_string(), "no parallax".into()];
     for (ours, _) in VARIANTS {
         columns.extend([ours.to_string(), "gain".into(), "paper's gain".into()]);

@@ -10,8 +10,8 @@ use crate::results::Results;
 use crate::scope::Scope;
 
 /// How to read them.
-pub const LEAD: &str = "The same view of each, before dark grey. Below it the part in which all that moves gains most \
-over projection. Figures are means over all views, before black.";
+pub const LEAD: &str = "The same view of each, on dark grey. Below it the part in which all that moves gains most \
+over projection. Figures are means over all views, on black.";
 
 /// What is shown of each.
 const SHOWN: [Moves; 4] = [Moves::Nothing, Moves::Textures, Moves::Plain, Moves::All];

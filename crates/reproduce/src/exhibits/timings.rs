@@ -69,7 +69,7 @@ pub fn draw(scope: &Scope, results: &Results) -> Drawn {
     let columns =
         ["model", "fixed UV", "Algorithm 1", "gain", "paper's gain", "iterations", "ms / iteration"];
     let size = scope.shown_size();
-    let caption = format!("The paper's Algorithm 1 as we read it, LOD-3, {size}², before black");
+    let caption = format!("The paper's Algorithm 1 as we read it, LOD-3, {size}², on black");
     let mut literal = Table::new(&caption, &columns);
     for model in &scope.catalogue.models {
         let made = algorithm(scope, model).and_then(|e| results.of(&e));

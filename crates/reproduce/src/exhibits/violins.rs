@@ -26,9 +26,9 @@ pub fn experiments(scope: &Scope) -> Vec<Experiment> {
     scope.levels().iter().flat_map(|&level| lods::experiments(scope, level)).collect()
 }
 
-/// Figure 6, before black and before other backgrounds.
+/// Figure 6, on black and on other backgrounds.
 pub fn draw_levels(scope: &Scope, results: &Results) -> Drawn {
-    let before = |title: &str, of: fn(&Outcome) -> f64, with_papers: bool| {
+    let chart = |title: &str, of: fn(&Outcome) -> f64, with_papers: bool| {
         let mut groups = Vec::new();
         for &level in scope.levels() {
             for &size in scope.sizes() {
@@ -58,9 +58,9 @@ pub fn draw_levels(scope: &Scope, results: &Results) -> Drawn {
         ViolinChart { title, y_title, groups, baseline: Some("fixed UV".into()) }.html()
     };
     let html = format!(
-        "<h3>Before black</h3>{}<h3>Mean before white, grey and red</h3>{}",
-        before("Gains by level and texture size, before black", Outcome::psnr, true),
-        before("Gains by level and texture size, other backgrounds", Outcome::psnr_elsewhere, false)
+        "<h3>On black</h3>{}<h3>Mean on white, grey and red</h3>{}",
+        chart("Gains by level and texture size, on black", Outcome::psnr, true),
+        chart("Gains by level and texture size, other backgrounds", Outcome::psnr_elsewhere, false)
     );
     Drawn { html, ..Drawn::default() }
 }

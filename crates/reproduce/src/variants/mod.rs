@@ -52,10 +52,10 @@ pub fn compare_variants(
     high: &Model,
     low: &Model,
     options: &VariantsOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<ComparedVariants, BakeError> {
     options.check()?;
-    let bridge = ProgressScope::new(watcher, Instant::now(), None);
+    let bridge = ProgressScope::new(&watcher, Instant::now(), None);
     let subject = ground::Subject::new(high, low, options, &bridge)?;
     let ground = Ground::new(&subject, options, &bridge);
     let heights = |variant| {

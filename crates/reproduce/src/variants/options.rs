@@ -14,16 +14,16 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 pub struct VariantsOptions {
     /// Side of the textures in texels, 16 to 4096
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 512))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 512, value_parser = parbake::parse_texels))]
     pub texture_size: usize,
 
     /// Side of the maps of spherical harmonics in texels, 4 to 512
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 64))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 64, value_parser = parbake::parse_texels))]
     pub parallax_size: usize,
 
     /// Side of the height maps in texels, 4 to 2048; with twice the side of the other maps they hold
     /// as much detail in fewer bytes
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 128))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 128, value_parser = parbake::parse_texels))]
     pub height_size: usize,
 
     /// Range of the heights in texture widths, 0.0001 to 1; by default the paper's

@@ -75,7 +75,7 @@ pub fn optimised(
         let mut step = |points: &[DVec2], _| {
             frames.push(points.iter().map(|p| p.as_vec2()).collect::<Vec<Vec2>>());
             let done = turn * steps + frames.len();
-            watcher.message(Message::Progress { stage: Stage::Unfold, done: done.min(total), total });
+            watcher.message(Message::Progress { stage: Stage::Uv, done: done.min(total), total });
             !watcher.stopped()
         };
         let (mut layout, texture, mut balance) = match state.take() {

@@ -67,7 +67,7 @@ pub fn moved(
         if progress.round == 1 || progress.round.is_multiple_of(FRAME_ROUNDS) {
             moves.frames.push(progress.points.iter().map(|p| p.as_vec2()).collect::<Vec<Vec2>>());
         }
-        watcher.message(Message::Progress { stage: Stage::Unfold, done: progress.round, total });
+        watcher.message(Message::Progress { stage: Stage::Uv, done: progress.round, total });
         !watcher.stopped()
     });
     (moves.plane, moves.steps) = (plane, found.rounds);

@@ -1,4 +1,4 @@
-//! A low-poly's texture coordinates before the bake: kept, mended, made anew, or moved to
+//! A low-poly's texture coordinates before the bake: kept, repaired, made anew, or moved to
 //! where they show most ([`UvMode`]).
 //!
 //! ```text
@@ -72,8 +72,8 @@ pub struct UvStageOptions {
 /// What was done.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct UvStageReport {
-    /// What was mended, a sentence each.
-    pub mended: Vec<String>,
+    /// What was repaired, a sentence each.
+    pub repaired: Vec<String>,
     /// Share of the square that was covered before and after.
     pub utilisation: [f64; 2],
     /// Least distance between charts in texels that was asked for or chosen; sound layouts that were
@@ -111,7 +111,7 @@ const MOST_SAMPLES: usize = 400_000;
 /// 128²: 1 dB more than with 131,000).
 const OWN_SAMPLES: usize = 800_000;
 
-/// Prepares the texture coordinates of a mended low-poly that `frame` places.
+/// Prepares the texture coordinates of a repaired low-poly that `frame` places.
 pub fn optimise_uvs(
     low: RepairedLowPoly,
     frame: &Placement,
@@ -119,11 +119,11 @@ pub fn optimise_uvs(
     options: &UvStageOptions,
     watcher: &impl Watcher,
 ) -> UvStageResult {
-    let RepairedLowPoly { name, mut mesh, mended } = low;
+    let RepairedLowPoly { name, mut mesh, repaired } = low;
     let start = Layout::new(&mesh);
     let before = check(&start, options.texture_size).utilisation;
     let mut report = UvStageReport {
-        mended,
+        repaired,
         utilisation: [before; 2],
         gutter: options.gutter,
         relative_error: vec![1.0; 2],
@@ -160,7 +160,7 @@ pub struct RepairedLowPoly {
     /// Its mesh with unit normals; what its materials said of coordinates is applied.
     pub mesh: Mesh,
     /// What was done, a sentence each.
-    pub mended: Vec<String>,
+    pub repaired: Vec<String>,
 }
 
 /// Makes a low-poly's coordinates sound, as the mode asks.
@@ -171,10 +171,10 @@ pub fn repair_uvs(low: &Model, options: &UvStageOptions) -> Result<RepairedLowPo
     let mut mesh = low.mesh.clone();
     mesh.uvs = material_uvs(&low.mesh, &low.materials);
     mesh.tangents.clear();
-    let repaired = ensure_normals(&mut mesh);
+    let normals_replaced = ensure_normals(&mut mesh);
     let pack = packing(options);
     let sound = || check(&Layout::new(&mesh), options.texture_size).is_bijective();
-    let (mesh, mut mended) = match options.mode {
+    let (mesh, mut repaired) = match options.mode {
         UvMode::Keep => (mesh, Vec::new()),
         UvMode::Repair | UvMode::Optimize if !options.gutter_required && !mesh.uvs.is_empty() && sound() => {
             (mesh, Vec::new())
@@ -186,10 +186,10 @@ pub fn repair_uvs(low: &Model, options: &UvStageOptions) -> Result<RepairedLowPo
         ),
         UvMode::Repair | UvMode::Optimize => repair(&mesh, &RepairOptions { pack, ..Default::default() })?,
     };
-    if repaired > 0 && !low.mesh.normals.is_empty() {
-        mended.push(format!("{repaired} unusable normals were replaced."));
+    if normals_replaced > 0 && !low.mesh.normals.is_empty() {
+        repaired.push(format!("{normals_replaced} unusable normals were replaced."));
     }
-    Ok(RepairedLowPoly { name: low.name.clone(), mesh, mended })
+    Ok(RepairedLowPoly { name: low.name.clone(), mesh, repaired })
 }
 
 /// Gutter that a parallax map wants, in its texels: as far as what is fetched at a chart's border
@@ -223,10 +223,10 @@ pub fn repair_uvs_with_room(
     low: &Model,
     options: &mut UvStageOptions,
 ) -> Result<RepairedLowPoly, AtlasError> {
-    let mended = repair_uvs(low, options)?;
-    let Some(wide) = options.with_room(&mended.mesh) else { return Ok(mended) };
+    let repaired = repair_uvs(low, options)?;
+    let Some(wide) = options.with_room(&repaired.mesh) else { return Ok(repaired) };
     // What does not fit so goes without it.
-    let Ok(roomy) = repair_uvs(low, &wide) else { return Ok(mended) };
+    let Ok(roomy) = repair_uvs(low, &wide) else { return Ok(repaired) };
     *options = wide;
     Ok(roomy)
 }
@@ -335,9 +335,9 @@ mod tests {
     fn few_charts_get_room_for_a_parallax_map() {
         for (asked, wanted) in [(None, 8.0), (Some(3.0), 3.0)] {
             let mut options = with_parallax(asked);
-            let mended = repair_uvs_with_room(&sheet(4), &mut options).expect("four charts fit");
+            let repaired = repair_uvs_with_room(&sheet(4), &mut options).expect("four charts fit");
             assert_eq!(options.gutter, wanted);
-            let gutter = check(&Layout::new(&mended.mesh), 256).gutter.expect("several charts").texels;
+            let gutter = check(&Layout::new(&repaired.mesh), 256).gutter.expect("several charts").texels;
             assert!(gutter >= wanted, "{gutter} of {wanted}");
         }
     }

@@ -1,5 +1,5 @@
 //! The paper's method on a low-poly's texture coordinates (`crate::paper`): from the
-//! mended layout as it is, with the paper's weights for models. Only the coordinates are
+//! repaired layout as it is, with the paper's weights for models. Only the coordinates are
 //! taken from it; textures are then fitted to views as after the default method.
 //!
 //! The energy's scale is s = pixel · texture size, a pixel being as wide as in a picture that
@@ -89,7 +89,7 @@ pub fn moved(
         if progress.round.is_multiple_of(JUDGED_ROUNDS) {
             score(progress.points);
         }
-        watcher.message(Message::Progress { stage: Stage::Unfold, done: progress.round, total });
+        watcher.message(Message::Progress { stage: Stage::Uv, done: progress.round, total });
         !watcher.stopped()
     });
     score(&found.points);

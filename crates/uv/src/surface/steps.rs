@@ -22,7 +22,7 @@ impl<'a, W: Watcher> Steps<'a, W> {
     pub fn step(&mut self, way: &mut Vec<Vec<Vec2>>, points: &[DVec2]) -> bool {
         way.push(as_f32(points));
         self.done = self.most.min(self.done + 1);
-        self.watcher.message(Message::Progress { stage: Stage::Unfold, done: self.done, total: self.most });
+        self.watcher.message(Message::Progress { stage: Stage::Uv, done: self.done, total: self.most });
         !self.watcher.stopped()
     }
 }

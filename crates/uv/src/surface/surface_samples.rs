@@ -26,7 +26,7 @@ pub struct Source<'a> {
     /// How much of each triangle is seen (`parbake_mesh::visibilities`); empty where all counts alike.
     pub visibilities: &'a [f32],
     /// How far projection looks to either side, in the common frame.
-    pub reach: f32,
+    pub max_distance: f32,
     /// How far dark colours are brightened before they are compared, as strong light does: 0 for stored
     /// values, 1 for what sRGB's curve makes of them.
     pub brightened: f32,
@@ -144,7 +144,7 @@ fn look(mesh: &Mesh, t: usize, [b, c]: [f32; 2], source: &Source, width: f32) ->
             let corners = mesh.triangles[t].map(|i| i as usize);
             let point = interpolate(corners.map(|i| mesh.positions[i]), weights);
             let normal = interpolate(corners.map(|i| mesh.normals[i]), weights).normalize_or_zero();
-            let hit = surface.project(point, normal, source.reach)?;
+            let hit = surface.project(point, normal, source.max_distance)?;
             let [b1, b2] = hit.barycentric;
             // Where the surfaces are apart, views see the detail in different places by about
             // that distance, and no texture can show more than their mean.
@@ -205,7 +205,7 @@ mod tests {
                 scene: &scene,
                 surface: None,
                 visibilities: &[],
-                reach: 0.0,
+                max_distance: 0.0,
                 brightened,
                 normals,
                 pixel,

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! surface ─ signal, once ─┬─ delivered coordinates ─┐
-//!                         ├─ mended ────────────────┼─ best texture in bytes, what it leaves
+//!                         ├─ repaired ──────────────┼─ best texture in bytes, what it leaves
 //!                         └─ moved: on pieces ──────┘
 //! ```
 //!

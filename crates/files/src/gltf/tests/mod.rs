@@ -272,7 +272,7 @@ fn only_the_default_scene_is_shown() {
     document["scene"] = 1.into();
     assert_eq!(positions(&document).len(), 3, "invisible nodes take their children along");
     assert_eq!(positions(&document)[0], Vec3::X * 5.0);
-    assert!(read_value(&document).unwrap().warnings[0].contains("invisible"));
+    assert!(read_value(&document).unwrap().warnings[0].text.contains("invisible"));
 }
 
 /// Protects EXT_mesh_gpu_instancing: each instance is placed inside its node.

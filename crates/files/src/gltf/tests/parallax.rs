@@ -171,7 +171,7 @@ fn broken_maps_are_left_out() {
         document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"] = extension;
         let loaded = read_value(&document).unwrap();
         assert_eq!(loaded.model.materials[0].parallax, None, "{expected}");
-        let said = loaded.warnings.join("\n");
+        let said = loaded.warnings.iter().map(|w| w.text.as_str()).collect::<Vec<_>>().join("\n");
         assert!(
             said.contains("map of material \"m\" was left out") && said.contains(expected),
             "{expected}: {said}"
@@ -218,7 +218,7 @@ fn broken_cutouts_take_the_map_along() {
         document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"]["cutout"] = cutout;
         let loaded = read_value(&document).unwrap();
         assert_eq!(loaded.model.materials[0].parallax, None, "{expected}");
-        let said = loaded.warnings.join("\n");
+        let said = loaded.warnings.iter().map(|w| w.text.as_str()).collect::<Vec<_>>().join("\n");
         assert!(
             said.contains("map of material \"m\" was left out") && said.contains(expected),
             "{expected}: {said}"
@@ -258,12 +258,15 @@ fn images_are_checked_together() {
     extension["offset"] = vec![0.5; 8].into();
     extension["coefficientTextures"] = json!([{ "index": 0 }, { "index": 1 }, { "index": 0 }]);
     let loaded = read_value(&document).unwrap();
-    assert!(loaded.warnings[0].contains("2 × 2 and 2 × 1 texels"), "{:?}", loaded.warnings);
+    assert!(loaded.warnings[0].text.contains("2 × 2 and 2 × 1 texels"), "{:?}", loaded.warnings);
     document["textures"][1]["source"] = 0.into();
     let read = |most| {
         let loaded =
             read_limited(&document, &Limits { max_total_pixels: most, ..Limits::default() }).unwrap();
-        (loaded.model.materials[0].parallax.is_some(), loaded.warnings.join(""))
+        (
+            loaded.model.materials[0].parallax.is_some(),
+            loaded.warnings.iter().map(|w| w.text.as_str()).collect::<Vec<_>>().join(""),
+        )
     };
     assert!(read(12).0);
     assert!(!read(11).0 && read(11).1.contains("more than 11 texels"));

@@ -173,7 +173,7 @@ fn all_textures_are_read_alike() {
         document["images"] = json!([{ "uri": "gone.png" }]);
         let loaded = read_value(&document).unwrap();
         assert_eq!(slot(&loaded.model.materials[0]), None);
-        assert!(loaded.warnings[0].contains("gone.png"), "{:?}", loaded.warnings);
+        assert!(loaded.warnings[0].text.contains("gone.png"), "{:?}", loaded.warnings);
         document["images"] = json!([{ "uri": "data:image/png;base64,AAAA" }]);
         assert!(read_value(&document).unwrap_err().contains("image \"image 0\""));
         document["meshes"] = json!([{ "primitives": [] }]);
@@ -204,7 +204,7 @@ fn images_of_all_kinds() {
     assert_eq!(read_value(&document).unwrap().model.images[0].pixels, [[10, 20, 30, 255]]);
     document["textures"][0] = json!({ "extensions": { "VENDOR_texture_x": { "source": 0 } } });
     let loaded = read_value(&document).unwrap();
-    assert!(loaded.warnings[0].contains("no image that can be read"), "{:?}", loaded.warnings);
+    assert!(loaded.warnings[0].text.contains("no image that can be read"), "{:?}", loaded.warnings);
 }
 
 /// Protects models from being read as less than they are: what is not understood is refused.
@@ -233,7 +233,7 @@ fn missing_images_are_warnings() {
     document["meshes"][0]["primitives"][0]["material"] = 0.into();
     let loaded = read_value(&document).unwrap();
     assert_eq!(loaded.model.materials[0].base_color_texture, None);
-    assert!(loaded.warnings[0].contains("gone.png"), "{:?}", loaded.warnings);
+    assert!(loaded.warnings[0].text.contains("gone.png"), "{:?}", loaded.warnings);
     document["images"] = json!([{ "uri": "data:image/png;base64,AAAA" }]);
     assert!(read_value(&document).unwrap_err().contains("image \"image 0\""));
 }

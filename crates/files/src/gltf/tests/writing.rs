@@ -46,9 +46,9 @@ fn glb_comes_back_the_same() {
     assert_eq!(loaded.model, model);
 }
 
-/// Protects the file's validity where the model has faults that can be mended.
+/// Protects the file's validity where the model has faults that can be repaired.
 #[test]
-fn invalid_vectors_and_missing_uvs_are_mended() {
+fn invalid_vectors_and_missing_uvs_are_repaired() {
     let mut broken = model();
     broken.mesh.normals[1] = Vec3::ZERO;
     broken.mesh.tangents[2] = Vec4::ZERO;

@@ -1,10 +1,6 @@
 //! `parbake check` as scripts and people meet it.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{SMALL, demo_pair, json, parbake, run, text};
+use crate::common::{SMALL, demo_pair, json, parbake, run, text};
 use std::fs;
 use std::path::Path;
 

@@ -1,10 +1,6 @@
 //! `parbake turntable` as scripts and people meet it: files, exit codes, words.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{demo_pair, parbake, run, text};
+use crate::common::{demo_pair, parbake, run, text};
 use std::fs;
 
 /// Options with which a film takes a fraction of a second.

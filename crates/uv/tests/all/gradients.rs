@@ -4,9 +4,7 @@
 //! 10⁻⁴ of the square keep rounding small; the few samples that cross a kink on such a step
 //! are within the tolerance, which is relative to the longest derivative.
 
-mod common;
-
-use common::{Random, quarters, signal};
+use crate::common::{Random, quarters, signal};
 use glam::{DMat2, DVec2, Vec4, dvec2, vec4};
 use parbake_atlas::Layout;
 use parbake_image::FloatImage;

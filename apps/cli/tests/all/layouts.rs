@@ -1,10 +1,6 @@
-//! Commands that mend, make and move texture coordinates, as scripts and people meet them.
+//! Commands that repair, make and move texture coordinates, as scripts and people meet them.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{demo_pair, parbake, psnr, run, text};
+use crate::common::{demo_pair, parbake, psnr, run, text};
 use std::fs;
 use std::path::Path;
 

@@ -18,7 +18,7 @@ fn coordinates_move_and_stay_sound() {
         ..BakeOptions::default()
     };
     let baked = bake(&high, &low, &options, &()).unwrap();
-    let report = baked.report.unfold.unwrap();
+    let report = baked.report.uv_stage.unwrap();
     assert_eq!(report.steps, 4);
     assert!(report.relative_error.iter().all(|e| e.is_finite()));
     assert!(baked.report.uv.is_bijective());

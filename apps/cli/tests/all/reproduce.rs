@@ -1,10 +1,6 @@
 //! `parbake reproduce` on a folder of data as a user might have it.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{demo_pair, json, parbake, text};
+use crate::common::{demo_pair, json, parbake, text};
 use std::path::Path;
 use std::process::Output;
 

@@ -1,7 +1,7 @@
 //! What a bake is compared with: a ray-cast bake of the low-poly as it was delivered.
 
 use parbake::{BakeOptions, EvaluateOptions, Preset, ShapeMode, UvMode};
-use parbake::{bake, compare_bake, compared_as, demo_pair, evaluate_before};
+use parbake::{bake, compare_bake, compared_as, demo_pair, evaluate_on};
 
 fn quick() -> BakeOptions {
     BakeOptions {
@@ -30,7 +30,7 @@ fn the_baseline_is_a_plain_bake() {
 
 /// Protects low-polys without coordinates: the baseline gets those that `repair` makes, and its own vertices.
 #[test]
-fn a_baseline_without_coordinates_is_mended() {
+fn a_baseline_without_coordinates_is_repaired() {
     let (high, mut low) = demo_pair();
     low.mesh.uvs.clear();
     let moved = bake(&high, &low, &quick(), &()).unwrap();
@@ -48,7 +48,7 @@ fn the_figures_are_those_of_evaluate() {
     let comparison = compare_bake(&high, &baked, false, &()).unwrap();
     let options = EvaluateOptions { no_flip: true, ..compared_as(baked.report.options.convention) };
     let names: Vec<&str> = comparison.backgrounds.iter().map(|on| on.background.as_str()).collect();
-    let own = evaluate_before(&high, &baked.model, &options, &names, &()).unwrap();
+    let own = evaluate_on(&high, &baked.model, &options, &names, &()).unwrap();
     for (on, own) in comparison.backgrounds.iter().zip(own) {
         assert_eq!(on.mean.baked, own.mean, "{}", on.background);
     }

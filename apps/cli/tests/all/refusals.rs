@@ -1,10 +1,6 @@
 //! What the command says before it works: help in groups, and one sentence for each wrong usage.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{SMALL, demo_pair, json, parbake, run, text};
+use crate::common::{SMALL, demo_pair, json, parbake, run, text};
 use parbake::{Limits, read_model};
 use std::fs;
 use std::path::Path;
@@ -78,7 +74,7 @@ fn help_of_bake_has_groups() {
         ("Shape", &["--shape", "--silhouette"]),
         ("Parallax", &["--parallax", "--cutout-size", "--no-cutout"]),
         ("Advanced", &["--normal-y", "--seed", "--threads"]),
-        ("Research", &["--method", "--no-content-aware", "--outlier"]),
+        ("Research", &["--method", "--no-content-aware", "--robust-scale"]),
     ] {
         let below = group(&groups, heading);
         for option in options {
@@ -98,7 +94,9 @@ fn help_of_bake_has_groups() {
 fn help_shows_what_acts() {
     let groups_of_compress = groups("compress");
     let all: String = groups_of_compress.iter().map(|(_, below)| below.as_str()).collect();
-    for absent in ["--shape", "--parallax", "--cutout", "--silhouette", "--backdrop", "--reach"] {
+    for absent in
+        ["--shape", "--parallax", "--cutout", "--silhouette", "--silhouette-background", "--max-distance"]
+    {
         assert!(!all.contains(absent), "{absent}");
     }
     assert!(group(&groups_of_compress, "UV").contains("--more-triangles"));
@@ -127,7 +125,11 @@ fn options_without_effect_are_refused() {
         (&bake, &["--parallax", "sh", "--method", "paper", "--cutout-size", "32"], "with --method paper"),
         (&bake, &["--no-content-aware"], "without --method paper"),
         (&bake, &["--uv", "keep", "--uv-steps", "3"], "without --uv optimize"),
-        (&bake, &["--silhouette", "0", "--backdrop", "white"], "--backdrop does nothing"),
+        (
+            &bake,
+            &["--silhouette", "0", "--silhouette-background", "white"],
+            "--silhouette-background does nothing",
+        ),
         (&bake, &["--more-triangles", "3"], "acts in compress only"),
         (&compress, &["--shape", "free"], "--shape does nothing in compress"),
         (&compress, &["--silhouette", "1"], "--silhouette does nothing in compress"),
@@ -172,7 +174,8 @@ fn wrong_values_get_sentences() {
     }
 }
 
-/// Protects minutes of work: a place that cannot be written is found before the models are read.
+/// Protects minutes of work: a place that cannot be written, and a time budget that cannot hold, are found
+/// before the models are read.
 #[test]
 fn outputs_are_checked_first() {
     let folder = tempfile::tempdir().unwrap();
@@ -193,6 +196,8 @@ fn outputs_are_checked_first() {
         (bake("a.glb", &["--json", "nowhere/a.json"]), "there is no folder nowhere"),
         (vec!["compress", "missing.glb", "-o", "a.glb", "--report", "nowhere/a.html"], "no folder"),
         (vec!["eval", "missing.glb", "missing.glb", "--json", "nowhere/a.json"], "no folder"),
+        (vec!["image", "missing.png", "-o", "a.glb", "--animation", "a.mp4"], "must end in .gif"),
+        (bake("a.glb", &["--texture-size", "8k", "--time-budget", "10"]), "94 s"),
     ] {
         let (code, said) = refusal(folder, &arguments);
         assert_eq!(code, Some(2), "{arguments:?}: {said}");
@@ -227,6 +232,9 @@ fn strict_wants_all_textures() {
         let error = said.lines().find(|line| line.starts_with("error: ")).unwrap();
         assert!(error.contains("lost.png") && error.contains("--strict"), "{said}");
     }
+    fs::remove_file(folder.join("high.mtl")).unwrap();
+    let (code, said) = refusal(folder, &[&bake[..], &["--strict"]].concat());
+    assert!(code == Some(1) && said.contains("high.mtl"), "a missing material library: {said}");
     assert!(!folder.join("a.glb").exists() && !folder.join("b.glb").exists());
 }
 

@@ -1,10 +1,6 @@
 //! The command as scripts and people meet it: files, exit codes, words, bytes.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{SMALL, demo_pair, json, parbake, run, text};
+use crate::common::{SMALL, demo_pair, json, parbake, run, text};
 use std::fs;
 
 /// Protects the first minute: everything from nothing, and better than projected.
@@ -70,7 +66,7 @@ fn mistakes_are_named() {
         (with(&["--json", "nowhere/never.json"]), 2, "nowhere"),
         (with(&["--json", "never.glb"]), 2, "two outputs"),
         (with(&["--threads", "99999"]), 2, "0 to 256"),
-        (with(&["--reach", "-1"]), 2, "0 to 1"),
+        (with(&["--max-distance", "-1"]), 2, "0 to 1"),
         (pair("demo_high.glb", "far.obj"), 1, "outside of every view"),
         (vec!["eval", "demo_high.glb", "demo_low.glb", "--background", "1,red,0"], 2, "R,G,B"),
     ];
@@ -127,6 +123,6 @@ fn obj_and_glb_look_the_same() {
         let arguments = ["bake", "demo_high.glb", "demo_low.glb", "-q", "-o", name];
         run(folder, &[&arguments[..], &SMALL].concat());
     }
-    let same = common::psnr(folder, "a.glb".as_ref(), "a.obj".as_ref());
+    let same = crate::common::psnr(folder, "a.glb".as_ref(), "a.obj".as_ref());
     assert!(same > 60.0, "{same} dB");
 }

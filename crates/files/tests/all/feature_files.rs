@@ -1,9 +1,7 @@
 //! The conformance models of `$PARBAKE_DATA/feature` and `extreme` are not only read
 //! but read right: each is held against what its makers say that it shows.
 
-mod common;
-
-use common::data_folder;
+use crate::common::data_folder;
 use parbake_files::{Limits, read_geometry, read_model};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{AlphaMode, Bounds, Image, Material, Model, TextureSlot};

@@ -4,9 +4,7 @@
 //! Where `$PARBAKE_GLB_OUT` names a folder, the GLB files stay there, for the
 //! Khronos validator to look at (`tools/validate_gltf`).
 
-mod common;
-
-use common::{check_model, data_folder, files_below};
+use crate::common::{check_model, data_folder, files_below};
 use parbake_files::{FileError, Limits, Loaded, read_geometry, read_model, write_glb, write_obj};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{AlphaMode, Material, Mesh, Model, TextureSlot};

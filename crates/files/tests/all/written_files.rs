@@ -4,9 +4,7 @@
 //! Where `$PARBAKE_GLB_OUT` names a folder, the GLB files stay there, for the
 //! Khronos validator to look at (`tools/validate_gltf`).
 
-mod common;
-
-use common::keep;
+use crate::common::keep;
 use parbake_files::{Limits, read_model, write_glb, write_obj};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{

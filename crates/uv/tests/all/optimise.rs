@@ -1,8 +1,6 @@
 //! The default way of moving texture coordinates, from start to end.
 
-mod common;
-
-use common::{assert_sound, checkered_corner, plane, quarters, signal};
+use crate::common::{assert_sound, checkered_corner, plane, quarters, signal};
 use glam::DVec2;
 use parbake_atlas::Layout;
 use parbake_uv::contact::{Border, ContactOptions};

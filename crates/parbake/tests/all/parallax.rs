@@ -47,15 +47,15 @@ fn maps_improve_the_look_whatever_the_number_of_threads() {
         let (better, worse) = (psnr(&with.model), psnr(&without.model));
         assert!(better > worse, "{background}: {better} {worse}");
     }
-    let report = with.report.depth.unwrap();
+    let report = with.report.parallax_maps.unwrap();
     let [before, after] = report.misplaced.unwrap();
-    assert!(after < before && report.strayed[1] <= report.strayed[0]);
+    assert!(after < before && report.cross_chart[1] <= report.cross_chart[0]);
     assert!(report.mean_square.iter().all(|[first, last]| last < first));
     let [exact, rounded] = report.rounding;
     assert!(exact > 0.0 && rounded < 1.1 * exact, "8 bits do: {exact} {rounded}");
 }
 
-/// Protects textures from maps that only mend a coarse one's blur: where high-poly and low-poly
+/// Protects textures from maps that only make up for a coarse one's blur: where high-poly and low-poly
 /// are the same there is no depth to show, and the finer pass begins anew; where they are not,
 /// what the coarse pass found is kept.
 #[test]
@@ -65,7 +65,7 @@ fn a_map_without_depth_to_show_begins_anew() {
     let options = BakeOptions { texture_size: 256, ..quick(Parallax::Sh) };
     let begun_anew = |high: &Model, low: &Model| {
         let baked = bake(high, low, &options, &()).unwrap();
-        baked.report.depth.unwrap().begun_anew
+        baked.report.parallax_maps.unwrap().begun_anew
     };
     assert_eq!(begun_anew(&high, &low), 0);
     assert_eq!(begun_anew(&low, &low), 1);

@@ -1,8 +1,6 @@
 //! The pictures of `$PARBAKE_DATA/bad` that are whole are read right.
 
-mod common;
-
-use common::data_folder;
+use crate::common::data_folder;
 use parbake_files::{Limits, read_image};
 use parbake_model::Image;
 use std::path::Path;

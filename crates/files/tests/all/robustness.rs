@@ -1,8 +1,6 @@
 //! Readers on random bytes and on valid files with random damage: a model that
 //! keeps its contract, or an error; never a panic.
 
-mod common;
-
 use parbake_files::{
     FileError, Limits, Loaded, NoResources, decode_image, encode_png, glb_bytes, read_gltf_bytes,
     read_obj_bytes,
@@ -43,7 +41,7 @@ fn glb() -> Vec<u8> {
 
 fn check(result: Result<Loaded, FileError>) {
     match result {
-        Ok(loaded) => common::check_model(Path::new("a"), &loaded),
+        Ok(loaded) => crate::common::check_model(Path::new("a"), &loaded),
         Err(error) => assert!(error.to_string().starts_with('a'), "{error}"),
     }
 }

@@ -1,9 +1,7 @@
 //! What must never break: whatever the layout, the signal and the settings, a sound layout
 //! stays sound, and numbers stay numbers.
 
-mod common;
-
-use common::{Random, assert_sound, quarters, signal};
+use crate::common::{Random, assert_sound, quarters, signal};
 use glam::{DVec2, Vec4};
 use parbake_atlas::Layout;
 use parbake_image::FloatImage;

@@ -1,0 +1,15 @@
+//! The built command as scripts and people meet it: one program for all of them, since each
+//! would be linked with everything anew.
+
+#![allow(clippy::unwrap_used)]
+
+mod check;
+mod command;
+mod common;
+mod layouts;
+mod parallax;
+mod real_models;
+mod refusals;
+mod reproduce;
+mod schema;
+mod turntable;

@@ -1,0 +1,11 @@
+//! Whole bakes through the API: one program for all of them, since each
+//! would be linked with everything anew.
+
+mod emission;
+mod paper_picture;
+mod paper_uv;
+mod parallax;
+mod prepared;
+mod ray_cast;
+mod vertices;
+mod warnings;

@@ -1,0 +1,104 @@
+//! The fit of vertices on an octahedron whose high-poly is a ball: outlines come closer, the mesh stays what
+//! it was, and one that fits already does not move.
+
+use glam::{Vec2, Vec3};
+use parbake_image::display::{Curve, Display};
+use parbake_model::{Material, Mesh, Model};
+use parbake_render::camera::Projection;
+use parbake_render::interpretation::Interpretation;
+use parbake_shape::ShapeOptions;
+use parbake_shape::points::Motion;
+use parbake_shape::stage::{ShapePlan, ShapeReport, shape};
+use parbake_views::high_poly::{Conventions, HighPoly};
+use parbake_views::pool::Rig;
+
+/// An octahedron whose triangles were halved along all edges so often, on the ball of this radius. Each of the
+/// eight faces is a chart of its own, so every edge between them is a seam.
+fn ball(name: &str, halvings: usize, radius: f32) -> Model {
+    let mut mesh = Mesh::default();
+    for face in 0..8u32 {
+        let signs = Vec3::from([0, 1, 2].map(|axis| if face >> axis & 1 == 0 { 1.0 } else { -1.0 }));
+        let mut triangles =
+            vec![[Vec3::X, Vec3::Y, Vec3::Z].map(|axis| (axis * signs, Vec2::new(axis.x, axis.y)))];
+        for _ in 0..halvings {
+            triangles = triangles
+                .into_iter()
+                .flat_map(|[a, b, c]| {
+                    let mid = |a: (Vec3, Vec2), b: (Vec3, Vec2)| ((a.0 + b.0).normalize(), 0.5 * (a.1 + b.1));
+                    let [ab, bc, ca] = [mid(a, b), mid(b, c), mid(c, a)];
+                    [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+                })
+                .collect();
+        }
+        let cell = Vec2::new((face % 4) as f32, (face / 4) as f32);
+        for triangle in triangles {
+            let first = mesh.positions.len() as u32;
+            for (position, uv) in triangle {
+                mesh.positions.push(position * radius);
+                mesh.normals.push(position);
+                mesh.uvs.push((cell + Vec2::splat(0.1) + 0.8 * uv) * Vec2::new(0.25, 0.5));
+            }
+            let flipped = signs.x * signs.y * signs.z < 0.0;
+            mesh.triangles.push(if flipped {
+                [first, first + 2, first + 1]
+            } else {
+                [first, first + 1, first + 2]
+            });
+            mesh.triangle_materials.push(0);
+        }
+    }
+    Model { name: name.into(), mesh, materials: vec![Material::default()], images: Vec::new() }
+}
+
+fn fitted(high: &Model, low: &Model, motion: Motion, threads: usize) -> (Mesh, ShapeReport) {
+    let conventions = Conventions {
+        whole_material: Some(false),
+        interpretation: Interpretation::default(),
+        display: Display { gain: 1.0, curve: Curve::Srgb },
+        rig: Rig { radius: 3.5, projection: Projection::Perspective(0.4) },
+        max_distance: 0.5,
+    };
+    let high = HighPoly::new(high, conventions).expect("a ball has an extent");
+    let fit = ShapeOptions { motion, steps: 30, views_per_step: 6, ..ShapeOptions::default() };
+    let plan = ShapePlan { views: 24, view_size: 64, texture_size: 32, samples: 2, fit };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
+    let mut mesh = low.mesh.clone();
+    let report = pool
+        .install(|| shape("low", &mut mesh, &high, &plan, 5, &()))
+        .expect("every face has its place in the texture");
+    (mesh, report)
+}
+
+/// Protects what the stage is for: vertices of a coarse ball move out until its outlines lie about the
+/// high-poly's, along normals or freely; seams stay closed, no triangle turns over, coordinates and
+/// triangles stay, and threads change nothing.
+#[test]
+fn outlines_come_closer() {
+    let (high, low) = (ball("high", 3, 1.0), ball("low", 1, 1.0));
+    for motion in [Motion::Normal, Motion::Free] {
+        let (mesh, report) = fitted(&high, &low, motion, 1);
+        assert!(report.gap[1] < 0.7 * report.gap[0], "{motion:?}: {:?}", report.gap);
+        assert!(report.before[1] > report.before[0], "a coarse ball lies inside: {:?}", report.before);
+        assert!(report.steps == 30 && report.moved[1] >= report.moved[0] && report.moved[0] > 0.0);
+        let radius = |mesh: &Mesh| mesh.positions.iter().map(|p| p.length()).sum::<f32>();
+        assert!(radius(&mesh) > radius(&low.mesh));
+        assert_eq!((&mesh.uvs, &mesh.triangles), (&low.mesh.uvs, &low.mesh.triangles));
+        let moved = &mesh.positions;
+        for (i, a) in low.mesh.positions.iter().enumerate() {
+            for (j, b) in low.mesh.positions.iter().enumerate().take(i) {
+                assert!(a != b || moved[i] == moved[j], "the seam at {a} opened");
+            }
+        }
+        assert!((0..mesh.triangles.len()).all(|t| mesh.area_normal(t).dot(low.mesh.area_normal(t)) > 0.0));
+        assert!(fitted(&high, &low, motion, 3).0 == mesh, "threads change the result");
+    }
+}
+
+/// Protects a low-poly that fits already: it stays to the bit, whatever noise its views have.
+#[test]
+fn a_mesh_that_fits_stays() {
+    let model = ball("same", 2, 1.0);
+    let (mesh, report) = fitted(&model, &model, Motion::Free, 2);
+    assert_eq!(mesh.positions, model.mesh.positions);
+    assert_eq!(report.moved, [0.0; 2]);
+}
