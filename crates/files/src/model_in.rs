@@ -149,13 +149,13 @@ mod tests {
             let loaded = read_model(&path, &limits).unwrap();
             assert!(loaded.model.materials[0].base_color_texture.is_some(), "{:?}", loaded.warnings);
             assert!(
-                loaded.warnings[0].contains("my lib.mtl")
-                    && loaded.warnings[1].contains("\"textures/oak.png\"")
+                loaded.warnings[0].text.contains("my lib.mtl")
+                    && loaded.warnings[1].text.contains("\"textures/oak.png\"")
             );
         }
         std::fs::write(folder.join("my lib.mtl"), "newmtl a\nmap_Kd C:\\gone.png\n").unwrap();
         let warnings = read_model(&path, &Limits::default()).unwrap().warnings;
-        assert!(warnings[1].contains("C:/gone.png"), "{warnings:?}");
+        assert!(warnings[1].text.contains("C:/gone.png"), "{warnings:?}");
     }
 
     /// Protects services that read what strangers send: nothing outside the model's folder is read,

@@ -10,7 +10,7 @@ use std::path::Path;
 /// Reads a model that must have nothing odd about it, but for what is not fitted.
 fn load(data: &Path, name: &str) -> Model {
     let mut loaded = read_model(&data.join(name), &Limits::default()).expect(name);
-    loaded.warnings.retain(|warning| !warning.contains("is not fitted"));
+    loaded.warnings.retain(|warning| !warning.text.contains("is not fitted"));
     assert_eq!(loaded.warnings, [""; 0], "{name}");
     loaded.model
 }

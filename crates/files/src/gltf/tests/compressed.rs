@@ -287,5 +287,5 @@ fn further_uv_sets_take_a_free_place() {
     document["materials"][0]["occlusionTexture"] = json!({ "index": 0, "texCoord": 1 });
     let loaded = read_value(&document).unwrap();
     assert!(loaded.model.materials[0].occlusion_texture.is_none());
-    assert!(loaded.warnings[0].contains("/materials/0/occlusionTexture"), "{:?}", loaded.warnings);
+    assert!(loaded.warnings[0].text.contains("/materials/0/occlusionTexture"), "{:?}", loaded.warnings);
 }

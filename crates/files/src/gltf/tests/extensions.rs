@@ -46,11 +46,11 @@ fn factors_are_kept_and_losses_told() {
         ..MaterialExtensions::default()
     };
     assert_eq!(*read, expected);
-    let told: Vec<&str> = loaded.warnings.iter().filter_map(|w| w.split_whitespace().next()).collect();
+    let told: Vec<&str> = loaded.warnings.iter().filter_map(|w| w.text.split_whitespace().next()).collect();
     // What changes nothing is not told.
     let names = ["clearcoat", "sheen", "transmission", "volume"].map(|n| format!("KHR_materials_{n}"));
     assert_eq!(told, names, "{:?}", loaded.warnings);
-    assert!(loaded.warnings[0].contains("with its textures") && loaded.warnings[0].contains("\"glass\""));
+    assert!(loaded.warnings[0].text.contains("with its textures") && loaded.warnings[0].text.contains("\"glass\""));
     let plain = read_value(&with_materials(json!([{}]), &[])).unwrap();
     assert!(plain.model.materials[0].extensions.is_empty() && plain.warnings.is_empty());
 }
@@ -62,7 +62,7 @@ fn variants_are_told() {
     document["extensions"]["KHR_materials_variants"] =
         json!({ "variants": [{ "name": "Mango" }, { "name": "Peach" }] });
     let warnings = read_value(&document).unwrap().warnings;
-    assert!(warnings.len() == 1 && warnings[0].contains("\"Mango\", \"Peach\""), "{warnings:?}");
+    assert!(warnings.len() == 1 && warnings[0].text.contains("\"Mango\", \"Peach\""), "{warnings:?}");
 }
 
 fn glossy(value: Value) -> Value {
@@ -103,7 +103,7 @@ fn constant_and_separate_maps() {
     let value = json!({ "diffuseTexture": { "index": 0 }, "specularGlossinessTexture": {
         "index": 0, "extensions": { "KHR_texture_transform": { "scale": [2, 2] } } } });
     let loaded = read_value(&with_materials(glossy(value), &[diffuse])).unwrap();
-    assert!(loaded.warnings[0].contains("mean of the other"), "{:?}", loaded.warnings);
+    assert!(loaded.warnings[0].text.contains("mean of the other"), "{:?}", loaded.warnings);
     let material = &loaded.model.materials[0];
     assert_eq!(material.metallic_roughness_texture.unwrap().transform.scale, Vec2::splat(2.0));
     assert_eq!(material.base_color_texture.unwrap().transform.scale, Vec2::ONE);

@@ -168,7 +168,7 @@ fn all_textures_are_read_alike() {
         let error = read(json!({ "index": 9 })).unwrap_err();
         assert!(error.contains(&format!("/materials/0/{place}/index: texture 9")), "{error}");
         let loaded = read(json!({ "index": 0, "texCoord": 2 })).unwrap();
-        assert!(loaded.warnings[0].contains("coordinate set 2"), "{:?}", loaded.warnings);
+        assert!(loaded.warnings[0].text.contains("coordinate set 2"), "{:?}", loaded.warnings);
         read(json!({ "index": 0 })).unwrap();
         document["images"] = json!([{ "uri": "gone.png" }]);
         let loaded = read_value(&document).unwrap();
