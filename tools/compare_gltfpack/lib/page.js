@@ -35,12 +35,16 @@ gltfLoader.setDRACOLoader(new DRACOLoader().setDecoderPath('/three/draco/'));
 gltfLoader.setKTX2Loader(new KTX2Loader().setTranscoderPath('/three/basis/').detectSupport(renderer));
 gltfLoader.setMeshoptDecoder(MeshoptDecoder);
 
+/** Tabs separate words in OBJ and MTL as spaces do, but not for three.js. */
+const withSpaces = (text) => text.replaceAll('\t', ' ');
+
 /** The materials of an OBJ's library, once their textures have arrived. None if the file is missing. */
 async function objMaterials(folder, library) {
   const manager = new THREE.LoadingManager();
   const url = folder + library.split('/').map(encodeURIComponent).join('/');
-  if (!(await fetch(url)).ok) return null;
-  const materials = await new MTLLoader(manager).setResourcePath(folder).loadAsync(url);
+  const file = await fetch(url);
+  if (!file.ok) return null;
+  const materials = new MTLLoader(manager).parse(withSpaces(await file.text()), folder);
   await new Promise((done) => {
     manager.onLoad = done;
     // Without an item of its own the manager would never call for a library without textures.
@@ -54,7 +58,7 @@ async function objMaterials(folder, library) {
 /** An OBJ as a rough dielectric, which is what its Lambert materials come closest to in glTF. */
 async function loadObj(url) {
   const folder = url.slice(0, url.lastIndexOf('/') + 1);
-  const text = await (await fetch(url)).text();
+  const text = withSpaces(await (await fetch(url)).text());
   const loader = new OBJLoader();
   const library = /^[ \t]*mtllib[ \t]+(.+?)[ \t]*\r?$/m.exec(text)?.[1];
   const materials = library && (await objMaterials(folder, library));
