@@ -17,15 +17,21 @@ mod model_in;
 mod model_out;
 mod obj;
 mod resources;
+mod texture_out;
 mod unit;
 mod words;
+mod write_options;
 
 pub use atomic::{write_atomically, write_streamed};
 pub use error::{FileError, Place};
-pub use gltf::{glb_bytes, read_gltf_bytes, write_glb};
+pub use gltf::{glb_bytes, read_gltf_bytes, write_glb, write_glb_with};
 pub use image_in::{decode_image, read_image};
 pub use image_out::encode_png;
 pub use limits::Limits;
 pub use model_in::{Loaded, read_geometry, read_model};
 pub use obj::{read_obj_bytes, write_obj};
 pub use resources::{Folder, NoResources, Resources};
+pub use write_options::{
+    DEFAULT_TEXTURE_QUALITY, LEAST_DATA_QUALITY, MeshCompression, TextureFormat, WriteOptions, Written,
+    WrittenTexture,
+};

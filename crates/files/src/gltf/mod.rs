@@ -17,7 +17,9 @@ mod json_material;
 mod locate;
 mod materials;
 mod merge;
+mod meshopt_out;
 mod parallax;
+mod quantise;
 mod references;
 mod runs;
 mod scene;
@@ -29,7 +31,7 @@ mod write_material;
 mod write_mesh;
 mod write_parallax;
 
-pub use write::{glb_bytes, write_glb};
+pub use write::{glb_bytes, write_glb, write_glb_with};
 
 use crate::context::{Context, Textures};
 use crate::finish::finish;
