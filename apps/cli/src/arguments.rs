@@ -1,5 +1,6 @@
 //! What can be typed.
 
+use crate::formats::FormatOptions;
 use crate::rules::{NOT_IN_COMPRESS, WITH_NORMAL_MAPS};
 use clap::{Args, Command as Clap, CommandFactory, Parser, Subcommand, ValueEnum};
 use parbake::{BakeOptions, EvaluateOptions, ImageOptions, parse_texels};
@@ -130,6 +131,10 @@ pub struct BakeCommand {
     #[command(flatten)]
     pub bake: BakeOptions,
 
+    /// How the file is written
+    #[command(flatten, next_help_heading = "Formats")]
+    pub formats: FormatOptions,
+
     /// What to tell
     #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
@@ -168,6 +173,10 @@ pub struct CompressCommand {
     /// How to do it
     #[command(flatten)]
     pub bake: BakeOptions,
+
+    /// How the file is written
+    #[command(flatten, next_help_heading = "Formats")]
+    pub formats: FormatOptions,
 
     /// What to tell
     #[command(flatten, next_help_heading = IO)]
@@ -402,6 +411,10 @@ pub struct SimplifyCommand {
     /// Subdivide instead: split each triangle into four, 1 to 6 times
     #[arg(long, value_name = "TIMES", conflicts_with = "triangles")]
     pub subdivide: Option<u32>,
+
+    /// How the file is written
+    #[command(flatten, next_help_heading = "Formats")]
+    pub formats: FormatOptions,
 
     /// What to tell
     #[command(flatten, next_help_heading = IO)]

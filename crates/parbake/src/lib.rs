@@ -64,8 +64,9 @@ pub use options::{Backdrop, BakeOptions, Convention, Method, Parallax, Preset, S
 pub use options::{heading, parse_texels};
 pub use parbake_atlas::{LayoutCheck, ModelCheck, UvCheck, check_mesh, check_model};
 pub use parbake_files::{
-    FileError, Limits, Loaded, encode_png, read_image, read_model, write_atomically as write_file, write_glb,
-    write_obj,
+    DEFAULT_TEXTURE_QUALITY, FileError, Limits, Loaded, MeshCompression, TextureFormat, WriteOptions,
+    Written, WrittenTexture, encode_png, read_image, read_model, write_atomically as write_file, write_glb,
+    write_glb_with, write_obj,
 };
 pub use parbake_fit::parallax_maps::ParallaxReport;
 pub use parbake_model::{Image as Picture, Model};
