@@ -1,5 +1,6 @@
 //! What can be typed.
 
+use crate::formats::FormatOptions;
 use crate::rules::{NOT_IN_COMPRESS, WITH_NORMAL_MAPS};
 use clap::{Args, Command as Clap, CommandFactory, Parser, Subcommand, ValueEnum};
 use parbake::{BakeOptions, EvaluateOptions, ImageOptions, parse_texels};
@@ -142,6 +143,10 @@ pub struct BakeCommand {
     #[command(flatten, next_help_heading = IO)]
     pub reading: Reading,
 
+    /// How the file is written
+    #[command(flatten, next_help_heading = "Formats")]
+    pub formats: FormatOptions,
+
     /// What to tell
     #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
@@ -184,6 +189,10 @@ pub struct CompressCommand {
     /// What to read
     #[command(flatten, next_help_heading = IO)]
     pub reading: Reading,
+
+    /// How the file is written
+    #[command(flatten, next_help_heading = "Formats")]
+    pub formats: FormatOptions,
 
     /// What to tell
     #[command(flatten, next_help_heading = IO)]
@@ -438,6 +447,10 @@ pub struct SimplifyCommand {
     /// What to read
     #[command(flatten, next_help_heading = IO)]
     pub reading: Reading,
+
+    /// How the file is written
+    #[command(flatten, next_help_heading = "Formats")]
+    pub formats: FormatOptions,
 
     /// What to tell
     #[command(flatten, next_help_heading = IO)]

@@ -3,15 +3,16 @@
 use crate::arguments::{BakeCommand, Talk};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
+use crate::formats::{FormatOptions, write_model};
 use crate::options_file::merged;
-use crate::outputs::{check_beside, check_maps, check_not_input, check_output, is_obj, is_stdout};
+use crate::outputs::{check_beside, check_maps, check_not_input, check_output, is_stdout};
 use crate::progress::{Console, interrupted};
 use crate::rules;
 use clap::ArgMatches;
 use parbake::{
     BakeOptions, BakeReport, Baked, Comparison, Convention, Loaded, Message, Model, NormalY, Stage,
     StageTime, Warning, WarningKind, Watcher, Work, bake, check_budget, compare_bake, read_model,
-    with_normal_y, with_threads, write_file, write_glb, write_obj,
+    with_normal_y, with_threads, write_file,
 };
 use parbake_report::html_report;
 use std::io::Write;
@@ -27,6 +28,7 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
     let (output, inputs) = (&command.output, [command.high.as_path(), command.low.as_path()]);
     check_maps(output, &options)?;
     check_output(output)?;
+    command.formats.check(output)?;
     check_not_input(output, &inputs)?;
     check_beside(Some(output), command.json.as_ref(), command.report.as_ref(), &inputs)?;
     let console = Console::for_bake(command.talk, options.time_budget).confined(command.reading);
@@ -35,7 +37,7 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
         if command.strict {
             check_textures(&pair.warnings)?;
         }
-        let mut baked = bake_and_write(&pair, &options, output, &console)?;
+        let mut baked = bake_and_write(&pair, &options, (output, &command.formats), &console)?;
         if !command.talk.quiet || command.json.is_some() || command.report.is_some() {
             compare(&pair.high, &mut baked, command.report.is_some(), &console)?;
         }
@@ -56,11 +58,6 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
 /// Interrupted only if that cost anything: a report is finished all the same.
 pub fn ending(report: &BakeReport) -> Ending {
     if interrupted() && report.stopped_early { Ending::Interrupted } else { Ending::Finished }
-}
-
-/// Writes a model as its extension says.
-pub fn write_model(path: &Path, model: &Model) -> Result<u64, Failure> {
-    Ok(if is_obj(path) { write_obj(path, model) } else { write_glb(path, model) }?)
 }
 
 /// Refuses the name that elsewhere means standard input.
@@ -116,12 +113,12 @@ pub fn read_pair(high: &Path, low: &Path, console: &Console) -> Result<Pair, Fai
 pub fn bake_and_write(
     pair: &Pair,
     options: &BakeOptions,
-    output: &Path,
+    (output, formats): (&Path, &FormatOptions),
     console: &Console,
 ) -> Result<Baked, Failure> {
     let mut baked = bake(&pair.high, &pair.low, options, console)?;
     let begin = console.seconds();
-    write_model(output, &with_normal_y(&baked.model, options.normal_y))?;
+    write_model(output, &with_normal_y(&baked.model, options.normal_y), formats, console)?;
     let report = &mut baked.report;
     report.warnings.splice(0..0, pair.warnings.iter().map(|warning| warning.text.clone()));
     let reading = pair.seconds.map(|seconds| StageTime { stage: Stage::Read, seconds });

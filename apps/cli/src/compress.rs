@@ -1,9 +1,10 @@
 //! `parbake compress`.
 
 use crate::arguments::CompressCommand;
-use crate::bake::{check_textures, compare, ending, gains, print, read, write_model, write_report};
+use crate::bake::{check_textures, compare, ending, gains, print, read, write_report};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
+use crate::formats::write_model;
 use crate::options_file::merged;
 use crate::outputs::{check_beside, check_not_input, check_output, is_stdout};
 use crate::progress::Console;
@@ -21,6 +22,7 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
     check_budget(&options)?;
     let (output, inputs) = (&command.output, [command.model.as_path()]);
     check_output(output)?;
+    command.formats.check(output)?;
     check_not_input(output, &inputs)?;
     check_beside(Some(output), command.json.as_ref(), command.report.as_ref(), &inputs)?;
     let console = Console::for_bake(command.talk, options.time_budget).confined(command.reading);
@@ -31,7 +33,8 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
         }
         let mut baked = compress(&loaded.model, &options, &console)?;
         let begin = console.seconds();
-        let bytes = [loaded.bytes, write_model(output, &with_normal_y(&baked.model, options.normal_y))?];
+        let model = with_normal_y(&baked.model, options.normal_y);
+        let bytes = [loaded.bytes, write_model(output, &model, &command.formats, &console)?];
         baked.report.warnings.splice(0..0, loaded.warnings.iter().map(|warning| warning.text.clone()));
         baked.report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
         if !command.talk.quiet || command.json.is_some() || command.report.is_some() {

@@ -1,9 +1,10 @@
 //! `parbake image`.
 
 use crate::arguments::ImageCommand;
-use crate::bake::{check_input, print, write_model};
+use crate::bake::{check_input, print};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
+use crate::formats::{FormatOptions, write_model};
 use crate::outputs::{check_animation, check_beside, check_not_input, check_output, is_stdout};
 use crate::progress::{Console, interrupted};
 use crate::rules;
@@ -30,7 +31,8 @@ pub fn run(command: &ImageCommand, given: &ArgMatches) -> Result<Ending, Failure
         let picture = read_image(&command.picture, &Limits::default())?;
         let baked = bake_image(&picture, &command.options, &console)?;
         let before = std::fs::metadata(&command.picture).map_or(0, |file| file.len());
-        let bytes = [before, write_model(&command.output, &baked.model)?];
+        let bytes =
+            [before, write_model(&command.output, &baked.model, &FormatOptions::default(), &console)?];
         if let Some(path) = &command.json {
             let about =
                 ("image", &[("picture", command.picture.as_path())][..], Some(command.output.as_path()));

@@ -9,6 +9,7 @@ mod demo;
 mod document;
 mod evaluate;
 mod failure;
+mod formats;
 mod image;
 mod options_file;
 mod outputs;

@@ -1,8 +1,9 @@
 //! `parbake simplify`.
 
 use crate::arguments::SimplifyCommand;
-use crate::bake::{read, write_model};
+use crate::bake::read;
 use crate::failure::{Ending, Failure};
+use crate::formats::write_model;
 use crate::outputs::{check_not_input, check_output};
 use crate::progress::Console;
 use parbake::{simplified, subdivided};
@@ -10,6 +11,7 @@ use parbake::{simplified, subdivided};
 /// Runs the command.
 pub fn run(command: &SimplifyCommand) -> Result<Ending, Failure> {
     check_output(&command.output)?;
+    command.formats.check(&command.output)?;
     check_not_input(&command.output, &[&command.model])?;
     if command.triangles < 4 {
         return Err(Failure::Usage(format!("--triangles {}: at least 4", command.triangles)));
@@ -21,7 +23,7 @@ pub fn run(command: &SimplifyCommand) -> Result<Ending, Failure> {
         Some(times) => return Err(Failure::Usage(format!("--subdivide {times}: 1 to 6"))),
         None => simplified(&model, command.triangles),
     };
-    write_model(&command.output, &result)?;
+    write_model(&command.output, &result, &command.formats, &console)?;
     console.finish();
     console.say(&format!(
         "{}: {} triangles from {}",

@@ -51,22 +51,22 @@ pub(crate) fn pack_png(image: &Image) -> Result<Vec<u8>, FileError> {
         .map_err(|e| refuse(image, format!("cannot be encoded as PNG: {e}")))
 }
 
-/// What a PNG is made from.
-struct Raw {
-    width: u32,
-    height: u32,
+/// What an image is encoded from.
+pub(crate) struct Raw {
+    pub width: u32,
+    pub height: u32,
     /// Three channels a texel where all is opaque, else four.
-    samples: Vec<u8>,
-    opaque: bool,
+    pub samples: Vec<u8>,
+    pub opaque: bool,
 }
 
 impl Raw {
-    fn new(image: &Image) -> Result<Self, FileError> {
+    pub fn new(image: &Image) -> Result<Self, FileError> {
         let sizes = (u32::try_from(image.width), u32::try_from(image.height));
         let (Ok(width @ 1..), Ok(height @ 1..)) = sizes else {
             return Err(refuse(
                 image,
-                format!("a PNG cannot have {} × {} texels", image.width, image.height),
+                format!("an image cannot have {} × {} texels", image.width, image.height),
             ));
         };
         if image.width.checked_mul(image.height) != Some(image.pixels.len()) {
@@ -83,7 +83,7 @@ impl Raw {
     }
 }
 
-fn refuse(image: &Image, reason: String) -> FileError {
+pub(crate) fn refuse(image: &Image, reason: String) -> FileError {
     FileError::Invalid { path: image.name.clone().into(), place: Place::Image(image.name.clone()), reason }
 }
 

@@ -20,13 +20,15 @@ mod model_out;
 mod obj;
 mod resources;
 mod search;
+mod texture_out;
 mod unit;
 mod warning;
 mod words;
+mod write_options;
 
 pub use atomic::{write_atomically, write_streamed};
 pub use error::{FileError, Place};
-pub use gltf::{glb_bytes, read_gltf_bytes, write_glb};
+pub use gltf::{glb_bytes, read_gltf_bytes, write_glb, write_glb_with};
 pub use image_in::{decode_image, read_image};
 pub use image_out::encode_png;
 pub use limits::Limits;
@@ -34,3 +36,7 @@ pub use model_in::{Loaded, read_geometry, read_model};
 pub use obj::{read_obj_bytes, write_obj};
 pub use resources::{Folder, NoResources, Resources};
 pub use warning::{Warning, WarningKind};
+pub use write_options::{
+    DEFAULT_TEXTURE_QUALITY, LEAST_DATA_QUALITY, MeshCompression, TextureFormat, WriteOptions, Written,
+    WrittenTexture,
+};

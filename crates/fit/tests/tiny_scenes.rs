@@ -78,6 +78,7 @@ struct Scene {
 impl Scene {
     fn new(high: &Model, low: Model, views: usize) -> Self {
         let conventions = Conventions {
+            whole_material: Some(false),
             interpretation: Interpretation::default(),
             display: DISPLAY,
             rig: Rig { radius: 3.5, projection: Projection::Perspective(0.4) },

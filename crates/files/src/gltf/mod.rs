@@ -23,7 +23,9 @@ mod materials;
 mod merge;
 mod meshopt;
 mod meshopt_filter;
+mod meshopt_out;
 mod parallax;
+mod quantise;
 mod references;
 mod runs;
 mod scene;
@@ -37,7 +39,7 @@ mod write_material;
 mod write_mesh;
 mod write_parallax;
 
-pub use write::{glb_bytes, write_glb};
+pub use write::{glb_bytes, write_glb, write_glb_with};
 
 use crate::context::{Context, Textures};
 use crate::finish::finish;

@@ -1,26 +1,42 @@
-//! GLB out (glTF 2.0, sections 3 and 4): one mesh; pictures as PNG inside the file.
+//! GLB out (glTF 2.0, sections 3 and 4): one mesh; pictures inside the file, as PNG if nothing else is
+//! asked for.
 //!
 //! The file passes the Khronos validator without errors, and the same model gives
 //! the same bytes.
 
 use super::binary::Binary;
-use super::write_material::{EMISSIVE_STRENGTH, Materials, UNLIT};
+use super::meshopt_out;
+use super::quantise::Grid;
+use super::write_material::{EMISSIVE_STRENGTH, Materials, UNLIT, use_of};
 use super::write_mesh::primitives;
-use crate::image_out::pack_png;
+use crate::texture_out::{Encoded, encode_texture};
+use crate::write_options::{MeshCompression, WriteOptions, Written, WrittenTexture};
 use crate::{FileError, Place, write_atomically};
 use parbake_model::Model;
 use rayon::prelude::*;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::path::Path;
+
+const WEBP: &str = "EXT_texture_webp";
+const QUANTIZATION: &str = "KHR_mesh_quantization";
 
 /// Writes `model` as a GLB file, and returns its bytes' number.
 ///
 /// # Errors
 /// When the model breaks its contract, or the file cannot be written.
 pub fn write_glb(path: &Path, model: &Model) -> Result<u64, FileError> {
-    let bytes = to_bytes(path, model)?;
+    Ok(write_glb_with(path, model, &WriteOptions::default())?.bytes)
+}
+
+/// As [`write_glb`], with textures and mesh as the options say; returns what the file holds and what
+/// that lost.
+///
+/// # Errors
+/// As [`write_glb`].
+pub fn write_glb_with(path: &Path, model: &Model, options: &WriteOptions) -> Result<Written, FileError> {
+    let (bytes, written) = to_bytes(path, model, options)?;
     write_atomically(path, &bytes)?;
-    Ok(bytes.len() as u64)
+    Ok(written)
 }
 
 /// The bytes of a GLB file of `model`. Errors name the model instead of a file.
@@ -28,31 +44,46 @@ pub fn write_glb(path: &Path, model: &Model) -> Result<u64, FileError> {
 /// # Errors
 /// When the model breaks its contract.
 pub fn glb_bytes(model: &Model) -> Result<Vec<u8>, FileError> {
-    to_bytes(Path::new(&model.name), model)
+    Ok(to_bytes(Path::new(&model.name), model, &WriteOptions::default())?.0)
 }
 
-fn to_bytes(path: &Path, model: &Model) -> Result<Vec<u8>, FileError> {
+fn to_bytes(path: &Path, model: &Model, options: &WriteOptions) -> Result<(Vec<u8>, Written), FileError> {
     crate::model_out::check(path, model)?;
     let mut binary = Binary::default();
-    let materials = Materials::of(model);
-    let primitives = primitives(&mut binary, model, &materials.used);
-    let mut images = Vec::new();
-    let encode = |&image: &usize| pack_png(&model.images[image]);
-    let encoded: Vec<_> = materials.images.par_iter().map(encode).collect::<Result<_, _>>()?;
-    for (&image, png) in materials.images.iter().zip(&encoded) {
-        let view = binary.view(png, None);
-        images.push(json!({ "name": model.images[image].name, "mimeType": "image/png", "bufferView": view }));
+    let mut materials = Materials::of(model);
+    let positions = &model.mesh.positions;
+    let grid = (options.mesh_compression != MeshCompression::None).then(|| Grid::of(positions));
+    let primitives = primitives(&mut binary, model, &materials.used, grid.as_ref());
+    let fallback =
+        (options.mesh_compression == MeshCompression::Meshopt).then(|| meshopt_out::compress(&mut binary));
+    let mesh_bytes = binary.bytes.len() as u64;
+    let encode = |&image: &usize| encode_texture(&model.images[image], use_of(model, image), options);
+    let encoded: Vec<Encoded> = materials.images.par_iter().map(encode).collect::<Result<_, _>>()?;
+    let (mut images, mut textures) = (Vec::new(), Vec::new());
+    for (&image, Encoded { bytes, mime_type, psnr }) in materials.images.iter().zip(&encoded) {
+        let view = binary.view(bytes, None);
+        let name = model.images[image].name.clone();
+        images.push(json!({ "name": name, "mimeType": mime_type, "bufferView": view }));
+        textures.push(WrittenTexture { name, mime_type, bytes: bytes.len() as u64, psnr: *psnr });
     }
+    let uses_webp = name_webp(&mut materials.textures, &textures);
+    let mut node = json!({ "mesh": 0, "name": model.name });
+    if let Some(grid) = &grid {
+        grid.place(&mut node);
+    }
+    let mut buffers = vec![json!({ "byteLength": binary.bytes.len() })];
+    let uses_meshopt = fallback.is_some();
+    buffers.extend(fallback);
     let mut document = json!({
         "asset": { "version": "2.0", "generator": concat!("Parbake ", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
-        "nodes": [{ "mesh": 0, "name": model.name }],
+        "nodes": [node],
         "meshes": [{ "name": model.name, "primitives": primitives }],
         "materials": materials.json,
         "accessors": binary.accessors,
         "bufferViews": binary.views,
-        "buffers": [{ "byteLength": binary.bytes.len() }],
+        "buffers": buffers,
     });
     // glTF has no empty arrays.
     for (key, values) in
@@ -62,16 +93,39 @@ fn to_bytes(path: &Path, model: &Model) -> Result<Vec<u8>, FileError> {
             document[key] = values.into();
         }
     }
+    // Whether it is used, and whether a reader cannot do without it.
     let extensions = [
-        (EMISSIVE_STRENGTH, materials.uses_emissive_strength),
-        (UNLIT, materials.uses_unlit),
-        ("KHR_texture_transform", materials.uses_transforms),
-        (super::parallax::NAME, materials.uses_parallax),
+        (EMISSIVE_STRENGTH, materials.uses_emissive_strength, false),
+        (UNLIT, materials.uses_unlit, false),
+        ("KHR_texture_transform", materials.uses_transforms, false),
+        (super::parallax::NAME, materials.uses_parallax, false),
+        (WEBP, uses_webp, true),
+        (QUANTIZATION, grid.is_some(), true),
+        (meshopt_out::NAME, uses_meshopt, true),
     ];
-    if extensions.iter().any(|e| e.1) {
-        document["extensionsUsed"] = extensions.iter().filter(|e| e.1).map(|e| e.0).collect();
+    for (key, required) in [("extensionsUsed", false), ("extensionsRequired", true)] {
+        let names: Vec<&str> = extensions.iter().filter(|e| e.1 && (e.2 || !required)).map(|e| e.0).collect();
+        if !names.is_empty() {
+            document[key] = names.into();
+        }
     }
-    assemble(path, &document.to_string(), binary.bytes)
+    let bytes = assemble(path, &document.to_string(), binary.bytes)?;
+    let position_error = grid.map_or(0.0, |grid| grid.error(positions));
+    let written = Written { bytes: bytes.len() as u64, mesh_bytes, position_error, textures };
+    Ok((bytes, written))
+}
+
+/// Textures name a WebP image in their extension alone. Whether there are any.
+fn name_webp(textures: &mut [Value], images: &[WrittenTexture]) -> bool {
+    let mut any = false;
+    for texture in textures {
+        let Some(source) = texture["source"].as_u64() else { continue };
+        if images[source as usize].mime_type == "image/webp" {
+            any = true;
+            *texture = json!({ "sampler": texture["sampler"], "extensions": { WEBP: { "source": source } } });
+        }
+    }
+    any
 }
 
 /// Header, JSON chunk, binary chunk; each padded to four bytes.

@@ -5,7 +5,8 @@
 //! out. Factors out of range are clamped. What has no effect is not kept: an alpha cutoff without
 //! [`AlphaMode::Mask`], the strength of emission that is black or of an unlit material.
 
-use parbake_model::{AlphaMode, Material, Model, TextureSlot, UvTransform, Wrap};
+use crate::texture_out::Use;
+use parbake_model::{AlphaMode, Material, Model, ShParallaxMap, TextureSlot, UvTransform, Wrap};
 use serde_json::{Value, json};
 
 pub(super) const EMISSIVE_STRENGTH: &str = "KHR_materials_emissive_strength";
@@ -166,6 +167,28 @@ impl Materials {
             self.textures.push(json!({ "source": source, "sampler": sampler }));
         }
         index
+    }
+}
+
+/// What an image is used for, by the strictest of the materials' slots that have it.
+pub(super) fn use_of(model: &Model, image: usize) -> Use {
+    let any = |slots: [&Option<TextureSlot>; 3]| slots.into_iter().flatten().any(|s| s.image == image);
+    let is_data =
+        |m: &Material| any([&m.normal_texture, &m.metallic_roughness_texture, &m.occlusion_texture]);
+    let maps = || model.materials.iter().filter_map(|m| m.parallax.as_ref());
+    let is_exact = |map: &ShParallaxMap| {
+        map.images.contains(&image)
+            || map.depth.as_ref().is_some_and(|depth| depth.image == image)
+            || map.cutout.as_ref().is_some_and(|cutout| cutout.images.contains(&image))
+    };
+    if maps().any(is_exact) {
+        Use::Exact
+    } else if model.materials.iter().any(is_data)
+        || maps().any(|map| any([&map.normal_texture, &None, &None]))
+    {
+        Use::Data
+    } else {
+        Use::Color
     }
 }
 

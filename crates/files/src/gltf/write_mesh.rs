@@ -5,6 +5,7 @@
 //! they are many, and come back to the bit.
 
 use super::binary::Binary;
+use super::quantise::{Grid, byte, signed_byte};
 use super::runs::{Run, runs};
 use crate::unit::{unit, unit_tangent};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
@@ -13,18 +14,32 @@ use parbake_model::{is_short, nearest_short, short_uvs_pay};
 use serde_json::{Value, json};
 
 /// The primitives of a model's mesh; `used` are the materials that its triangles name, which
-/// primitives name by their places there.
-pub fn primitives(binary: &mut Binary, model: &Model, used: &[usize]) -> Vec<Value> {
+/// primitives name by their places there. With a grid, vertices are quantised.
+pub fn primitives(binary: &mut Binary, model: &Model, used: &[usize], grid: Option<&Grid>) -> Vec<Value> {
     let mesh = repaired(model);
-    let sets = [&mesh.uvs, &mesh.uvs1].map(|uvs| short_uvs_pay(uvs.len()) && uvs.iter().all(is_short));
-    match runs(&mesh, stride(&mesh, sets)) {
-        None => whole(binary, &mesh, sets, used),
-        Some(runs) => in_runs(binary, &mesh, sets, &runs),
+    let short = |uvs: &Vec<Vec2>| match grid {
+        None => short_uvs_pay(uvs.len()) && uvs.iter().all(is_short),
+        // Coordinates that tile stay floats.
+        Some(_) => uvs.iter().all(|uv| uv.cmpge(Vec2::ZERO).all() && uv.cmple(Vec2::ONE).all()),
+    };
+    let stored = Stored { short_sets: [&mesh.uvs, &mesh.uvs1].map(short), grid };
+    match runs(&mesh, stride(&mesh, stored.short_sets)) {
+        None => whole(binary, &mesh, stored, used),
+        Some(runs) => in_runs(binary, &mesh, stored, &runs),
     }
 }
 
-fn whole(binary: &mut Binary, mesh: &Mesh, sets: [bool; 2], used: &[usize]) -> Vec<Value> {
-    let attributes = attributes(binary, mesh, sets);
+/// How vertices are stored.
+#[derive(Clone, Copy)]
+struct Stored<'a> {
+    /// Which sets of texture coordinates take two bytes a channel.
+    short_sets: [bool; 2],
+    /// The grid of positions; all other attributes are bytes then.
+    grid: Option<&'a Grid>,
+}
+
+fn whole(binary: &mut Binary, mesh: &Mesh, stored: Stored<'_>, used: &[usize]) -> Vec<Value> {
+    let attributes = attributes(binary, mesh, stored);
     let primitive = |(place, &material): (usize, &usize)| {
         let indices = binary.indices(&triangles_of(mesh, material), mesh.positions.len());
         json!({ "attributes": attributes, "indices": indices, "material": place })
@@ -33,7 +48,7 @@ fn whole(binary: &mut Binary, mesh: &Mesh, sets: [bool; 2], used: &[usize]) -> V
 }
 
 /// Runs, which have one material; indices that an earlier run has are its.
-fn in_runs(binary: &mut Binary, mesh: &Mesh, sets: [bool; 2], runs: &[Run]) -> Vec<Value> {
+fn in_runs(binary: &mut Binary, mesh: &Mesh, stored: Stored<'_>, runs: &[Run]) -> Vec<Value> {
     let mut written: Vec<(&Run, usize)> = Vec::new();
     let mut primitives = Vec::with_capacity(runs.len());
     for run in runs {
@@ -43,7 +58,7 @@ fn in_runs(binary: &mut Binary, mesh: &Mesh, sets: [bool; 2], runs: &[Run]) -> V
             None => binary.indices(&run.triangles, run.vertices.len()),
         };
         written.push((run, indices));
-        let attributes = attributes(binary, &part(mesh, &run.vertices), sets);
+        let attributes = attributes(binary, &part(mesh, &run.vertices), stored);
         primitives.push(json!({ "attributes": attributes, "indices": indices, "material": 0 }));
     }
     primitives
@@ -104,16 +119,34 @@ fn part(mesh: &Mesh, vertices: &[u32]) -> Mesh {
     }
 }
 
-fn attributes(binary: &mut Binary, mesh: &Mesh, sets: [bool; 2]) -> Value {
-    let mut attributes = json!({ "POSITION": positions(binary, &mesh.positions) });
+fn attributes(binary: &mut Binary, mesh: &Mesh, Stored { short_sets, grid }: Stored<'_>) -> Value {
+    let small = grid.is_some();
+    let positions = match grid {
+        Some(grid) => quantised_positions(binary, &mesh.positions, grid),
+        None => positions(binary, &mesh.positions),
+    };
+    let mut attributes = json!({ "POSITION": positions });
     if !mesh.normals.is_empty() {
-        attributes["NORMAL"] = binary.floats("VEC3", mesh.normals.iter().map(|n| n.to_array())).into();
+        let normals = &mesh.normals;
+        let accessor = if small {
+            let rows = normals.iter().map(|n| n.extend(0.0).to_array().map(signed_byte));
+            binary.normalised_bytes("VEC3", true, rows)
+        } else {
+            binary.floats("VEC3", normals.iter().map(|n| n.to_array()))
+        };
+        attributes["NORMAL"] = accessor.into();
     }
     if !mesh.tangents.is_empty() {
-        attributes["TANGENT"] = binary.floats("VEC4", mesh.tangents.iter().map(|t| t.to_array())).into();
+        let rows = mesh.tangents.iter().map(|t| t.to_array());
+        let accessor = if small {
+            binary.normalised_bytes("VEC4", true, rows.map(|t| t.map(signed_byte)))
+        } else {
+            binary.floats("VEC4", rows)
+        };
+        attributes["TANGENT"] = accessor.into();
     }
     for (set, uvs) in [&mesh.uvs, &mesh.uvs1].into_iter().enumerate().filter(|(_, uvs)| !uvs.is_empty()) {
-        let accessor = if sets[set] {
+        let accessor = if short_sets[set] {
             binary.normalised_shorts(uvs.iter().map(|uv| uv.to_array().map(nearest_short)))
         } else {
             binary.floats("VEC2", uvs.iter().map(|uv| uv.to_array()))
@@ -121,9 +154,28 @@ fn attributes(binary: &mut Binary, mesh: &Mesh, sets: [bool; 2]) -> Value {
         attributes[format!("TEXCOORD_{set}")] = accessor.into();
     }
     if !mesh.colors.is_empty() {
-        attributes["COLOR_0"] = binary.floats("VEC4", mesh.colors.iter().map(|c| c.to_array())).into();
+        let rows = mesh.colors.iter().map(|c| c.to_array());
+        let accessor = if small {
+            binary.normalised_bytes("VEC4", false, rows.map(|c| c.map(byte)))
+        } else {
+            binary.floats("VEC4", rows)
+        };
+        attributes["COLOR_0"] = accessor.into();
     }
     attributes
+}
+
+/// Positions as integers, and the bounds of these.
+fn quantised_positions(binary: &mut Binary, positions: &[Vec3], grid: &Grid) -> usize {
+    let integers: Vec<[u16; 3]> = positions.iter().map(|&p| grid.integers(p)).collect();
+    let bound = |start: u16, fold: fn(u16, u16) -> u16| {
+        integers.iter().fold([start; 3], |a, b| [fold(a[0], b[0]), fold(a[1], b[1]), fold(a[2], b[2])])
+    };
+    let bounds = [bound(u16::MAX, u16::min), bound(0, u16::max)];
+    let accessor = binary.short_positions(integers.into_iter());
+    binary.accessors[accessor]["min"] = json!(bounds[0]);
+    binary.accessors[accessor]["max"] = json!(bounds[1]);
+    accessor
 }
 
 /// Positions, which alone must have their bounds said.

@@ -5,7 +5,9 @@
 //! Khronos validator to look at (`tools/validate_gltf`).
 
 use crate::common::keep;
-use parbake_files::{Limits, read_model, write_glb, write_obj};
+use parbake_files::{
+    Limits, MeshCompression, TextureFormat, WriteOptions, read_model, write_glb, write_glb_with, write_obj,
+};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{
     AlphaMode, CutoutMap, DepthMap, Image, Material, Mesh, Model, ShParallaxMap, TextureSlot, UvTransform,
@@ -109,6 +111,64 @@ fn glb_comes_back_whole() {
         assert_eq!(names(folder.path()), ["model.glb"]);
         keep(&path, &format!("grid-{side}.glb")).unwrap();
     }
+}
+
+/// Protects what is written small: it comes back within what the writer says that it lost.
+#[test]
+fn quantised_meshes_and_other_pictures_come_back() {
+    let folder = tempfile::tempdir().unwrap();
+    for (format, name) in
+        [(TextureFormat::Png, "png"), (TextureFormat::Jpeg, "jpeg"), (TextureFormat::Webp, "webp")]
+    {
+        let model = rich(9);
+        let path = folder.path().join(format!("{name}.glb"));
+        let options = WriteOptions {
+            texture_format: format,
+            mesh_compression: MeshCompression::Quantized,
+            ..WriteOptions::default()
+        };
+        let written = write_glb_with(&path, &model, &options).unwrap();
+        keep(&path, &format!("quantised-{name}.glb")).unwrap();
+        assert_eq!(written.bytes, std::fs::metadata(&path).unwrap().len());
+        assert!(written.position_error > 0.0 && written.position_error < 3e-5, "{written:?}");
+        let loaded = read_model(&path, &Limits::default()).unwrap();
+        assert_eq!(loaded.warnings, [""; 0]);
+        let (back, mesh) = (&loaded.model.mesh, &model.mesh);
+        for (back_triangle, triangle) in back.triangles.iter().zip(&mesh.triangles) {
+            for (&b, &t) in back_triangle.iter().zip(triangle) {
+                let (b, t) = (b as usize, t as usize);
+                let moved = (back.positions[b] - mesh.positions[t]).length();
+                assert!(f64::from(moved) < written.position_error + 1e-6);
+                assert!(back.normals[b].dot(mesh.normals[t]) > 0.999);
+                assert!(back.tangents[b].dot(mesh.tangents[t]) > 1.998);
+                assert!((back.uvs[b] - mesh.uvs[t]).length() < 2e-5);
+                assert!((back.uvs1[b] - mesh.uvs1[t]).length() < 2e-5);
+                assert!((back.colors[b] - mesh.colors[t]).length() < 8e-3);
+            }
+        }
+        if format != TextureFormat::Jpeg {
+            assert_eq!(loaded.model.images, model.images);
+        }
+    }
+}
+
+/// Protects compressed files: they are smaller, and the same bytes each time. The Khronos validator and
+/// viewers see what is kept.
+#[test]
+fn meshopt_files_are_small_and_repeatable() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = rich(60);
+    let bytes = |compression| {
+        let path = folder.path().join("model.glb");
+        let options = WriteOptions { mesh_compression: compression, ..WriteOptions::default() };
+        let written = write_glb_with(&path, &model, &options).unwrap();
+        keep(&path, &format!("mesh-{compression:?}.glb")).unwrap();
+        (written.mesh_bytes, std::fs::read(&path).unwrap())
+    };
+    let [none, quantised, meshopt] =
+        [MeshCompression::None, MeshCompression::Quantized, MeshCompression::Meshopt].map(bytes);
+    assert!(2 * quantised.0 < none.0 + none.0 / 2 && 2 * meshopt.0 < quantised.0);
+    assert_eq!(bytes(MeshCompression::Meshopt).1, meshopt.1);
 }
 
 /// Protects planes of pictures: a grid comes back as it was though its rows share their indices and its

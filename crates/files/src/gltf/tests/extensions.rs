@@ -50,7 +50,10 @@ fn factors_are_kept_and_losses_told() {
     // What changes nothing is not told.
     let names = ["clearcoat", "sheen", "transmission", "volume"].map(|n| format!("KHR_materials_{n}"));
     assert_eq!(told, names, "{:?}", loaded.warnings);
-    assert!(loaded.warnings[0].text.contains("with its textures") && loaded.warnings[0].text.contains("\"glass\""));
+    assert!(
+        loaded.warnings[0].text.contains("with its textures")
+            && loaded.warnings[0].text.contains("\"glass\"")
+    );
     let plain = read_value(&with_materials(json!([{}]), &[])).unwrap();
     assert!(plain.model.materials[0].extensions.is_empty() && plain.warnings.is_empty());
 }
