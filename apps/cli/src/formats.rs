@@ -33,7 +33,7 @@ pub enum TextureFormatName {
     Png,
     /// Lossy; textures with alpha and parallax maps stay PNG
     Jpeg,
-    /// Lossless WebP, smaller than PNG; viewers need EXT_texture_webp
+    /// Lossless WebP, often larger than our packed PNG; viewers need EXT_texture_webp
     Webp,
 }
 

@@ -11,7 +11,7 @@ pub enum TextureFormat {
     Png,
     /// Lossy; every viewer reads it. Textures with alpha, and maps of spherical harmonics, stay PNG.
     Jpeg,
-    /// Lossless WebP (`EXT_texture_webp`): smaller than PNG. No lossy encoder of a permissive licence is
+    /// Lossless WebP (`EXT_texture_webp`), often larger than the packed PNG. No lossy encoder of a permissive licence is
     /// in use here.
     Webp,
 }
