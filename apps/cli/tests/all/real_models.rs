@@ -11,30 +11,26 @@ fn obj_in(folder: &Path) -> PathBuf {
     files.into_iter().find(|p| p.extension().is_some_and(|e| e == "obj")).unwrap()
 }
 
-/// Protects the product's first promise: on low-polys of 34 to 218 triangles a bake
-/// looks far more like the high-poly than a projection.
+/// Protects the product's first promise: on a coarse low-poly a bake with default options looks far more like
+/// the high-poly than a projection. The gains of all four pairs are guarded by `.ci/run`, on smaller textures
+/// (`docs/quick_record.json`).
 #[test]
-fn coarsest_levels_reach_their_figures() {
+fn a_coarse_level_reaches_its_figures() {
     let Some(data) = real_models() else { return };
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    for (name, floor, gain) in [
-        ("chinese_hand_fan", 25.3, 2.4),
-        ("lego_figure", 24.2, 1.5),
-        ("lemon", 27.3, 0.7),
-        ("mask", 26.0, 1.9),
-    ] {
-        let pair = data.join("pairs").join(name);
-        let (high, low) = (pair.join("high/hp.obj"), obj_in(&pair.join("low_simplygon50")));
-        let bake = |output: &str, more: &[&str]| {
-            let arguments = ["bake", high.to_str().unwrap(), low.to_str().unwrap(), "-q", "-o", output];
-            run(folder, &[&arguments[..], more].concat());
-            psnr(folder, &high, output.as_ref())
-        };
-        let (baked, projected) = (bake("baked.glb", &[]), bake("projected.glb", &["--rounds", "0"]));
-        eprintln!("{name}: {projected:.2} dB projected, {baked:.2} dB baked");
-        assert!(baked >= floor && baked - projected >= gain, "{name}: {projected} {baked}");
-    }
+    let (name, floor, gain) = ("lego_figure", 24.2, 1.5);
+    let pair = data.join("pairs").join(name);
+    let (high, low) = (pair.join("high/hp.obj"), obj_in(&pair.join("low_simplygon50")));
+    let bake = |output: &str, more: &[&str]| {
+        let arguments = ["bake", high.to_str().unwrap(), low.to_str().unwrap(), "-q", "-o", output];
+        run(folder, &[&arguments[..], more].concat());
+        psnr(folder, &high, output.as_ref())
+    };
+    let plain = ["--rounds", "0", "--uv", "keep", "--shape", "keep"];
+    let (baked, projected) = (bake("baked.glb", &[]), bake("projected.glb", &plain));
+    eprintln!("{name}: {projected:.2} dB projected, {baked:.2} dB baked");
+    assert!(baked >= floor && baked - projected >= gain, "{name}: {projected} {baked}");
 }
 
 /// Protects the way of a modern asset: a GLB with several textures is simplified,
