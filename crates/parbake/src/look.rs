@@ -156,3 +156,72 @@ fn constant(image: &Image) -> Option<[u8; 4]> {
     let is_constant = low.iter().zip(&high).all(|(l, h)| h.saturating_sub(*l) <= 2);
     is_constant.then(|| std::array::from_fn(|k| u8::midpoint(low[k], high[k])))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn whole(modes: Vec<AlphaMode>) -> Look {
+        Look { modes, is_whole: true, emissive_strength: 3.0, is_unlit: false }
+    }
+
+    fn image(pixels: [[u8; 4]; 2]) -> Image {
+        Image { name: "map".into(), width: 2, height: 1, pixels: pixels.to_vec() }
+    }
+
+    fn two_triangles() -> Model {
+        let mesh = Mesh { triangles: vec![[0, 0, 0]; 2], triangle_materials: vec![0; 2], ..Mesh::default() };
+        Model { name: "low".into(), mesh, ..Model::default() }
+    }
+
+    /// Protects small files: maps of one value become factors.
+    #[test]
+    fn constant_maps_are_factors() {
+        let maps = vec![
+            (MapKind::BaseColor, image([[255, 188, 0, 255]; 2])),
+            (MapKind::Normal, image([[128, 128, 255, 255]; 2])),
+            (MapKind::MetallicRoughness, image([[0, 51, 255, 255], [0, 52, 255, 255]])),
+            (MapKind::Emissive, image([[255, 255, 255, 255]; 2])),
+            (MapKind::Occlusion, image([[255, 0, 0, 255]; 2])),
+        ];
+        let low = two_triangles();
+        let model = whole(vec![AlphaMode::Opaque; 2]).textured(&low, &low.mesh, maps, None);
+        let [material] = &model.materials[..] else { panic!("one material") };
+        assert!(model.images.is_empty() && material.all_texture_slots().next().is_none());
+        assert_eq!((material.metallic, material.emissive_strength), (1.0, 3.0));
+        assert!((material.roughness - 0.2).abs() < 0.01 && (material.base_color[1] - 0.5).abs() < 0.01);
+    }
+
+    /// Protects the number of textures: occlusion, roughness and metallic are one image.
+    #[test]
+    fn occlusion_roughness_and_metallic_share_an_image() {
+        let maps = vec![
+            (MapKind::BaseColor, image([[255, 188, 0, 255], [0, 0, 0, 255]])),
+            (MapKind::MetallicRoughness, image([[0, 51, 255, 255], [0, 99, 255, 255]])),
+            (MapKind::Occlusion, image([[255, 0, 0, 255], [40, 0, 0, 255]])),
+        ];
+        let low = two_triangles();
+        let model = whole(vec![AlphaMode::Opaque; 2]).textured(&low, &low.mesh, maps, None);
+        let material = &model.materials[0];
+        let slots = (material.metallic_roughness_texture, material.occlusion_texture);
+        assert_eq!(slots.0.map(|s| s.image), slots.1.map(|s| s.image));
+        assert_eq!(model.images.len(), 2);
+        assert_eq!(model.images[1].pixels, [[255, 51, 255, 255], [40, 99, 255, 255]]);
+    }
+
+    /// Protects draw calls: there is one material for each alpha mode in use, on the same textures.
+    #[test]
+    fn each_alpha_mode_has_one_material() {
+        let maps = vec![(MapKind::BaseColor, image([[255, 188, 0, 9], [0, 0, 0, 255]]))];
+        let low = two_triangles();
+        let modes = vec![AlphaMode::Blend, AlphaMode::Opaque];
+        let model = whole(modes.clone()).textured(&low, &low.mesh, maps, None);
+        let found: Vec<AlphaMode> = model
+            .mesh
+            .triangle_materials
+            .iter()
+            .map(|&material| model.materials[material as usize].alpha_mode)
+            .collect();
+        assert_eq!((found, model.images.len()), (modes, 1));
+    }
+}

@@ -287,3 +287,108 @@ impl Point {
         (frame.inverse() * world).normalize_or(Vec3::Z)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::alpha_layers::{alpha_layers, alpha_modes};
+    use crate::high_poly::Conventions;
+    use crate::low_poly::LowPoly;
+    use crate::pool::Rig;
+    use crate::reference::Sampling;
+    use parbake_image::display::{Curve, Display};
+    use parbake_model::glam::vec2;
+    use parbake_model::{Material, Model};
+    use parbake_render::camera::Projection;
+    use parbake_render::interpretation::Interpretation;
+
+    /// Two squares of side 2 across the z axis, at these heights; each has a material and a half of the
+    /// texture.
+    fn squares(heights: [f32; 2], materials: Vec<Material>) -> Model {
+        let corners = [(-1.0f32, -1.0f32), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let mut mesh = Mesh::default();
+        for (index, z) in heights.into_iter().enumerate() {
+            let first = mesh.positions.len() as u32;
+            for (x, y) in corners {
+                mesh.positions.push(Vec3::new(x, y, z));
+                mesh.normals.push(Vec3::Z);
+                mesh.uvs.push(vec2(
+                    0.25 * (x + 1.0) * 0.9 + 0.5 * index as f32 + 0.02,
+                    0.5 * (1.0 - y) * 0.9 + 0.02,
+                ));
+            }
+            mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+            mesh.triangle_materials.extend([index as u32; 2]);
+        }
+        Model { name: "squares".into(), mesh, materials, images: Vec::new() }
+    }
+
+    fn sampled(high: &Model, low: &Model) -> Vec<MaterialSample> {
+        let conventions = Conventions {
+            interpretation: Interpretation::default(),
+            display: Display { gain: 1.0, curve: Curve::Srgb },
+            whole_material: Some(true),
+            rig: Rig { radius: 3.5, projection: Projection::Perspective(0.4) },
+            max_distance: 0.1,
+        };
+        let high = HighPoly::new(high, conventions).expect("it has an extent");
+        let prepared = LowPoly::new(low, &high.frame, 32).expect("it has coordinates");
+        let layers = alpha_layers(&alpha_modes(&prepared.placed, low, &high), &high);
+        let set = ViewSet {
+            count: 12,
+            seed: 1,
+            jitter: true,
+            sampling: Sampling { size: 32, filter: 0.5, samples: 1 },
+        };
+        let sampler = MaterialSampler { high: &high, low: &prepared.placed, layers: &layers, shift: None };
+        sampler.samples(&set, 32, &()).0.iter().copied().collect()
+    }
+
+    /// Protects whole materials: samples carry factors of metal, roughness and colour, and a normal that
+    /// looks out of the surface.
+    #[test]
+    fn samples_carry_the_material() {
+        let metal = Material {
+            base_color: [0.5, 0.25, 1.0, 1.0],
+            metallic: 1.0,
+            roughness: 0.25,
+            ..Material::default()
+        };
+        let model = squares([0.0, 0.5], vec![metal.clone(), metal]);
+        let samples = sampled(&model, &model);
+        assert!(samples.len() > 500, "{}", samples.len());
+        for sample in samples {
+            let found = sample.target(MapKind::MetallicRoughness);
+            assert!((found - Vec4::new(0.0, 0.25, 1.0, 0.0)).length() < 1e-3, "{found}");
+            assert!((sample.target(MapKind::BaseColor).y - 0.5371).abs() < 1e-3);
+            assert!(sample.target(MapKind::Normal).z > 0.99);
+        }
+    }
+
+    /// Protects what is behind glass: a pane before a wall is sampled as a layer of its own, and the wall
+    /// is seen through it.
+    #[test]
+    fn panes_and_what_is_behind_them_are_layers() {
+        let wall = Material { base_color: [1.0, 0.0, 0.0, 1.0], ..Material::default() };
+        let glass = Material {
+            base_color: [0.0, 0.0, 1.0, 0.25],
+            alpha_mode: AlphaMode::Blend,
+            ..Material::default()
+        };
+        let model = squares([0.0, 0.5], vec![wall, glass]);
+        let samples = sampled(&model, &model);
+        let is_glass = |s: &&MaterialSample| s.texel() % 32 >= 16;
+        let (panes, walls): (Vec<&MaterialSample>, Vec<&MaterialSample>) = samples.iter().partition(is_glass);
+        assert!(panes.len() > 200 && walls.len() > 200, "{} {}", panes.len(), walls.len());
+        for pane in panes {
+            let color = pane.target(MapKind::BaseColor);
+            assert!((color - Vec4::new(0.0, 0.0, 1.0, 0.25)).length() < 1e-3, "{color}");
+            assert_eq!(pane.opacity_weight(), 1.0);
+        }
+        for wall in walls {
+            let color = wall.target(MapKind::BaseColor);
+            assert!((color - Vec4::new(1.0, 0.0, 0.0, 1.0)).length() < 1e-3, "{color}");
+            assert_eq!(wall.opacity_weight(), 0.0);
+        }
+    }
+}

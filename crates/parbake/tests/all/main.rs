@@ -2,6 +2,7 @@
 //! would be linked with everything anew.
 
 mod emission;
+mod material;
 mod paper_picture;
 mod paper_uv;
 mod parallax;
