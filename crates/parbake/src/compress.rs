@@ -18,12 +18,12 @@
 use crate::bake::{Baked, bake_onto_itself};
 use crate::budget::check_budget;
 use crate::error::BakeError;
-use crate::options::{BakeOptions, Convention, Parallax, UvMode};
+use crate::options::{BakeOptions, Convention, Parallax, Shading, UvMode};
 use crate::report::{BakeReport, LossStep, Work, layout_warning};
 use parbake_atlas::{check_mesh, in_one_tile};
 use parbake_mesh::{HighSurface, visibilities};
 use parbake_model::glam::DVec2;
-use parbake_model::{Image, Material, Mesh, Model, Placement, TextureSlot, Wrap};
+use parbake_model::{AlphaMode, Image, Material, Mesh, Model, Placement, TextureSlot, Wrap};
 use parbake_progress::{Clock, Message, ProgressScope, Stage, Watcher};
 use parbake_render::scene::Scene;
 use parbake_uv::surface::{
@@ -41,8 +41,8 @@ const BRIGHTENED: f32 = 0.5;
 
 /// Bakes a model onto itself with a smaller texture.
 ///
-/// A model with a normal map is baked as a pair is, since its normal map must follow the
-/// coordinates; so is one whose texture repeats, if its coordinates are to be kept.
+/// A model with a normal map, or with more to its materials than colour, is baked as a pair is, since all
+/// of its maps must follow the coordinates; so is one whose texture repeats, if its coordinates are to be kept.
 ///
 /// # Errors
 /// As of [`crate::bake`].
@@ -60,7 +60,9 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> 
     }
     let slack = 0.5 / options.texture_size as f64;
     let keeps_tiles = options.uv == UvMode::Keep && !is_in_the_square(&delivered.mesh, slack);
-    if keeps_tiles || model.materials.iter().any(|m| m.normal_texture.is_some()) {
+    let is_whole = options.shading != Shading::Lambert && options.convention == Convention::Gltf;
+    let is_plain = |m: &Material| m.normal_texture.is_none() && !(is_whole && has_more_than_colour(m));
+    if keeps_tiles || !model.materials.iter().all(is_plain) {
         return bake_onto_itself(model, options, watcher);
     }
     let begin = Instant::now();
@@ -123,6 +125,13 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> 
         report,
         uv_moves: written.low.moves,
     })
+}
+
+/// Whether a material has maps or factors that a texture of colours alone would lose.
+fn has_more_than_colour(material: &Material) -> bool {
+    let is_shiny = (material.metallic, material.roughness) != (0.0, 1.0);
+    let is_lit_otherwise = material.occlusion_texture.is_some() || material.emissive != [0.0; 3];
+    is_shiny || is_lit_otherwise || material.unlit || material.alpha_mode != AlphaMode::Opaque
 }
 
 /// Width of a sample in the common frame: that of views, or of a texel where those are finer, for who

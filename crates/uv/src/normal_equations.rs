@@ -50,7 +50,7 @@ impl NormalEquations {
                 let diagonal: f32 = levels
                     .iter()
                     .enumerate()
-                    .map(|(l, m)| m.rows[(y >> l) * m.size + (x >> l)].centre / (1 << (4 * l)) as f32)
+                    .map(|(l, m)| m.rows[(y >> l) * m.size + (x >> l)].centre / (1u64 << (4 * l)) as f32)
                     .sum();
                 1.0 / diagonal.max(1e-30)
             })
