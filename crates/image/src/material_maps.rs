@@ -2,7 +2,7 @@
 
 use crate::maps::{MapKind, MapValues};
 use glam::{Vec3, Vec4};
-use parbake_model::{Material, TextureSlot};
+use parbake_model::{AlphaMode, Material, TextureSlot};
 
 /// The texture of a map, as viewers see it that know no parallax maps.
 pub fn texture_slot(material: &Material, kind: MapKind) -> Option<TextureSlot> {
@@ -41,6 +41,27 @@ pub fn factors(material: &Material) -> MapValues {
     factors
 }
 
+/// How the alpha of a material is fitted, and what multiplies its opacity. Light that passes a dielectric
+/// (`KHR_materials_transmission` without a texture) is approximated by blending, of which some is left for
+/// what the surface reflects.
+pub fn fitted_alpha(material: &Material) -> (AlphaMode, f32) {
+    let passing = material.extensions.transmission.filter(|t| !t.textured && t.factor > LEAST_TRANSMISSION);
+    match (material.alpha_mode, passing) {
+        (AlphaMode::Mask, _) | (_, None) => (material.alpha_mode, 1.0),
+        (_, Some(transmission)) => {
+            let passes = (transmission.factor * (1.0 - material.metallic)).clamp(0.0, 1.0);
+            (AlphaMode::Blend, 1.0 - (1.0 - REFLECTED) * passes)
+        }
+    }
+}
+
+/// Less light that passes than this is not worth a layer.
+const LEAST_TRANSMISSION: f32 = 0.05;
+
+/// Opacity of a surface that all light passes which is not reflected: about what smooth glass reflects,
+/// averaged over the half-sphere.
+const REFLECTED: f32 = 0.09;
+
 /// Gives a material a map; its factor becomes 1.
 pub fn set_texture(material: &mut Material, kind: MapKind, slot: TextureSlot) {
     match kind {
@@ -55,5 +76,28 @@ pub fn set_texture(material: &mut Material, kind: MapKind, slot: TextureSlot) {
             material.emissive_texture = Some(slot);
         }
         MapKind::Occlusion => material.occlusion_texture = Some(slot),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parbake_model::{MaterialExtensions, Transmission};
+
+    /// Protects glass: what all light passes is blended, metal and cut-outs are not.
+    #[test]
+    fn transmission_is_blended() {
+        let passing = |factor, textured| MaterialExtensions {
+            transmission: Some(Transmission { factor, textured }),
+            ..MaterialExtensions::default()
+        };
+        let glass = Material { extensions: passing(1.0, false), ..Material::default() };
+        assert_eq!(fitted_alpha(&glass), (AlphaMode::Blend, REFLECTED));
+        let mask = Material { alpha_mode: AlphaMode::Mask, ..glass.clone() };
+        assert_eq!(fitted_alpha(&mask), (AlphaMode::Mask, 1.0));
+        let textured = Material { extensions: passing(1.0, true), ..glass.clone() };
+        assert_eq!(fitted_alpha(&textured), (AlphaMode::Opaque, 1.0));
+        let metal = Material { metallic: 1.0, ..glass };
+        assert_eq!(fitted_alpha(&metal).1, 1.0);
     }
 }

@@ -11,7 +11,7 @@ use crate::interpretation::Interpretation;
 use crate::parallax::{ShParallax, ViewDirection};
 use parbake_image::display::encode_srgb;
 use parbake_image::maps::KINDS;
-use parbake_image::material_maps::{factors, shifted_texture_slot, texture_slot};
+use parbake_image::material_maps::{factors, fitted_alpha, shifted_texture_slot, texture_slot};
 use parbake_image::pyramid::Pyramid;
 use parbake_image::quantise::decoded;
 use parbake_image::{Encoding, FloatImage, MapKind, MapValues};
@@ -127,8 +127,10 @@ impl<'a> Builder<'a> {
             }
         }
         let plain = MapKind::ALL.map(|kind| self.map(kind, texture_slot(material, kind)));
-        let (alpha_mode, alpha_cutoff) = (material.alpha_mode, material.alpha_cutoff);
-        let color = material.base_color_texture.filter(|_| alpha_mode != AlphaMode::Opaque);
+        let ((alpha_mode, opacity), alpha_cutoff) = (fitted_alpha(material), material.alpha_cutoff);
+        let own = if material.alpha_mode == AlphaMode::Opaque { 1.0 } else { factors[MapKind::BaseColor].w };
+        factors[MapKind::BaseColor].w = own * opacity;
+        let color = material.base_color_texture.filter(|_| material.alpha_mode != AlphaMode::Opaque);
         let opacity = self.pyramid(color, Use::Opacity);
         let (is_unlit, shifted) = (material.unlit, self.shifted(material));
         Surface { factors, alpha_mode, alpha_cutoff, is_unlit, opacity, plain, shifted }

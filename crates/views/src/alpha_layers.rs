@@ -6,6 +6,7 @@
 //! are left out.
 
 use crate::high_poly::HighPoly;
+use parbake_image::material_maps::fitted_alpha;
 use parbake_model::AlphaMode;
 use parbake_model::glam::Vec3;
 use parbake_model::{Mesh, Model};
@@ -38,9 +39,9 @@ pub fn alpha_modes(low: &Mesh, delivered: &Model, high: &HighPoly) -> Vec<AlphaM
     if scene.mesh().triangle_materials.is_empty() || !scene.has_alpha() {
         return vec![AlphaMode::Opaque; count];
     }
-    let is_told = delivered.materials.iter().any(|m| m.alpha_mode != AlphaMode::Opaque);
+    let is_told = delivered.materials.iter().any(|m| fitted_alpha(m).0 != AlphaMode::Opaque);
     if is_told && delivered.mesh.triangles.len() == count {
-        let mode = |&material: &u32| delivered.materials[material as usize].alpha_mode;
+        let mode = |&material: &u32| fitted_alpha(&delivered.materials[material as usize]).0;
         return delivered.mesh.triangle_materials.iter().map(mode).collect();
     }
     (0..count)

@@ -104,7 +104,7 @@ const LOSSES: [Loss; 10] = [
     ("KHR_materials_sheen", "the soft light of cloth at grazing angles", |e| {
         e.sheen.filter(|s| s.color != [0.0; 3] || s.textured).map(|s| s.textured)
     }),
-    ("KHR_materials_transmission", "what is seen through the surface", |e| {
+    ("KHR_materials_transmission", "refraction, blur and tint of what is seen through the surface", |e| {
         e.transmission.filter(|t| t.factor > 0.0).map(|t| t.textured)
     }),
     ("KHR_materials_diffuse_transmission", "the light that shines through from behind", |e| {
