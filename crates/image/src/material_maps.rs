@@ -62,6 +62,35 @@ const LEAST_TRANSMISSION: f32 = 0.05;
 /// averaged over the half-sphere.
 const REFLECTED: f32 = 0.09;
 
+/// What the gloss of cloth (`KHR_materials_sheen`) adds to the base colour, averaged over the directions
+/// from which a matte surface is seen, and what multiplies the base colour below it; linear. Without
+/// texture: its factor stands for all of it.
+pub fn sheen_as_color(material: &Material) -> (Vec3, f32) {
+    let Some(sheen) = material.extensions.sheen else { return (Vec3::ZERO, 1.0) };
+    let color = Vec3::from(sheen.color);
+    (color * sheen_albedo(sheen.roughness), 1.0 - SHEEN_COVERS * color.max_element())
+}
+
+/// Share of the light that a white sheen takes from what is below (Khronos' sample renderer).
+const SHEEN_COVERS: f32 = 0.157;
+
+/// Albedo of a white sheen: the fit by exponentials that three.js uses for the Charlie distribution (Estevez
+/// and Kulla 2017), averaged over the half-sphere by the cosine.
+fn sheen_albedo(roughness: f32) -> f32 {
+    const STEPS: usize = 32;
+    let (r, rr) = (roughness, roughness * roughness);
+    let (a, b, rest) = if r < 0.25 {
+        (-339.2 * rr + 161.4 * r - 25.9, 44.0 * rr - 23.7 * r + 3.26, 0.0)
+    } else {
+        (-8.48 * rr + 14.3 * r - 9.95, 1.97 * rr - 3.27 * r + 0.72, 0.1 * (r - 0.25))
+    };
+    let at = |step: usize| {
+        let cosine = (step as f32 + 0.5) / STEPS as f32;
+        2.0 * cosine * ((a * cosine + b).exp() + rest)
+    };
+    (0..STEPS).map(at).sum::<f32>() / STEPS as f32
+}
+
 /// Gives a material a map; its factor becomes 1.
 pub fn set_texture(material: &mut Material, kind: MapKind, slot: TextureSlot) {
     match kind {
@@ -82,7 +111,21 @@ pub fn set_texture(material: &mut Material, kind: MapKind, slot: TextureSlot) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use parbake_model::{MaterialExtensions, Transmission};
+    use parbake_model::{MaterialExtensions, Sheen, Transmission};
+
+    /// Protects cloth whose colour is all sheen: it is not black, and no brighter than white.
+    #[test]
+    fn sheen_is_a_colour() {
+        let sheen = |roughness| Sheen { color: [1.0, 0.2, 0.0], roughness, textured: false };
+        for roughness in [0.0, 0.2, 0.5, 1.0] {
+            let extensions =
+                MaterialExtensions { sheen: Some(sheen(roughness)), ..MaterialExtensions::default() };
+            let (added, below) = sheen_as_color(&Material { extensions, ..Material::default() });
+            assert!(added.x > 0.0 && added.x + below < 1.01, "{added} {below}");
+            assert_eq!(added.z, 0.0);
+        }
+        assert!((sheen_albedo(1.0) - 0.135).abs() < 0.005);
+    }
 
     /// Protects glass: what all light passes is blended, metal and cut-outs are not.
     #[test]
@@ -92,7 +135,8 @@ mod tests {
             ..MaterialExtensions::default()
         };
         let glass = Material { extensions: passing(1.0, false), ..Material::default() };
-        assert_eq!(fitted_alpha(&glass), (AlphaMode::Blend, REFLECTED));
+        let (mode, opacity) = fitted_alpha(&glass);
+        assert!(mode == AlphaMode::Blend && (opacity - REFLECTED).abs() < 1e-6, "{opacity}");
         let mask = Material { alpha_mode: AlphaMode::Mask, ..glass.clone() };
         assert_eq!(fitted_alpha(&mask), (AlphaMode::Mask, 1.0));
         let textured = Material { extensions: passing(1.0, true), ..glass.clone() };

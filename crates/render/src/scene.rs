@@ -172,6 +172,11 @@ impl Scene {
             let stored = |x: f32| if self.as_stored { encode_srgb(x) } else { x };
             values[MapKind::BaseColor] *= Vec3::from(own.truncate().to_array().map(stored)).extend(1.0);
         }
+        let (sheen, below) = surface.sheen;
+        if sheen != Vec3::ZERO && !self.as_stored {
+            let color = values[MapKind::BaseColor];
+            values[MapKind::BaseColor] = (color.truncate() * below + sheen).min(Vec3::ONE).extend(color.w);
+        }
         values
     }
 
@@ -210,7 +215,9 @@ impl Scene {
         let plain = Vec4::new(0.0, 1.0, 0.0, 0.0);
         self.has_alpha()
             || self.has(MapKind::Occlusion)
-            || self.surfaces.iter().any(|s| s.is_unlit || s.factors[MapKind::MetallicRoughness] != plain)
+            || self.surfaces.iter().any(|s| {
+                s.is_unlit || s.sheen.0 != Vec3::ZERO || s.factors[MapKind::MetallicRoughness] != plain
+            })
     }
 
     /// How a triangle's alpha is to be understood, and below which it is cut out.

@@ -11,7 +11,9 @@ use crate::interpretation::Interpretation;
 use crate::parallax::{ShParallax, ViewDirection};
 use parbake_image::display::encode_srgb;
 use parbake_image::maps::KINDS;
-use parbake_image::material_maps::{factors, fitted_alpha, shifted_texture_slot, texture_slot};
+use parbake_image::material_maps::{
+    factors, fitted_alpha, sheen_as_color, shifted_texture_slot, texture_slot,
+};
 use parbake_image::pyramid::Pyramid;
 use parbake_image::quantise::decoded;
 use parbake_image::{Encoding, FloatImage, MapKind, MapValues};
@@ -71,6 +73,8 @@ impl Shifted {
 pub(crate) struct Surface {
     /// What multiplies the textures, as they are read.
     pub factors: MapValues,
+    /// What cloth's sheen adds to the base colour, and what is left of that.
+    pub sheen: (Vec3, f32),
     /// How alpha is to be understood.
     pub alpha_mode: AlphaMode,
     /// Below this it is cut out, where it is a mask.
@@ -133,7 +137,16 @@ impl<'a> Builder<'a> {
         let color = material.base_color_texture.filter(|_| material.alpha_mode != AlphaMode::Opaque);
         let opacity = self.pyramid(color, Use::Opacity);
         let (is_unlit, shifted) = (material.unlit, self.shifted(material));
-        Surface { factors, alpha_mode, alpha_cutoff, is_unlit, opacity, plain, shifted }
+        Surface {
+            factors,
+            sheen: sheen_as_color(material),
+            alpha_mode,
+            alpha_cutoff,
+            is_unlit,
+            opacity,
+            plain,
+            shifted,
+        }
     }
 
     fn shifted(&mut self, material: &Material) -> Option<Shifted> {
