@@ -1,6 +1,6 @@
 //! One Gauss–Newton step of one map, all others held: the same for every kind of map.
 //!
-//! With J the BRDF's Jacobian of a sample's light by the map ([`Brdf::jacobian`]), s the slope of the
+//! With J the BRDF's Jacobian of a sample's light by the map ([`Brdf::jacobian`](parbake_render::shade::Brdf::jacobian)), s the slope of the
 //! display curve and ω the weights of the robust loss, a sample adds the block `Jᵀ s ω s J` to each
 //! pair of its four texels and `−Jᵀ s ω r` to their right-hand sides (r: shown minus wanted). The
 //! matrix has nine points a texel (`parbake_solve::stencil`) and is solved by conjugate gradients.
