@@ -204,6 +204,11 @@ impl Scene {
         self.surfaces.iter().any(|surface| surface.alpha_mode != AlphaMode::Opaque)
     }
 
+    /// Whether light passes a material that says nothing else of its alpha.
+    pub fn has_transmission(&self) -> bool {
+        self.surfaces.iter().any(|surface| surface.is_passed)
+    }
+
     /// Whether every material shows its base colour without lights.
     pub fn is_unlit(&self) -> bool {
         self.surfaces.iter().all(|surface| surface.is_unlit)

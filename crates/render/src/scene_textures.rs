@@ -75,6 +75,8 @@ pub(crate) struct Surface {
     pub factors: MapValues,
     /// What cloth's sheen adds to the base colour, and what is left of that.
     pub sheen: (Vec3, f32),
+    /// Whether it is blended for the light that passes it.
+    pub is_passed: bool,
     /// How alpha is to be understood.
     pub alpha_mode: AlphaMode,
     /// Below this it is cut out, where it is a mask.
@@ -137,8 +139,10 @@ impl<'a> Builder<'a> {
         let color = material.base_color_texture.filter(|_| material.alpha_mode != AlphaMode::Opaque);
         let opacity = self.pyramid(color, Use::Opacity);
         let (is_unlit, shifted) = (material.unlit, self.shifted(material));
+        let is_passed = alpha_mode != material.alpha_mode;
         Surface {
             factors,
+            is_passed,
             sheen: sheen_as_color(material),
             alpha_mode,
             alpha_cutoff,

@@ -31,7 +31,8 @@ const MODES: [AlphaMode; 3] = [AlphaMode::Opaque, AlphaMode::Mask, AlphaMode::Bl
 const ASKED: [[f32; 3]; 4] = [[1.0 / 3.0; 3], [0.6, 0.2, 0.2], [0.2, 0.6, 0.2], [0.2, 0.2, 0.6]];
 
 /// The alpha mode of each of the low-poly's triangles: as its own materials say, if `delivered` has any
-/// that is not opaque and as many triangles as `low`; else as most of the high-poly says where the
+/// that is not opaque and as many triangles as `low`; else, or where it is opaque and the high-poly has glass,
+/// as most of the high-poly says where the
 /// triangle looks along its normals. `low` is in the common frame.
 pub fn alpha_modes(low: &Mesh, delivered: &Model, high: &HighPoly) -> Vec<AlphaMode> {
     let scene = &high.scene;
@@ -40,13 +41,19 @@ pub fn alpha_modes(low: &Mesh, delivered: &Model, high: &HighPoly) -> Vec<AlphaM
         return vec![AlphaMode::Opaque; count];
     }
     let is_told = delivered.materials.iter().any(|m| fitted_alpha(m).0 != AlphaMode::Opaque);
-    if is_told && delivered.mesh.triangles.len() == count {
-        let mode = |&material: &u32| fitted_alpha(&delivered.materials[material as usize]).0;
-        return delivered.mesh.triangle_materials.iter().map(mode).collect();
-    }
+    let told = |triangle: usize| {
+        let material = *delivered.mesh.triangle_materials.get(triangle)?;
+        let mode = fitted_alpha(delivered.materials.get(material as usize)?).0;
+        // Files of low-polys often say nothing of light that passes: such glass is told opaque.
+        let is_sure = mode != AlphaMode::Opaque || !scene.has_transmission();
+        (is_told && delivered.mesh.triangles.len() == count && is_sure).then_some(mode)
+    };
     (0..count)
         .into_par_iter()
         .map(|triangle| {
+            if let Some(mode) = told(triangle) {
+                return mode;
+            }
             let corners = low.triangles[triangle].map(|i| i as usize);
             let mut votes = [0usize; MODES.len()];
             for weights in ASKED {

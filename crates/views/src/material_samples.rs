@@ -365,6 +365,24 @@ mod tests {
         }
     }
 
+    /// Protects glass whose low-poly says nothing of it: it is blended where the high-poly lets light pass,
+    /// and what is behind it stays opaque.
+    #[test]
+    fn glass_is_recognised_by_the_high_poly() {
+        let wall = Material::default();
+        let passing = parbake_model::Transmission { factor: 1.0, textured: false };
+        let mut glass = Material::default();
+        glass.extensions.transmission = Some(passing);
+        let high = squares([0.0, 0.5], vec![wall.clone(), glass]);
+        let low = squares([0.0, 0.5], vec![wall.clone(), wall]);
+        let is_glass = |s: &&MaterialSample| s.texel() % 32 >= 16;
+        let samples = sampled(&high, &low);
+        let (panes, walls): (Vec<&MaterialSample>, Vec<&MaterialSample>) = samples.iter().partition(is_glass);
+        assert!(panes.len() > 200 && walls.len() > 200, "{} {}", panes.len(), walls.len());
+        assert!(panes.iter().all(|s| s.target(MapKind::BaseColor).w < 0.1));
+        assert!(walls.iter().all(|s| s.opacity_weight() == 0.0));
+    }
+
     /// Protects what is behind glass: a pane before a wall is sampled as a layer of its own, and the wall
     /// is seen through it.
     #[test]
