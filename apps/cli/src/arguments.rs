@@ -155,8 +155,8 @@ pub struct BakeCommand {
 /// Arguments of `compress`.
 #[derive(Args, Debug)]
 #[command(
-    after_help = "The surface stays. Options under \"Models with a normal map\" act on those alone: they are baked as a \
-pair is."
+    after_help = "The surface stays. Options under \"Models with a normal map\" act on those, and on models whose materials \
+have more than colour (metal, roughness, occlusion, emission, opacity): they are baked as a pair is."
 )]
 pub struct CompressCommand {
     /// The model with its texture: .obj, .gltf or .glb

@@ -25,7 +25,8 @@ pub const NOT_IN_COMPRESS: [&str; 10] = [
     "max_distance",
 ];
 
-/// Options that act in `compress` on models with a normal map alone, which are baked as a pair is.
+/// Options that act in `compress` only on models with a normal map or with more to their materials than
+/// colour, which are baked as a pair is.
 pub const WITH_NORMAL_MAPS: [&str; 7] =
     ["views", "view_size", "rounds", "convention", "keep_normals", "normal_y", "seed"];
 

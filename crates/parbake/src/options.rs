@@ -249,7 +249,7 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Convention::Gltf, help_heading = heading::ADVANCED))]
     pub convention: Convention,
 
-    /// What of the high-poly's materials is fitted
+    /// What of the high-poly's materials is fitted; pbr is the whole metallic-roughness material
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Shading::Auto, help_heading = heading::QUALITY))]
     pub shading: Shading,
 

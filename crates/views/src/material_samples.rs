@@ -111,8 +111,8 @@ impl Fetched for MaterialSample {
     }
 }
 
-/// Moves a coordinate of the texture, seen along a direction to the viewer, of which the second is
-/// the cosine with the normal; none where the surface is cut out there.
+/// Where the maps are fetched for a texture coordinate, the unit direction to the viewer and the interpolated
+/// vertex normal, both in the common frame; none where the surface is cut out.
 pub type Shift<'a> = &'a (dyn Fn(Vec2, Vec3, Vec3) -> Option<Vec2> + Sync);
 
 /// What the views of a set are sampled for.
