@@ -14,7 +14,7 @@ use crate::outliers::Loss;
 use crate::problem::{Problem, Response, respond};
 use parbake_image::display::{Curve, Display};
 use parbake_image::display_table::DisplayTable;
-use parbake_image::{MapKind, MapSet, MapValues};
+use parbake_image::{MapKind, MapValues};
 use parbake_model::glam::Vec4;
 use parbake_render::shade::Jacobian;
 use parbake_views::chart_labels::Atlas;
@@ -30,10 +30,14 @@ pub struct MaterialProblem<'a> {
 }
 
 impl<'a> MaterialProblem<'a> {
-    /// For the kinds of maps that are in `start`.
-    pub fn new(samples: &'a SampleSet<MaterialSample>, atlas: &'a Atlas, start: &MapSet) -> Self {
+    /// For these kinds of maps.
+    pub fn new(
+        samples: &'a SampleSet<MaterialSample>,
+        atlas: &'a Atlas,
+        kinds: impl Iterator<Item = MapKind>,
+    ) -> Self {
         let srgb = DisplayTable::new(&Display { gain: 1.0, curve: Curve::Srgb });
-        Self { samples, atlas, srgb, kinds: start.kinds().collect() }
+        Self { samples, atlas, srgb, kinds: kinds.collect() }
     }
 
     /// What the map has and what is wanted, and how much each channel counts.
@@ -109,7 +113,7 @@ mod tests {
     use super::*;
     use crate::backend::Cpu;
     use crate::schedule::{Schedule, fit_maps};
-    use parbake_image::FloatImage;
+    use parbake_image::{FloatImage, MapSet};
     use parbake_model::glam::vec2;
 
     const SIZE: usize = 8;
@@ -133,7 +137,7 @@ mod tests {
         let mut start =
             MapSet::of(FloatImage::solid(SIZE, Vec4::splat(0.5)), FloatImage::solid(SIZE, Vec4::Z));
         start.insert(MapKind::MetallicRoughness, FloatImage::solid(SIZE, Vec4::splat(0.5)));
-        let problem = MaterialProblem::new(&samples, &atlas, &start);
+        let problem = MaterialProblem::new(&samples, &atlas, start.kinds());
         let schedule = Schedule { damping: 0.0, ..Schedule::default() };
         let fitted = fit_maps(&problem, &start, &Cpu, true, &schedule, &());
         fitted.images.iter().map(|(kind, image)| (*kind, image.pixels[3 * SIZE + 3])).collect()

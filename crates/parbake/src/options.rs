@@ -95,7 +95,8 @@ pub enum ShapeMode {
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Shading {
-    /// `pbr` where a material has more than colour, normals and emission, else `lambert`.
+    /// `pbr` where a material has more than colour, normals and emission; else as `lambert`, but with normals
+    /// that are right under any light.
     #[default]
     Auto,
     /// Colours, normals and emission, as a headlight shows them on a matte surface (the paper's shading).

@@ -1,7 +1,7 @@
 //! What follows from a user's options: every number settled that a preset leaves open, stage
 //! by stage.
 
-use crate::options::{BakeOptions, Method, Parallax, Preset, ShapeMode, UvMode};
+use crate::options::{BakeOptions, Convention, Method, Parallax, Preset, Shading, ShapeMode, UvMode};
 use crate::report::Work;
 use parbake_fit::cutout::CutoutOptions;
 use parbake_fit::parallax::ParallaxOptions;
@@ -75,6 +75,13 @@ impl BakeOptions {
     /// Whether there is only time for textures.
     fn hurried(&self) -> bool {
         crate::budget::is_hurried(self)
+    }
+
+    /// Whether normals are fitted to what a headlight shows of them, as in the paper; else to the
+    /// high-poly's own normals, so that they are right under any light.
+    pub(crate) fn fits_normals_to_headlight(&self) -> bool {
+        let is_headlight_meant = self.shading == Shading::Lambert || self.convention == Convention::Paper;
+        is_headlight_meant || self.method == Method::Paper || self.hurried()
     }
 
     /// What to do with vertices; none where they stay.

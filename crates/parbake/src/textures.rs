@@ -1,5 +1,9 @@
 //! From views to maps: what is fitted to the light that views show (`--shading lambert`), or to the
 //! materials that they see (`pbr`); parallax maps before either.
+//!
+//! Normals of plain materials are fitted to the high-poly's normals, too, unless a headlight is asked for:
+//! what a headlight shows of normals does not tell left from right, so normals that are fitted to its light
+//! alone are grainy under others.
 
 use crate::bake::Order;
 use crate::budget::shares;
@@ -9,6 +13,8 @@ use parbake_fit::backend::{Backend, Cpu};
 use parbake_fit::material_problem::MaterialProblem;
 use parbake_fit::parallax_maps::{FittedMaps, ParallaxMaps, ParallaxReport, fit_parallax_maps};
 use parbake_fit::schedule::{Comparison, Fitted, fit_maps, fit_textures};
+use parbake_image::MapKind;
+use parbake_image::quantise::from_image;
 use parbake_model::glam::{Vec2, Vec3};
 use parbake_model::{AlphaMode, Model};
 use parbake_progress::{Clock, ProgressScope, Stage, Watcher};
@@ -78,20 +84,21 @@ pub(crate) fn fit_views<W: Watcher>(
     };
     let unseen = || BakeError::OutOfView { low: low.name.clone(), high: high.name.clone() };
     let (atlas, start, srgb) = (&prepared.atlas, &projected.maps, high.conventions.srgb());
+    let sampled = |maps: Option<&ParallaxMaps>| {
+        let shift = maps.map(shift_of);
+        let shift = shift.as_ref().map(|shift| shift as _);
+        let layers = alpha_layers(modes, high);
+        MaterialSampler { high, low: placed, layers: &layers, shift }.samples(&set, size, scope)
+    };
     if whole {
         drop(references);
         let (maps, parallax_report) = parallax.map(|fitted| (fitted.maps, fitted.report)).unzip();
-        let (samples, views) = {
-            let shift = maps.as_ref().map(shift_of);
-            let shift = shift.as_ref().map(|shift| shift as _);
-            let layers = alpha_layers(modes, high);
-            MaterialSampler { high, low: placed, layers: &layers, shift }.samples(&set, size, scope)
-        };
+        let (samples, views) = sampled(maps.as_ref());
         if samples.is_empty() {
             return Err(unseen());
         }
         clock.lap(Stage::Sampling);
-        let problem = MaterialProblem::new(&samples, atlas, start);
+        let problem = MaterialProblem::new(&samples, atlas, start.kinds());
         let fitted = fit_maps(&problem, start, &Cpu, srgb, &plan.material_schedule(), scope);
         let (samples, parallax_report) = (samples.len(), parallax_report.flatten());
         return Ok(FittedTextures { fitted, views, samples, parallax: maps, parallax_report });
@@ -116,7 +123,17 @@ pub(crate) fn fit_views<W: Watcher>(
     }
     clock.lap(Stage::Sampling);
     let comparison = Comparison { backend: &Cpu, brdf: &Lambert, display, srgb };
-    let fitted = fit_textures(&samples, atlas, start, &comparison, &plan.schedule, scope);
+    let (mut start, mut schedule) = (start.clone(), plan.schedule);
+    if schedule.normal_steps > 0 && !options.fits_normals_to_headlight() {
+        let (samples, _) = sampled(maps.as_ref());
+        let problem = MaterialProblem::new(&samples, atlas, [MapKind::Normal].into_iter());
+        let fitted = fit_maps(&problem, &start, &Cpu, srgb, &plan.material_schedule(), scope);
+        for (kind, image) in &fitted.images {
+            start.insert(*kind, from_image(*kind, image, srgb));
+        }
+        schedule.normal_steps = 0;
+    }
+    let fitted = fit_textures(&samples, atlas, &start, &comparison, &schedule, scope);
     Ok(FittedTextures { fitted, views, samples: samples.len(), parallax: maps, parallax_report })
 }
 

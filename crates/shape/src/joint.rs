@@ -45,7 +45,7 @@ use rayon::prelude::*;
 pub struct ShapeOptions {
     /// Where vertices may go.
     pub motion: Motion,
-    /// Steps of Adam.
+    /// Steps of Adam where outlines are a pixel apart or more; down to half as many where they are closer.
     pub steps: usize,
     /// Share of the steps, at most, that look at views of half the size: the first ones, and as
     /// large a share as outlines are further apart than a pixel, in pixels.
@@ -191,8 +191,9 @@ pub fn fit_shape(
     };
     let fine = fit.views;
     let coarse = Views { references: &halved, size: size / 2, ..fine };
-    for step in 0..options.steps {
-        watcher.progress(Stage::Shape, step, options.steps);
+    let steps = needed_steps(gap_in_pixels, options);
+    for step in 0..steps {
+        watcher.progress(Stage::Shape, step, steps);
         if references.is_empty() || watcher.stopped() {
             break;
         }
@@ -204,7 +205,7 @@ pub fn fit_shape(
         fit.views = if step < coarse_until { coarse } else { fine };
         let Judgement { loss, gradients, .. } = fit.look(moving.at(), &provisional.texture, &views);
         losses.push(loss);
-        let share = rate_at(step, options.steps);
+        let share = rate_at(step, steps);
         // Gradients are sums over the step's views.
         let summed = views.len() as f32;
         let smoothing = match options.laplacian {
@@ -214,7 +215,7 @@ pub fn fit_shape(
         moving.step(&gradients.positions, &smoothing, held * summed, share);
         provisional.step(&gradients, share);
     }
-    watcher.progress(Stage::Shape, options.steps, options.steps);
+    watcher.progress(Stage::Shape, steps, steps);
     fit.views = fine;
     let mut after = fit.look(moving.at(), &provisional.texture, &measured).outline;
     let cost = |outline: &Outline| f64::from(1.0 - discount) * outline.overhang + outline.underhang;
@@ -241,6 +242,11 @@ fn coarse_steps(gap_in_pixels: f64, size: usize, options: &ShapeOptions) -> usiz
     ((gap_in_pixels - WIDE_GAP).clamp(0.0, options.coarse) * options.steps as f64).ceil() as usize
 }
 
+/// How many steps lead to where all would: outlines that are closer than a pixel need fewer, by up to a half.
+fn needed_steps(gap_in_pixels: f64, options: &ShapeOptions) -> usize {
+    (gap_in_pixels.clamp(0.5, 1.0) * options.steps as f64).ceil() as usize
+}
+
 fn scaled(mut gradient: Vec<Vec3>, by: f32) -> Vec<Vec3> {
     gradient.iter_mut().for_each(|g| *g *= by);
     gradient
@@ -258,6 +264,13 @@ fn pixel_width(camera: &Camera, size: usize) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Protects time: outlines that agree nearly are not worth all steps.
+    #[test]
+    fn outlines_that_are_close_need_fewer_steps() {
+        let options = ShapeOptions { steps: 100, ..ShapeOptions::default() };
+        assert_eq!([0.1, 0.7, 3.0].map(|gap| needed_steps(gap, &options)), [50, 70, 100]);
+    }
 
     /// Protects outlines that are close from coarse views, which would not show them, and all from
     /// views that are too small or show another field.

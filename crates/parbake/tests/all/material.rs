@@ -1,6 +1,21 @@
 //! A whole material, from model to written file.
 
-use parbake::{BakeOptions, Limits, Preset, Shading, ShapeMode, bake, demo_pair, read_model, write_glb};
+use parbake::{BakeOptions, Limits, Model, Preset, Shading, ShapeMode};
+use parbake::{bake, demo_pair, read_model, write_glb};
+use parbake_fit::material_problem::MaterialProblem;
+use parbake_fit::problem::Problem;
+use parbake_image::display::{Curve, Display};
+use parbake_image::quantise::from_image;
+use parbake_image::{FloatImage, MapKind, MapSet};
+use parbake_model::glam::Vec4;
+use parbake_render::camera::Projection;
+use parbake_render::interpretation::Interpretation;
+use parbake_views::alpha_layers::{alpha_layers, alpha_modes};
+use parbake_views::high_poly::{Conventions, HighPoly, ViewSet};
+use parbake_views::low_poly::LowPoly;
+use parbake_views::material_samples::MaterialSampler;
+use parbake_views::pool::Rig;
+use parbake_views::reference::Sampling;
 
 /// Protects metal, roughness and emission beyond 1: a shiny high-poly gives a shiny low-poly, also by
 /// default, and files carry it; `lambert` leaves it out.
@@ -31,4 +46,51 @@ fn a_shiny_model_stays_shiny() {
     let matte = BakeOptions { shading: Shading::Lambert, ..options };
     let matte = bake(&high, &low, &matte, &()).unwrap().model;
     assert_eq!((matte.materials[0].metallic, matte.materials[0].roughness), (0.0, 1.0));
+}
+
+/// How far the normals of a bake are from those that views see of the high-poly: their mean squared
+/// difference.
+fn error_of_normals(high: &Model, baked: &Model) -> f64 {
+    let conventions = Conventions {
+        interpretation: Interpretation::default(),
+        display: Display { gain: 1.0, curve: Curve::Srgb },
+        whole_material: Some(true),
+        rig: Rig { radius: 3.5, projection: Projection::Perspective(0.4) },
+        max_distance: 0.1,
+    };
+    let high = HighPoly::new(high, conventions).unwrap();
+    let slot = baked.materials[0].normal_texture.unwrap();
+    let image = &baked.images[slot.image];
+    let low = LowPoly::new(baked, &high.frame, image.width).unwrap();
+    let layers = alpha_layers(&alpha_modes(&low.placed, baked, &high), &high);
+    let sampling = Sampling { size: 64, filter: 0.5, samples: 1 };
+    let set = ViewSet { count: 24, seed: 7, jitter: true, sampling };
+    let sampler = MaterialSampler { high: &high, low: &low.placed, layers: &layers, shift: None };
+    let (samples, _) = sampler.samples(&set, image.width, &());
+    let problem = MaterialProblem::new(&samples, &low.atlas, [MapKind::Normal].into_iter());
+    let map = from_image(MapKind::Normal, image, true);
+    let mut maps = MapSet::of(FloatImage::solid(image.width, Vec4::ONE), map);
+    maps.insert(MapKind::MetallicRoughness, FloatImage::solid(image.width, Vec4::ONE));
+    problem.loss(&maps).square / samples.len() as f64
+}
+
+/// Protects normals under any light: by default they are closer to the high-poly's than those that were
+/// fitted to a headlight, and than projected ones.
+#[test]
+fn normals_are_those_of_the_high_poly() {
+    let (high, low) = demo_pair();
+    let error = |options: BakeOptions| {
+        let options = BakeOptions {
+            texture_size: 64,
+            preset: Preset::Fast,
+            shape: ShapeMode::Keep,
+            views: Some(96),
+            ..options
+        };
+        error_of_normals(&high, &bake(&high, &low, &options, &()).unwrap().model)
+    };
+    let own = error(BakeOptions::default());
+    let headlight = error(BakeOptions { shading: Shading::Lambert, ..BakeOptions::default() });
+    let projected = error(BakeOptions { keep_normals: true, ..BakeOptions::default() });
+    assert!(own < 0.9 * headlight && own < 0.9 * projected, "{own} {headlight} {projected}");
 }
