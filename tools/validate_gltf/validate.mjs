@@ -4,7 +4,7 @@
 //
 // A folder stands for all .glb and .gltf files in it. Prints every error and
 // warning with its JSON pointer, then one line of sums. Exits 1 when any file has
-// an error or cannot be read, 2 when there was nothing to look at.
+// an error or a warning or cannot be read, 2 when there was nothing to look at.
 
 import { readFile, readdir, stat } from 'node:fs/promises';
 import path from 'node:path';
@@ -50,5 +50,5 @@ for (const argument of process.argv.slice(2)) {
   }
 }
 console.log(`${sums.files} files, ${sums.errors} errors, ${sums.warnings} warnings`);
-if (sums.errors > 0) process.exitCode = 1;
+if (sums.errors + sums.warnings > 0) process.exitCode = 1;
 else if (sums.files === 0) process.exitCode = 2;
