@@ -89,7 +89,8 @@ fn glass_is_a_layer_of_its_own() {
     });
     let maps = maps_of(&squares(vec![material(|_| {}), glass], vec![image]));
     assert_eq!(maps.layers.len(), 2);
-    let [wall, glass] = [0, 1].map(|k| maps.layers.iter().find(|l| l.kind.transmits == (k == 1)).unwrap());
+    let [wall, glass] =
+        [0, 1].map(|k| maps.layers.iter().find(|l| l.kind.transmits == (k == 1)).expect("two layers"));
     assert!(wall.extensions.is_empty());
     let volume = glass.extensions.volume.expect("a volume");
     assert_eq!((volume.thickness, volume.attenuation_distance, volume.texture), (0.5, 2.0, None));

@@ -119,7 +119,7 @@ fn reflection(ior: Option<f32>) -> f32 {
     match ior {
         None => 1.0,
         Some(0.0) => 25.0,
-        Some(ior) => ((ior - 1.0) / (ior + 1.0)).powi(2) * 25.0,
+        Some(ior) => (5.0 * (ior - 1.0) / (ior + 1.0)).powi(2),
     }
 }
 

@@ -380,7 +380,7 @@ mod tests {
         let (panes, walls): (Vec<&MaterialSample>, Vec<&MaterialSample>) = samples.iter().partition(is_glass);
         assert!(panes.len() > 200 && walls.len() > 200, "{} {}", panes.len(), walls.len());
         let is_green = |s: &&MaterialSample| s.target(MapKind::BaseColor).x < 0.1;
-        assert!(panes.iter().all(is_green) && !walls.iter().any(|s| is_green(&s)));
+        assert!(panes.iter().all(is_green) && !walls.iter().any(is_green));
         assert!(samples.iter().all(|s| s.opacity_weight() == 0.0));
     }
 
