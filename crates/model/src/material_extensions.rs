@@ -39,6 +39,18 @@ impl MaterialExtensions {
         *self == Self::default()
     }
 
+    /// Whether any changes what is seen.
+    pub fn show(&self) -> bool {
+        self.clearcoat.is_some_and(|c| c.factor > 0.0)
+            || self.sheen.is_some_and(|s| s.color != [0.0; 3])
+            || self.transmission.is_some_and(|t| t.factor > 0.0)
+            || self.diffuse_transmission.is_some_and(|d| d.factor > 0.0)
+            || self.iridescence.is_some_and(|i| i.factor > 0.0)
+            || self.anisotropy.is_some_and(|a| a.strength > 0.0)
+            || self.specular.is_some_and(|s| s != Specular::default())
+            || self.ior.is_some_and(|ior| ior != 1.5)
+    }
+
     /// All textures, and whether their red, green and blue are colours in sRGB; else they are linear.
     pub fn textures(&self) -> impl Iterator<Item = (TextureSlot, bool)> + Clone + use<> {
         let mut own = self.clone();
@@ -235,11 +247,12 @@ mod tests {
             ior: None,
             dispersion: None,
         };
-        assert_eq!(all.textures().count(), 0);
+        assert!(all.textures().count() == 0 && !all.show() && !all.is_empty());
         all.textures_mut().into_iter().for_each(|(slot, _)| *slot = Some(TextureSlot::default()));
         // The debug form names every field.
         let named = format!("{all:?}").matches("TextureSlot").count();
         assert_eq!(all.textures().count(), named);
         assert_eq!(all.textures().filter(|(_, is_color)| *is_color).count(), 3);
+        assert!(all.show());
     }
 }

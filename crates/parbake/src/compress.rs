@@ -131,7 +131,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> 
 fn has_more_than_colour(material: &Material) -> bool {
     let is_shiny = (material.metallic, material.roughness) != (0.0, 1.0);
     let is_lit_otherwise = material.occlusion_texture.is_some() || material.emissive != [0.0; 3];
-    let has_extensions = !material.extensions.is_empty();
+    let has_extensions = material.extensions.show();
     is_shiny
         || is_lit_otherwise
         || has_extensions

@@ -113,7 +113,7 @@ impl HighPoly {
             || HighSurface::new(&mesh),
         );
         let (name, triangles) = (model.name.clone(), model.mesh.triangles.len());
-        let has_extensions = model.materials.iter().any(|m| !m.extensions.is_empty());
+        let has_extensions = model.materials.iter().any(|m| m.extensions.show());
         let is_whole_material = conventions
             .whole_material
             .unwrap_or_else(|| conventions.srgb() && (scene.needs_whole_material() || has_extensions));
