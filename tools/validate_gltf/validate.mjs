@@ -1,10 +1,11 @@
 // Holds glTF files against the Khronos validator (npm `gltf-validator`).
 //
-//     npm ci && node validate.mjs FILE_OR_FOLDER...
+//     npm ci && node validate.mjs [--errors-only] FILE_OR_FOLDER...
 //
 // A folder stands for all .glb and .gltf files in it. Prints every error and
 // warning with its JSON pointer, then one line of sums. Exits 1 when any file has
-// an error or cannot be read, 2 when there was nothing to look at.
+// an error or a warning or cannot be read, 2 when there was nothing to look at. With
+// --errors-only warnings are printed and pass: of files that hold models as they were read.
 
 import { readFile, readdir, stat } from 'node:fs/promises';
 import path from 'node:path';
@@ -35,8 +36,10 @@ async function validate(file) {
   return [report.issues.numErrors, report.issues.numWarnings];
 }
 
+const given = process.argv.slice(2);
+const errorsOnly = given.includes('--errors-only');
 const sums = { files: 0, errors: 0, warnings: 0 };
-for (const argument of process.argv.slice(2)) {
+for (const argument of given.filter((argument) => argument !== '--errors-only')) {
   try {
     for (const file of await filesOf(argument)) {
       const [errors, warnings] = await validate(file);
@@ -50,5 +53,5 @@ for (const argument of process.argv.slice(2)) {
   }
 }
 console.log(`${sums.files} files, ${sums.errors} errors, ${sums.warnings} warnings`);
-if (sums.errors > 0) process.exitCode = 1;
+if (sums.errors > 0 || (sums.warnings > 0 && !errorsOnly)) process.exitCode = 1;
 else if (sums.files === 0) process.exitCode = 2;

@@ -41,11 +41,19 @@ pub fn factors(material: &Material) -> MapValues {
     factors
 }
 
-/// How the alpha of a material is fitted, and what multiplies its opacity. Light that passes a dielectric
-/// (`KHR_materials_transmission` without a texture) is approximated by blending, of which some is left for
-/// what the surface reflects.
+/// Whether light passes a material (`KHR_materials_transmission`) so that it shows.
+pub fn transmits(material: &Material) -> bool {
+    let is_metal = material.metallic >= 1.0 && material.metallic_roughness_texture.is_none();
+    let passing = material.extensions.transmission.is_some_and(|t| t.factor > LEAST_TRANSMISSION);
+    passing && !is_metal && !material.unlit
+}
+
+/// How the alpha of a material is shown by renderers without refraction, Parbake's own among them, and what
+/// multiplies its opacity. Light that passes a dielectric (`KHR_materials_transmission` without a texture)
+/// is approximated by blending, of which some is left for what the surface reflects.
 pub fn fitted_alpha(material: &Material) -> (AlphaMode, f32) {
-    let passing = material.extensions.transmission.filter(|t| !t.textured && t.factor > LEAST_TRANSMISSION);
+    let transmission = material.extensions.transmission;
+    let passing = transmission.filter(|t| t.texture.is_none() && t.factor > LEAST_TRANSMISSION);
     match (material.alpha_mode, passing) {
         (AlphaMode::Mask, _) | (_, None) => (material.alpha_mode, 1.0),
         (_, Some(transmission)) => {
@@ -62,21 +70,19 @@ const LEAST_TRANSMISSION: f32 = 0.05;
 /// averaged over the half-sphere.
 const REFLECTED: f32 = 0.09;
 
-/// What the gloss of cloth (`KHR_materials_sheen`) adds to the base colour, averaged over the directions
-/// from which a matte surface is seen, and what multiplies the base colour below it; linear. Without
-/// texture: its factor stands for all of it.
-pub fn sheen_as_color(material: &Material) -> (Vec3, f32) {
-    let Some(sheen) = material.extensions.sheen else { return (Vec3::ZERO, 1.0) };
-    let color = Vec3::from(sheen.color);
-    (color * sheen_albedo(sheen.roughness), 1.0 - SHEEN_COVERS * color.max_element())
+/// What the gloss of cloth (`KHR_materials_sheen`) of a linear colour and of an albedo adds to the base
+/// colour, averaged over the directions from which a matte surface is seen, and what multiplies the base
+/// colour below it; linear.
+pub fn sheen_as_color(color: Vec3, albedo: f32) -> (Vec3, f32) {
+    (color * albedo, 1.0 - SHEEN_COVERS * color.max_element())
 }
 
 /// Share of the light that a white sheen takes from what is below (Khronos' sample renderer).
 const SHEEN_COVERS: f32 = 0.157;
 
-/// Albedo of a white sheen: the fit by exponentials that three.js uses for the Charlie distribution (Estevez
+/// Albedo of a white sheen of this roughness: the fit by exponentials that three.js uses for the Charlie distribution (Estevez
 /// and Kulla 2017), averaged over the half-sphere by the cosine.
-fn sheen_albedo(roughness: f32) -> f32 {
+pub fn sheen_albedo(roughness: f32) -> f32 {
     const STEPS: usize = 32;
     let (r, rr) = (roughness, roughness * roughness);
     let (a, b, rest) = if r < 0.25 {
@@ -111,16 +117,13 @@ pub fn set_texture(material: &mut Material, kind: MapKind, slot: TextureSlot) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use parbake_model::{MaterialExtensions, Sheen, Transmission};
+    use parbake_model::{MaterialExtensions, Transmission};
 
     /// Protects cloth whose colour is all sheen: it is not black, and no brighter than white.
     #[test]
     fn sheen_is_a_colour() {
-        let sheen = |roughness| Sheen { color: [1.0, 0.2, 0.0], roughness, textured: false };
         for roughness in [0.0, 0.2, 0.5, 1.0] {
-            let extensions =
-                MaterialExtensions { sheen: Some(sheen(roughness)), ..MaterialExtensions::default() };
-            let (added, below) = sheen_as_color(&Material { extensions, ..Material::default() });
+            let (added, below) = sheen_as_color(Vec3::new(1.0, 0.2, 0.0), sheen_albedo(roughness));
             assert!(added.x > 0.0 && added.x + below < 1.01, "{added} {below}");
             assert_eq!(added.z, 0.0);
         }
@@ -130,8 +133,8 @@ mod tests {
     /// Protects glass: what all light passes is blended, metal and cut-outs are not.
     #[test]
     fn transmission_is_blended() {
-        let passing = |factor, textured| MaterialExtensions {
-            transmission: Some(Transmission { factor, textured }),
+        let passing = |factor, is_textured: bool| MaterialExtensions {
+            transmission: Some(Transmission { factor, texture: is_textured.then(TextureSlot::default) }),
             ..MaterialExtensions::default()
         };
         let glass = Material { extensions: passing(1.0, false), ..Material::default() };
@@ -141,7 +144,8 @@ mod tests {
         assert_eq!(fitted_alpha(&mask), (AlphaMode::Mask, 1.0));
         let textured = Material { extensions: passing(1.0, true), ..glass.clone() };
         assert_eq!(fitted_alpha(&textured), (AlphaMode::Opaque, 1.0));
+        assert!(transmits(&glass) && transmits(&textured));
         let metal = Material { metallic: 1.0, ..glass };
-        assert_eq!(fitted_alpha(&metal).1, 1.0);
+        assert!(fitted_alpha(&metal).1 == 1.0 && !transmits(&metal));
     }
 }

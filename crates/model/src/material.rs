@@ -122,7 +122,7 @@ pub struct Material {
     pub unlit: bool,
     /// Shifts of the texture coordinates with the direction of view, and what is cut out.
     pub parallax: Option<ShParallaxMap>,
-    /// What extensions say beyond all this; nothing here is rendered or fitted.
+    /// What extensions say beyond all this; bakes project it and do not fit it.
     pub extensions: MaterialExtensions,
 }
 
@@ -140,17 +140,19 @@ impl Material {
         [self.base_color_texture, self.normal_texture].into_iter().chain(own).flatten()
     }
 
-    /// All textures: those of [`Material::texture_slots`], then metallic-roughness, occlusion and
-    /// emission. A parallax map's own images are not among these.
+    /// All textures: those of [`Material::texture_slots`], then metallic-roughness, occlusion,
+    /// emission and the extensions'. A parallax map's own images are not among these.
     pub fn all_texture_slots(&self) -> impl Iterator<Item = TextureSlot> + Clone {
         let others = [self.metallic_roughness_texture, self.occlusion_texture, self.emissive_texture];
-        self.texture_slots().chain(others.into_iter().flatten())
+        let extensions = self.extensions.textures().map(|(slot, _)| slot);
+        self.texture_slots().chain(others.into_iter().flatten()).chain(extensions)
     }
 
     /// Whether shading needs tangents.
     pub fn has_normal_map(&self) -> bool {
         let own = self.parallax.as_ref().is_some_and(|p| p.normal_texture.is_some());
-        self.normal_texture.is_some() || own
+        let clearcoat = self.extensions.clearcoat.is_some_and(|c| c.normal_texture.is_some());
+        self.normal_texture.is_some() || own || clearcoat || self.extensions.anisotropy.is_some()
     }
 }
 

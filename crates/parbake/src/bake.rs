@@ -13,6 +13,7 @@ use crate::budget::{at_the_end, check_budget, stage_weights};
 use crate::error::BakeError;
 use crate::geometry::{Geometry, move_geometry};
 use crate::look::Look;
+use crate::lost::lost;
 use crate::options::{BakeOptions, Shading, UvMode};
 use crate::plan::Plan;
 use crate::report::{BakeReport, Work, layout_warning};
@@ -25,7 +26,7 @@ use parbake_model::{Image, Model};
 use parbake_progress::{Clock, Message, ProgressScope, Stage, Watcher};
 use parbake_render::camera::Projection;
 use parbake_uv::moves::UvMoves;
-use parbake_views::alpha_layers::alpha_modes;
+use parbake_views::alpha_layers::layer_kinds;
 use parbake_views::high_poly::{Conventions, HighPoly};
 use parbake_views::low_poly::{LowPoly, lit};
 use parbake_views::pool::Rig;
@@ -175,14 +176,17 @@ fn run(
     let projected = project(&prepared, high);
     clock.lap(Stage::Start);
 
-    let modes = alpha_modes(&prepared.placed, delivered, high);
-    let subject = Subject { model: low, prepared: &prepared, projected: &projected, modes: &modes };
+    let kinds = layer_kinds(&prepared.placed, delivered, high);
+    let subject = Subject { model: low, prepared: &prepared, projected: &projected, kinds: &kinds };
     let order = Order { high, plan: &plan, options, work };
     let textures = fit_views(&order, subject, map, &scope, &mut clock)?;
     let FittedTextures { fitted, views, samples, parallax, parallax_report } = textures;
     let LowPoly { written, map: texels, .. } = &prepared;
     clock.lap(Stage::Solve);
-    let (look, srgb) = (Look::new(high, modes), high.conventions.srgb());
+    let (look, srgb) = (Look::new(high, &prepared, kinds), high.conventions.srgb());
+    let is_whole = high.is_whole_material;
+    let unfit = if is_whole { look.extensions.lost.clone() } else { lost(high.extensions.materials()) };
+    warnings.tell(unfit.into_iter().map(|text| format!("{}: {text}", high.name)));
 
     let missed_texels = projected.missed;
     let ray_cast = match other_baseline(delivered, &prepared, work, high, options) {
@@ -190,6 +194,8 @@ fn run(
         Some(baseline) => {
             drop(projected);
             let maps = project(&baseline, high).maps;
+            let kinds = layer_kinds(&baseline.placed, delivered, high);
+            let look = Look::new(high, &baseline, kinds);
             look.textured(delivered, &baseline.written, images(&maps, srgb), None)
         }
         None => look.textured(low, written, images(&projected.maps, srgb), None),

@@ -131,7 +131,12 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> 
 fn has_more_than_colour(material: &Material) -> bool {
     let is_shiny = (material.metallic, material.roughness) != (0.0, 1.0);
     let is_lit_otherwise = material.occlusion_texture.is_some() || material.emissive != [0.0; 3];
-    is_shiny || is_lit_otherwise || material.unlit || material.alpha_mode != AlphaMode::Opaque
+    let has_extensions = material.extensions.show();
+    is_shiny
+        || is_lit_otherwise
+        || has_extensions
+        || material.unlit
+        || material.alpha_mode != AlphaMode::Opaque
 }
 
 /// Width of a sample in the common frame: that of views, or of a texel where those are finer, for who

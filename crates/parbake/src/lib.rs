@@ -38,6 +38,7 @@ mod geometry;
 mod image;
 mod image_options;
 mod look;
+mod lost;
 mod memory;
 mod models;
 mod normal_y;
@@ -61,7 +62,7 @@ pub use evaluate::options::EvaluateOptions;
 pub use evaluate::{Evaluation, ViewFigures, evaluate, evaluate_on};
 pub use image::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
 pub use memory::peak_memory;
-pub use models::{demo_pair, laid_out, simplified, subdivided, wall_pair};
+pub use models::{demo_pair, laid_out, simplified, subdivided, wall_pair, with_tangents};
 pub use normal_y::{NormalY, with_normal_y};
 #[cfg(feature = "clap")]
 pub use options::heading;

@@ -1,4 +1,5 @@
-//! From fitted maps to the low-poly's materials, one for each alpha mode in use, all on one atlas.
+//! From fitted maps to the low-poly's materials, one for each layer in use (opaque, cut out, blended, and
+//! what transmits light), all on one atlas, with the extensions of their layers.
 //!
 //! A map that has one value all over becomes a factor and costs no texture. Occlusion, roughness and
 //! metallic share one image, in its red, green and blue channel (glTF 2.0, 3.9).
@@ -8,12 +9,17 @@ use parbake_image::MapKind;
 use parbake_image::display::decode_srgb;
 use parbake_image::material_maps::set_texture;
 use parbake_model::{AlphaMode, Image, Material, Mesh, Model, TextureSlot, Wrap};
+use parbake_views::alpha_layers::LayerKind;
+use parbake_views::extension_maps::{ExtensionMaps, LayerLook, extension_maps};
 use parbake_views::high_poly::HighPoly;
+use parbake_views::low_poly::LowPoly;
 
 /// What the materials of a bake have besides maps.
 pub(crate) struct Look {
-    /// The alpha mode of each triangle.
-    pub modes: Vec<AlphaMode>,
+    /// The layer of each triangle.
+    pub kinds: Vec<LayerKind>,
+    /// What the layers have of the high-poly's material extensions.
+    pub extensions: ExtensionMaps,
     /// Whether the whole metallic-roughness material was fitted.
     pub is_whole: bool,
     /// What emission was divided by.
@@ -23,10 +29,15 @@ pub(crate) struct Look {
 }
 
 impl Look {
-    /// Of a low-poly with these alpha modes.
-    pub fn new(high: &HighPoly, modes: Vec<AlphaMode>) -> Self {
+    /// Of a low-poly whose triangles are in these layers.
+    pub fn new(high: &HighPoly, low: &LowPoly, kinds: Vec<LayerKind>) -> Self {
+        let extensions = match high.is_whole_material && !high.scene.is_unlit() {
+            true => extension_maps(low, &kinds, high),
+            false => ExtensionMaps::default(),
+        };
         Self {
-            modes,
+            kinds,
+            extensions,
             is_whole: high.is_whole_material,
             emissive_strength: high.emissive_strength,
             is_unlit: high.is_whole_material && high.scene.is_unlit(),
@@ -55,24 +66,44 @@ impl Look {
             }
         }
         material.parallax = parallax.map(|maps| maps.pack(&mut images));
-        let mut modes: Vec<AlphaMode> = Vec::new();
-        for (own, mode) in mesh.triangle_materials.iter_mut().zip(&self.modes) {
-            let index = modes.iter().position(|m| m == mode).unwrap_or_else(|| {
-                modes.push(*mode);
-                modes.len() - 1
+        let mut kinds: Vec<LayerKind> = Vec::new();
+        for (own, kind) in mesh.triangle_materials.iter_mut().zip(&self.kinds) {
+            let index = kinds.iter().position(|k| k == kind).unwrap_or_else(|| {
+                kinds.push(*kind);
+                kinds.len() - 1
             });
             *own = index as u32;
         }
-        let materials = modes.iter().map(|&mode| Material {
-            alpha_mode: mode,
-            name: match mode {
-                AlphaMode::Opaque => material.name.clone(),
-                AlphaMode::Mask => format!("{} (cut out)", material.name),
-                AlphaMode::Blend => format!("{} (blended)", material.name),
-            },
-            ..material.clone()
-        });
+        let first = images.len();
+        images.extend(self.extensions.images.iter().cloned());
+        let materials = kinds.iter().map(|&kind| self.of_layer(&material, kind, first));
         Model { name: low.name.clone(), mesh, materials: materials.collect(), images }
+    }
+
+    /// The material of a layer; the images of extensions begin at `first`.
+    fn of_layer(&self, material: &Material, kind: LayerKind, first: usize) -> Material {
+        let mut material = Material { alpha_mode: kind.mode, ..material.clone() };
+        let found: Option<&LayerLook> = self.extensions.layers.iter().find(|layer| layer.kind == kind);
+        if let Some(look) = found {
+            material.extensions = look.extensions.clone();
+            let slots = material.extensions.textures_mut().into_iter().filter_map(|(slot, _)| slot.as_mut());
+            slots.for_each(|slot| *slot = self::slot(first + slot.image));
+            if let Some(clearcoat) = material.extensions.clearcoat.as_mut().filter(|_| look.coats_normals) {
+                clearcoat.normal_texture = material.normal_texture;
+            }
+            // Behind what is opaque or cut out a back is a hole; what is seen through has the backs it had.
+            if kind.transmits || kind.mode == AlphaMode::Blend {
+                material.double_sided = look.double_sided;
+            }
+        }
+        let alpha = match kind.mode {
+            AlphaMode::Opaque => "",
+            AlphaMode::Mask => " (cut out)",
+            AlphaMode::Blend => " (blended)",
+        };
+        let passing = if kind.transmits { " (transmitting light)" } else { "" };
+        material.name = format!("{}{alpha}{passing}", material.name);
+        material
     }
 
     fn add_whole(&self, material: &mut Material, images: &mut Vec<Image>, maps: Vec<(MapKind, Image)>) {
@@ -162,7 +193,9 @@ mod tests {
     use super::*;
 
     fn whole(modes: Vec<AlphaMode>) -> Look {
-        Look { modes, is_whole: true, emissive_strength: 3.0, is_unlit: false }
+        let kinds = modes.into_iter().map(|mode| LayerKind { mode, transmits: false }).collect();
+        let extensions = ExtensionMaps::default();
+        Look { kinds, extensions, is_whole: true, emissive_strength: 3.0, is_unlit: false }
     }
 
     fn image(pixels: [[u8; 4]; 2]) -> Image {

@@ -2,16 +2,39 @@
 
 use crate::error::BakeError;
 use crate::options::{BakeOptions, UvMode};
+use parbake_mesh::compute_tangents;
 use parbake_mesh::demo::{demo_low, demo_model, wall_low, wall_model};
 use parbake_mesh::simplify::{SimplifyOptions, simplify};
 use parbake_mesh::subdivide::subdivide;
 use parbake_model::{Material, Mesh, Model};
 use parbake_uv::surface::{RepairedLowPoly, repair_uvs};
 
-/// A coarser copy of about this many triangles, with the same materials.
+/// A coarser copy of about this many triangles, with the same materials; see [`with_tangents`].
 pub fn simplified(model: &Model, triangles: usize) -> Model {
     let options = SimplifyOptions { target_triangles: triangles, ..SimplifyOptions::default() };
-    Model { mesh: simplify(&model.mesh, options), ..model.clone() }
+    with_tangents(Model { mesh: simplify(&model.mesh, options), ..model.clone() })
+}
+
+/// The model with MikkTSpace tangents, where its materials need some and it has none, so that viewers need
+/// not each make up their own (glTF 2.0, 3.7.2.1).
+pub fn with_tangents(mut model: Model) -> Model {
+    let needs = model.materials.iter().any(Material::has_normal_map);
+    if !needs || !model.mesh.tangents.is_empty() || model.mesh.positions.is_empty() {
+        return model;
+    }
+    // Along the coordinates at which most materials' normals are fetched.
+    let normals = model.materials.iter().filter_map(|m| m.normal_texture);
+    let second = normals.map(|slot| if slot.uv_set == 1 { 1 } else { -1 }).sum::<i32>() > 0;
+    let is_second = second && !model.mesh.uvs1.is_empty();
+    let mesh = &mut model.mesh;
+    if is_second {
+        std::mem::swap(&mut mesh.uvs, &mut mesh.uvs1);
+    }
+    compute_tangents(mesh);
+    if is_second {
+        std::mem::swap(&mut mesh.uvs, &mut mesh.uvs1);
+    }
+    model
 }
 
 /// A copy of a model whose texture coordinates are repaired or made anew as the mode asks, for a
@@ -28,7 +51,7 @@ pub fn laid_out(low: &Model, mode: UvMode, texture_size: usize) -> Result<Model,
 
 /// A copy with four times the triangles and the same shape.
 pub fn subdivided(model: &Model) -> Model {
-    Model { mesh: subdivide(&model.mesh), ..model.clone() }
+    with_tangents(Model { mesh: subdivide(&model.mesh), ..model.clone() })
 }
 
 /// The built-in detailed model, an ornate jar, and its coarse counterpart.
@@ -46,4 +69,43 @@ pub fn wall_pair() -> (Model, Model) {
 /// A model without textures.
 fn plain(name: &str, mesh: Mesh) -> Model {
     Model { name: name.into(), mesh, materials: vec![Material::default()], images: Vec::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parbake_model::glam::{Vec2, Vec3};
+    use parbake_model::{MaterialExtensions, TextureSlot, Transmission};
+
+    /// Protects materials from simplification: all that they say is kept, and what has a normal map has
+    /// tangents.
+    #[test]
+    fn simplified_models_keep_their_materials() {
+        let mut glass = Material { normal_texture: Some(TextureSlot::default()), ..Material::default() };
+        let transmission = Some(Transmission { factor: 0.5, texture: None });
+        glass.extensions = MaterialExtensions { transmission, ..MaterialExtensions::default() };
+        let mut model = demo_pair().0;
+        model.materials = vec![glass; model.materials.len()];
+        let coarse = simplified(&model, 500);
+        assert_eq!(coarse.materials, model.materials);
+        assert_eq!(coarse.mesh.tangents.len(), coarse.mesh.positions.len());
+    }
+
+    /// Protects normal maps on the second set of coordinates.
+    #[test]
+    fn tangents_follow_the_coordinates_of_the_normal_map() {
+        let slot = TextureSlot { uv_set: 1, ..TextureSlot::default() };
+        let mesh = Mesh {
+            positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+            uvs: vec![Vec2::ZERO, Vec2::X, Vec2::Y],
+            uvs1: vec![Vec2::ZERO, Vec2::Y, Vec2::X],
+            triangles: vec![[0, 1, 2]],
+            triangle_materials: vec![0],
+            ..Mesh::default()
+        };
+        let materials = vec![Material { normal_texture: Some(slot), ..Material::default() }];
+        let model = with_tangents(Model { mesh: mesh.clone(), materials, ..Model::default() });
+        assert!(model.mesh.tangents.iter().all(|t| t.truncate().dot(Vec3::Y) > 0.99));
+        assert_eq!((model.mesh.uvs, model.mesh.uvs1), (mesh.uvs, mesh.uvs1));
+    }
 }

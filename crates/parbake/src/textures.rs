@@ -15,12 +15,12 @@ use parbake_fit::parallax_maps::{FittedMaps, ParallaxMaps, ParallaxReport, fit_p
 use parbake_fit::schedule::{Comparison, Fitted, fit_maps, fit_textures};
 use parbake_image::MapKind;
 use parbake_image::quantise::from_image;
+use parbake_model::Model;
 use parbake_model::glam::{Vec2, Vec3};
-use parbake_model::{AlphaMode, Model};
 use parbake_progress::{Clock, ProgressScope, Stage, Watcher};
 use parbake_render::parallax::{ShParallax, ViewDirection};
 use parbake_render::shade::Lambert;
-use parbake_views::alpha_layers::alpha_layers;
+use parbake_views::alpha_layers::{LayerKind, alpha_layers};
 use parbake_views::high_poly::{Conventions, ViewSet};
 use parbake_views::low_poly::LowPoly;
 use parbake_views::material_samples::MaterialSampler;
@@ -43,8 +43,8 @@ pub(crate) struct Subject<'a> {
     pub model: &'a Model,
     pub prepared: &'a LowPoly,
     pub projected: &'a ProjectedMaps,
-    /// The alpha mode of each triangle.
-    pub modes: &'a [AlphaMode],
+    /// The layer of each triangle.
+    pub kinds: &'a [LayerKind],
 }
 
 /// Fits the maps of a low-poly whose shape and coordinates stay from now on. `given` is a parallax map
@@ -60,7 +60,7 @@ pub(crate) fn fit_views<W: Watcher>(
     clock: &mut Clock,
 ) -> Result<FittedTextures, BakeError> {
     let &Order { high, plan, options, work } = order;
-    let Subject { model: low, prepared, projected, modes } = subject;
+    let Subject { model: low, prepared, projected, kinds } = subject;
     let (size, placed) = (options.texture_size, &prepared.placed);
     let Conventions { display, .. } = high.conventions;
     let set = ViewSet { count: plan.views, seed: options.seed, jitter: true, sampling: plan.reference };
@@ -87,7 +87,7 @@ pub(crate) fn fit_views<W: Watcher>(
     let sampled = |maps: Option<&ParallaxMaps>| {
         let shift = maps.map(shift_of);
         let shift = shift.as_ref().map(|shift| shift as _);
-        let layers = alpha_layers(modes, high);
+        let layers = alpha_layers(kinds, high);
         MaterialSampler { high, low: placed, layers: &layers, shift }.samples(&set, size, scope)
     };
     if whole {

@@ -20,6 +20,7 @@ pub use crate::scene_textures::unpack;
 use crate::scene_textures::{Builder, Map, Surface, Textures};
 use crate::shade::Brdf;
 use parbake_image::display::encode_srgb;
+use parbake_image::material_maps::sheen_as_color;
 use parbake_image::pyramid::Pyramid;
 use parbake_image::{MapKind, MapValues};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
@@ -172,10 +173,11 @@ impl Scene {
             let stored = |x: f32| if self.as_stored { encode_srgb(x) } else { x };
             values[MapKind::BaseColor] *= Vec3::from(own.truncate().to_array().map(stored)).extend(1.0);
         }
-        let (sheen, below) = surface.sheen;
-        if sheen != Vec3::ZERO && !self.as_stored {
+        if let Some(sheen) = surface.sheen.as_ref().filter(|_| !self.as_stored) {
+            let texture = sheen.texture.as_ref().map_or(Vec3::ONE, fetch);
+            let (added, below) = sheen_as_color(sheen.color * texture, sheen.albedo);
             let color = values[MapKind::BaseColor];
-            values[MapKind::BaseColor] = (color.truncate() * below + sheen).min(Vec3::ONE).extend(color.w);
+            values[MapKind::BaseColor] = (color.truncate() * below + added).min(Vec3::ONE).extend(color.w);
         }
         values
     }
@@ -204,9 +206,24 @@ impl Scene {
         self.surfaces.iter().any(|surface| surface.alpha_mode != AlphaMode::Opaque)
     }
 
-    /// Whether light passes a material that says nothing else of its alpha.
+    /// Whether light passes any material.
     pub fn has_transmission(&self) -> bool {
-        self.surfaces.iter().any(|surface| surface.is_passed)
+        self.surfaces.iter().any(|surface| surface.transmits)
+    }
+
+    /// Whether light passes a triangle.
+    pub fn transmits(&self, triangle: usize) -> bool {
+        self.surfaces[self.mesh.triangle_materials[triangle] as usize].transmits
+    }
+
+    /// From now on nothing stands in for the gloss of cloth and for light that passes a surface.
+    pub fn leave_out_extensions(&mut self) {
+        for surface in &mut self.surfaces {
+            let (mode, opacity) = surface.own_alpha;
+            surface.sheen = None;
+            surface.alpha_mode = mode;
+            surface.factors[MapKind::BaseColor].w = opacity;
+        }
     }
 
     /// Whether every material shows its base colour without lights.
@@ -220,9 +237,10 @@ impl Scene {
         let plain = Vec4::new(0.0, 1.0, 0.0, 0.0);
         self.has_alpha()
             || self.has(MapKind::Occlusion)
-            || self.surfaces.iter().any(|s| {
-                s.is_unlit || s.sheen.0 != Vec3::ZERO || s.factors[MapKind::MetallicRoughness] != plain
-            })
+            || self
+                .surfaces
+                .iter()
+                .any(|s| s.is_unlit || s.sheen.is_some() || s.factors[MapKind::MetallicRoughness] != plain)
     }
 
     /// How a triangle's alpha is to be understood, and below which it is cut out.

@@ -12,7 +12,7 @@ use crate::parallax::{ShParallax, ViewDirection};
 use parbake_image::display::encode_srgb;
 use parbake_image::maps::KINDS;
 use parbake_image::material_maps::{
-    factors, fitted_alpha, sheen_as_color, shifted_texture_slot, texture_slot,
+    factors, fitted_alpha, sheen_albedo, shifted_texture_slot, texture_slot, transmits,
 };
 use parbake_image::pyramid::Pyramid;
 use parbake_image::quantise::decoded;
@@ -69,14 +69,26 @@ impl Shifted {
     }
 }
 
+/// The gloss of cloth.
+pub(crate) struct Sheen {
+    /// Linear.
+    pub color: Vec3,
+    /// That of a white sheen of the same roughness.
+    pub albedo: f32,
+    /// Multiplies the colour.
+    pub texture: Option<Map>,
+}
+
 /// One material.
 pub(crate) struct Surface {
     /// What multiplies the textures, as they are read.
     pub factors: MapValues,
-    /// What cloth's sheen adds to the base colour, and what is left of that.
-    pub sheen: (Vec3, f32),
-    /// Whether it is blended for the light that passes it.
-    pub is_passed: bool,
+    /// What is added to the base colour for the gloss of cloth.
+    pub sheen: Option<Sheen>,
+    /// Whether light passes it.
+    pub transmits: bool,
+    /// Alpha mode and factor of opacity as the material says.
+    pub own_alpha: (AlphaMode, f32),
     /// How alpha is to be understood.
     pub alpha_mode: AlphaMode,
     /// Below this it is cut out, where it is a mask.
@@ -139,11 +151,16 @@ impl<'a> Builder<'a> {
         let color = material.base_color_texture.filter(|_| material.alpha_mode != AlphaMode::Opaque);
         let opacity = self.pyramid(color, Use::Opacity);
         let (is_unlit, shifted) = (material.unlit, self.shifted(material));
-        let is_passed = alpha_mode != material.alpha_mode;
+        let sheen = material.extensions.sheen.filter(|s| s.color != [0.0; 3]).map(|sheen| Sheen {
+            color: Vec3::from(sheen.color),
+            albedo: sheen_albedo(sheen.roughness),
+            texture: self.map(MapKind::BaseColor, sheen.color_texture),
+        });
         Surface {
             factors,
-            is_passed,
-            sheen: sheen_as_color(material),
+            sheen,
+            transmits: transmits(material),
+            own_alpha: (material.alpha_mode, own),
             alpha_mode,
             alpha_cutoff,
             is_unlit,

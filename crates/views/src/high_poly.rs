@@ -10,6 +10,7 @@
 //! Reference views depend on their [`ViewSet`] and not on the number of threads.
 
 use crate::error::PrepareError;
+use crate::extension_values::ExtensionSource;
 use crate::frame::{common_frame, placed};
 use crate::pool::{Rig, View, view_pool};
 use crate::reference::{Reference, Sampling, render_references};
@@ -93,6 +94,8 @@ pub struct HighPoly {
     /// What emission was divided by so that maps, which end at 1, can hold it; 1 where only a headlight's
     /// view is fitted.
     pub emissive_strength: f32,
+    /// What its materials' extensions say.
+    pub extensions: ExtensionSource,
     /// Rendered view sets that are kept; none where they are not to be.
     kept: Option<Mutex<Vec<KeptViews>>>,
 }
@@ -110,8 +113,15 @@ impl HighPoly {
             || HighSurface::new(&mesh),
         );
         let (name, triangles) = (model.name.clone(), model.mesh.triangles.len());
-        let is_whole_material =
-            conventions.whole_material.unwrap_or_else(|| conventions.srgb() && scene.needs_whole_material());
+        let has_extensions = model.materials.iter().any(|m| m.extensions.show());
+        let is_whole_material = conventions
+            .whole_material
+            .unwrap_or_else(|| conventions.srgb() && (scene.needs_whole_material() || has_extensions));
+        let images = if is_whole_material { &model.images[..] } else { &[] };
+        let extensions = ExtensionSource::new(&model.materials, images);
+        if is_whole_material {
+            scene.leave_out_extensions();
+        }
         let emissive_strength = if is_whole_material { scene.strongest_emission().max(1.0) } else { 1.0 };
         if emissive_strength > 1.0 {
             scene.scale_emission(1.0 / emissive_strength);
@@ -125,6 +135,7 @@ impl HighPoly {
             surface,
             is_whole_material,
             emissive_strength,
+            extensions,
             kept: None,
         })
     }

@@ -12,9 +12,12 @@
 pub mod alpha_layers;
 pub mod chart_labels;
 mod error;
+pub mod extension_maps;
+pub mod extension_values;
 pub mod frame;
 pub mod gutter;
 pub mod high_poly;
+mod layer_factors;
 pub mod low_poly;
 pub mod material_samples;
 mod packing;

@@ -291,7 +291,7 @@ impl Point {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::alpha_layers::{alpha_layers, alpha_modes};
+    use crate::alpha_layers::{alpha_layers, layer_kinds};
     use crate::high_poly::Conventions;
     use crate::low_poly::LowPoly;
     use crate::pool::Rig;
@@ -333,7 +333,7 @@ mod tests {
         };
         let high = HighPoly::new(high, conventions).expect("it has an extent");
         let prepared = LowPoly::new(low, &high.frame, 32).expect("it has coordinates");
-        let layers = alpha_layers(&alpha_modes(&prepared.placed, low, &high), &high);
+        let layers = alpha_layers(&layer_kinds(&prepared.placed, low, &high), &high);
         let set = ViewSet {
             count: 12,
             seed: 1,
@@ -365,13 +365,13 @@ mod tests {
         }
     }
 
-    /// Protects glass whose low-poly says nothing of it: it is blended where the high-poly lets light pass,
-    /// and what is behind it stays opaque.
+    /// Protects glass whose low-poly says nothing of it: it is a layer of its own where the high-poly lets
+    /// light pass, and shows nothing of what is behind it.
     #[test]
     fn glass_is_recognised_by_the_high_poly() {
         let wall = Material::default();
-        let passing = parbake_model::Transmission { factor: 1.0, textured: false };
-        let mut glass = Material::default();
+        let passing = parbake_model::Transmission { factor: 1.0, texture: None };
+        let mut glass = Material { base_color: [0.0, 1.0, 0.0, 1.0], ..Material::default() };
         glass.extensions.transmission = Some(passing);
         let high = squares([0.0, 0.5], vec![wall.clone(), glass]);
         let low = squares([0.0, 0.5], vec![wall.clone(), wall]);
@@ -379,8 +379,9 @@ mod tests {
         let samples = sampled(&high, &low);
         let (panes, walls): (Vec<&MaterialSample>, Vec<&MaterialSample>) = samples.iter().partition(is_glass);
         assert!(panes.len() > 200 && walls.len() > 200, "{} {}", panes.len(), walls.len());
-        assert!(panes.iter().all(|s| s.target(MapKind::BaseColor).w < 0.1));
-        assert!(walls.iter().all(|s| s.opacity_weight() == 0.0));
+        let is_green = |s: &&MaterialSample| s.target(MapKind::BaseColor).x < 0.1;
+        assert!(panes.iter().all(is_green) && !walls.iter().any(is_green));
+        assert!(samples.iter().all(|s| s.opacity_weight() == 0.0));
     }
 
     /// Protects what is behind glass: a pane before a wall is sampled as a layer of its own, and the wall

@@ -1,9 +1,9 @@
-//! glTF's material extensions that are kept as factors, by the names of their specifications.
+//! glTF's material extensions beyond the metallic-roughness material, by the names of their
+//! specifications.
 //!
-//! Contract: that of `json.rs`: nothing is checked but the types. Of textures only their presence
-//! is looked at.
+//! Contract: that of `json.rs`: nothing is checked but the types.
 
-use super::ignored::Ignored;
+use super::json_texture::TextureInfo;
 use serde::Deserialize;
 
 #[derive(Debug, Default, Deserialize)]
@@ -11,9 +11,9 @@ use serde::Deserialize;
 pub(super) struct Clearcoat {
     pub clearcoat_factor: Option<f32>,
     pub clearcoat_roughness_factor: Option<f32>,
-    pub clearcoat_texture: Option<Ignored>,
-    pub clearcoat_roughness_texture: Option<Ignored>,
-    pub clearcoat_normal_texture: Option<Ignored>,
+    pub clearcoat_texture: Option<TextureInfo>,
+    pub clearcoat_roughness_texture: Option<TextureInfo>,
+    pub clearcoat_normal_texture: Option<TextureInfo>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -21,15 +21,15 @@ pub(super) struct Clearcoat {
 pub(super) struct Sheen {
     pub sheen_color_factor: Option<[f32; 3]>,
     pub sheen_roughness_factor: Option<f32>,
-    pub sheen_color_texture: Option<Ignored>,
-    pub sheen_roughness_texture: Option<Ignored>,
+    pub sheen_color_texture: Option<TextureInfo>,
+    pub sheen_roughness_texture: Option<TextureInfo>,
 }
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
 pub(super) struct Transmission {
     pub transmission_factor: Option<f32>,
-    pub transmission_texture: Option<Ignored>,
+    pub transmission_texture: Option<TextureInfo>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -37,15 +37,15 @@ pub(super) struct Transmission {
 pub(super) struct DiffuseTransmission {
     pub diffuse_transmission_factor: Option<f32>,
     pub diffuse_transmission_color_factor: Option<[f32; 3]>,
-    pub diffuse_transmission_texture: Option<Ignored>,
-    pub diffuse_transmission_color_texture: Option<Ignored>,
+    pub diffuse_transmission_texture: Option<TextureInfo>,
+    pub diffuse_transmission_color_texture: Option<TextureInfo>,
 }
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
 pub(super) struct Volume {
     pub thickness_factor: Option<f32>,
-    pub thickness_texture: Option<Ignored>,
+    pub thickness_texture: Option<TextureInfo>,
     pub attenuation_distance: Option<f32>,
     pub attenuation_color: Option<[f32; 3]>,
 }
@@ -57,8 +57,8 @@ pub(super) struct Iridescence {
     pub iridescence_ior: Option<f32>,
     pub iridescence_thickness_minimum: Option<f32>,
     pub iridescence_thickness_maximum: Option<f32>,
-    pub iridescence_texture: Option<Ignored>,
-    pub iridescence_thickness_texture: Option<Ignored>,
+    pub iridescence_texture: Option<TextureInfo>,
+    pub iridescence_thickness_texture: Option<TextureInfo>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -66,7 +66,7 @@ pub(super) struct Iridescence {
 pub(super) struct Anisotropy {
     pub anisotropy_strength: Option<f32>,
     pub anisotropy_rotation: Option<f32>,
-    pub anisotropy_texture: Option<Ignored>,
+    pub anisotropy_texture: Option<TextureInfo>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -74,8 +74,8 @@ pub(super) struct Anisotropy {
 pub(super) struct Specular {
     pub specular_factor: Option<f32>,
     pub specular_color_factor: Option<[f32; 3]>,
-    pub specular_texture: Option<Ignored>,
-    pub specular_color_texture: Option<Ignored>,
+    pub specular_texture: Option<TextureInfo>,
+    pub specular_color_texture: Option<TextureInfo>,
 }
 
 #[derive(Debug, Default, Deserialize)]

@@ -1,5 +1,5 @@
 //! Materials (glTF 2.0, 3.9), with KHR_materials_emissive_strength, KHR_materials_unlit,
-//! KHR_materials_pbrSpecularGlossiness (`specular_glossiness.rs`), the factors of other extensions
+//! KHR_materials_pbrSpecularGlossiness (`specular_glossiness.rs`), other extensions
 //! (`material_extensions.rs`) and parallax maps (`parallax.rs`); their textures come from
 //! `textures.rs`.
 //!
@@ -16,24 +16,25 @@ use crate::FileError;
 use parbake_model::{AlphaMode, Image, Material};
 
 /// The document's materials of these indices (`None`: the default), and their images.
-/// `turned` says of each whether a node turns or stretches what has it.
+/// `scales` says of each by how much nodes enlarge what has it, `turned` whether a node turns or
+/// stretches it.
 pub(super) fn build(
     buffers: &Buffers<'_>,
     indices: &[Option<usize>],
+    scales: &[f32],
     turned: &[bool],
 ) -> Result<(Vec<Material>, Vec<Image>), FileError> {
     let mut textures = TextureReader::new(buffers);
     let mut materials = Vec::with_capacity(indices.len());
     let mut pending = Vec::new();
-    for index in indices {
+    for (index, &scale) in indices.iter().zip(scales) {
         let number = materials.len();
         materials.push(match index {
             None => Material { name: "default".into(), ..Material::gltf_default() },
-            Some(index) => material(&mut textures, *index, number, &mut pending)?,
+            Some(index) => material(&mut textures, *index, scale, number, &mut pending)?,
         });
     }
     let mut images = textures.decode()?;
-    material_extensions::warn(&materials, buffers.context);
     specular_glossiness::convert(&pending, &mut materials, &mut images, buffers.context)?;
     parallax::leave_out(&mut materials, turned, &images, buffers.context);
     Ok((materials, images))
@@ -43,6 +44,7 @@ pub(super) fn build(
 fn material(
     textures: &mut TextureReader<'_, '_>,
     index: usize,
+    scale: f32,
     number: usize,
     pending: &mut Vec<Pending>,
 ) -> Result<Material, FileError> {
@@ -59,7 +61,6 @@ fn material(
     material.alpha_cutoff = from_zero(json.alpha_cutoff, material.alpha_cutoff);
     material.double_sided = json.double_sided;
     material.unlit = json.extensions.unlit.is_some();
-    material.extensions = material_extensions::read(&json.extensions);
     match &json.extensions.specular_glossiness {
         Some(glossy) => {
             pending.extend(specular_glossiness::read(&mut material, number, textures, glossy, &here)?);
@@ -80,6 +81,7 @@ fn material(
     }
     let strength = json.extensions.emissive_strength.as_ref().and_then(|e| e.emissive_strength);
     material.emissive_strength = from_zero(strength, material.emissive_strength);
+    material.extensions = material_extensions::read(textures, &json.extensions, &here, scale)?;
     if let Some(json) = &json.extensions.parallax_sh {
         material.parallax = parallax::read(textures, json, &here, &material.name);
     }

@@ -20,6 +20,9 @@ use std::collections::HashMap;
 
 const UNUSED: u32 = u32::MAX;
 
+/// Scales of what has a thickness that are told apart, between one scale and its double.
+const SCALES_IN_A_DOUBLING: f64 = 16.0;
+
 /// The mesh so far.
 pub(super) struct Merge<'a, 'd> {
     buffers: &'a Buffers<'d>,
@@ -29,7 +32,9 @@ pub(super) struct Merge<'a, 'd> {
     /// For each of these, whether a node turns, mirrors or stretches a mesh that has it:
     /// what it says in the mesh's own axes then no longer goes for the merged mesh.
     pub turned: Vec<bool>,
-    material_ids: HashMap<Option<usize>, u32>,
+    /// For each, by how much nodes enlarge what has it; what has a thickness is told apart by this.
+    pub scales: Vec<f32>,
+    material_ids: HashMap<(Option<usize>, i32), u32>,
     has: Attributes,
     /// For each of the document's materials, and by default for the one that says nothing.
     uv_sets: Vec<UvSets>,
@@ -72,8 +77,8 @@ impl<'a, 'd> Merge<'a, 'd> {
             uvs1: uvs(1),
             colors: any(|p| p.attributes.color_0.is_some()),
         };
-        let (mesh, materials, turned, material_ids, placed, places) = Default::default();
-        Self { buffers, mesh, materials, turned, material_ids, has, uv_sets, placed, places }
+        let (mesh, materials, turned, scales, material_ids, placed, places) = Default::default();
+        Self { buffers, mesh, materials, turned, scales, material_ids, has, uv_sets, placed, places }
     }
 
     /// Adds one placing of a mesh.
@@ -115,7 +120,8 @@ impl<'a, 'd> Merge<'a, 'd> {
         if triangles.is_empty() {
             return Ok(());
         }
-        let material = self.material(primitive.material, here)?;
+        let determinant = at.world.matrix3.determinant();
+        let material = self.material(primitive.material, determinant.abs().cbrt(), here)?;
         let (elements, mut triangles) = if self.has.normals && sources.normal.is_none() {
             separate(&triangles)
         } else {
@@ -125,7 +131,6 @@ impl<'a, 'd> Merge<'a, 'd> {
         let found = (first as u64).saturating_add(elements.len() as u64);
         let limit = (context.limits.max_vertices as u64).min(u64::from(u32::MAX) - 1);
         context.within(pointer(here.into()), "vertices", found, limit)?;
-        let determinant = at.world.matrix3.determinant();
         self.turned[material as usize] |= turns(&at.world.matrix3);
         for triangle in &mut triangles {
             *triangle = triangle.map(|i| i + first as u32);
@@ -143,14 +148,21 @@ impl<'a, 'd> Merge<'a, 'd> {
         Ok(())
     }
 
-    fn material(&mut self, index: Option<usize>, here: &str) -> Result<u32, FileError> {
-        let count = self.buffers.document.materials.len();
+    /// The number of a material on what nodes enlarge by `scale`.
+    fn material(&mut self, index: Option<usize>, scale: f64, here: &str) -> Result<u32, FileError> {
+        let materials = &self.buffers.document.materials;
+        let count = materials.len();
         if let Some(index) = index.filter(|&i| i >= count) {
             return Err(self.buffers.missing(&format!("{here}/material"), "material", index, count));
         }
         let next = self.materials.len() as u32;
-        let id = *self.material_ids.entry(index).or_insert(next);
+        // Thickness is given in the mesh's own unit. Scales that are nearly alike are one.
+        let volume = index.and_then(|index| materials[index].extensions.volume.as_ref());
+        let is_thick = volume.and_then(|v| v.thickness_factor).is_some_and(|t| t > 0.0);
+        let class = if is_thick { (scale.log2() * SCALES_IN_A_DOUBLING).round() as i32 } else { 0 };
+        let id = *self.material_ids.entry((index, class)).or_insert(next);
         if id == next {
+            self.scales.push(scale as f32);
             self.materials.push(index);
             self.turned.push(false);
         }

@@ -17,6 +17,7 @@ mod integer;
 mod json;
 mod json_extensions;
 mod json_material;
+mod json_texture;
 mod locate;
 mod material_extensions;
 mod materials;
@@ -35,6 +36,7 @@ mod topology;
 mod uri;
 mod uv_sets;
 mod write;
+mod write_extensions;
 mod write_material;
 mod write_mesh;
 mod write_parallax;
@@ -75,11 +77,12 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
     scene::visit(&buffers, &mut |instance| merge.add(instance))?;
     let (mesh, used) = (std::mem::take(&mut merge.mesh), std::mem::take(&mut merge.materials));
     let turned = std::mem::take(&mut merge.turned);
+    let scales = std::mem::take(&mut merge.scales);
     if mesh.triangles.is_empty() {
         references::check(&buffers)?;
     }
     let empty = emptiness(&document);
-    let (materials, images) = materials::build(&buffers, &used, &turned)?;
+    let (materials, images) = materials::build(&buffers, &used, &scales, &turned)?;
     drop(merge);
     drop(buffers);
     for (material, index) in materials.iter().zip(&used) {

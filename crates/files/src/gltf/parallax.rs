@@ -6,7 +6,8 @@
 //! wrong types and pictures that cannot be decoded are errors, as everywhere in a document.
 
 use super::buffers::pointer;
-use super::json_material::{CutoutSh, ParallaxSh, TextureInfo};
+use super::json_material::{CutoutSh, ParallaxSh};
+use super::json_texture::TextureInfo;
 use super::textures::TextureReader;
 use crate::FileError;
 use crate::context::{Context, Textures};

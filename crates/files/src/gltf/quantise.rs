@@ -25,6 +25,11 @@ impl Grid {
         Self { origin: low, step: if step.is_normal() { step } else { 1.0 } }
     }
 
+    /// The length of one step, the unit of what the integers say.
+    pub fn unit(&self) -> f32 {
+        self.step
+    }
+
     /// The nearest point of the grid.
     pub fn integers(&self, position: Vec3) -> [u16; 3] {
         // Casts of floats saturate.

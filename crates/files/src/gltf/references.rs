@@ -6,7 +6,8 @@
 
 use super::buffers::Buffers;
 use super::json::Primitive;
-use super::json_material::{Material, TextureInfo};
+use super::json_material::Material;
+use super::json_texture::TextureInfo;
 use crate::FileError;
 
 /// Refuses a document with a reference to what is not there.

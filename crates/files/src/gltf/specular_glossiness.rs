@@ -257,7 +257,8 @@ fn drop_unused(materials: &mut [Material], images: &mut Vec<Image>) {
             &mut material.occlusion_texture,
             &mut material.emissive_texture,
         ];
-        slots.into_iter().flatten().for_each(|slot| slot.image = places[slot.image]);
+        let extensions = material.extensions.textures_mut().into_iter().map(|(slot, _)| slot);
+        slots.into_iter().chain(extensions).flatten().for_each(|slot| slot.image = places[slot.image]);
     }
     let mut used = used.into_iter();
     images.retain(|_| used.next().unwrap_or(false));

@@ -6,7 +6,7 @@
 
 use super::buffers::{Buffers, pointer};
 use super::json;
-use super::json_material::{TextureInfo, TextureTransform};
+use super::json_texture::{TextureInfo, TextureTransform};
 use super::uri::{Uri, parse};
 use super::uv_sets::{self, UvSets};
 use crate::context::{NamedBytes, Textures};

@@ -4,7 +4,8 @@
 //! places that it does not use. Textures of a material that asks for three sets or more are looked
 //! at in the order of what is lost without them, and those that ask for a third go without.
 
-use super::json_material::{Material, TextureInfo};
+use super::json_material::Material;
+use super::json_texture::TextureInfo;
 
 /// The document's set for each of the mesh's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +71,32 @@ fn textures(material: &Material) -> impl Iterator<Item = &TextureInfo> {
         let shown = map.base_color_texture.iter().chain(&map.normal_texture);
         shown.chain(&map.coefficient_textures).chain(cutout).chain(&map.depth_texture)
     });
-    own.into_iter().flatten().chain(parallax)
+    own.into_iter().flatten().chain(parallax).chain(extensions(material))
+}
+
+/// The textures of extensions.
+fn extensions(material: &Material) -> impl Iterator<Item = &TextureInfo> {
+    let e = &material.extensions;
+    let (clearcoat, sheen, specular) = (e.clearcoat.as_ref(), e.sheen.as_ref(), e.specular.as_ref());
+    let (diffuse, iridescence) = (e.diffuse_transmission.as_ref(), e.iridescence.as_ref());
+    [
+        e.transmission.as_ref().and_then(|t| t.transmission_texture.as_ref()),
+        clearcoat.and_then(|c| c.clearcoat_texture.as_ref()),
+        sheen.and_then(|s| s.sheen_color_texture.as_ref()),
+        specular.and_then(|s| s.specular_color_texture.as_ref()),
+        specular.and_then(|s| s.specular_texture.as_ref()),
+        e.volume.as_ref().and_then(|v| v.thickness_texture.as_ref()),
+        diffuse.and_then(|d| d.diffuse_transmission_color_texture.as_ref()),
+        diffuse.and_then(|d| d.diffuse_transmission_texture.as_ref()),
+        iridescence.and_then(|i| i.iridescence_texture.as_ref()),
+        iridescence.and_then(|i| i.iridescence_thickness_texture.as_ref()),
+        clearcoat.and_then(|c| c.clearcoat_roughness_texture.as_ref()),
+        clearcoat.and_then(|c| c.clearcoat_normal_texture.as_ref()),
+        sheen.and_then(|s| s.sheen_roughness_texture.as_ref()),
+        e.anisotropy.as_ref().and_then(|a| a.anisotropy_texture.as_ref()),
+    ]
+    .into_iter()
+    .flatten()
 }
 
 #[cfg(test)]

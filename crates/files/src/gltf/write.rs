@@ -50,9 +50,9 @@ pub fn glb_bytes(model: &Model) -> Result<Vec<u8>, FileError> {
 fn to_bytes(path: &Path, model: &Model, options: &WriteOptions) -> Result<(Vec<u8>, Written), FileError> {
     crate::model_out::check(path, model)?;
     let mut binary = Binary::default();
-    let mut materials = Materials::of(model);
     let positions = &model.mesh.positions;
     let grid = (options.mesh_compression != MeshCompression::None).then(|| Grid::of(positions));
+    let mut materials = Materials::of(model, grid.map_or(1.0, |grid| grid.unit()));
     let primitives = primitives(&mut binary, model, &materials.used, grid.as_ref());
     let fallback =
         (options.mesh_compression == MeshCompression::Meshopt).then(|| meshopt_out::compress(&mut binary));
@@ -103,6 +103,8 @@ fn to_bytes(path: &Path, model: &Model, options: &WriteOptions) -> Result<(Vec<u
         (QUANTIZATION, grid.is_some(), true),
         (meshopt_out::NAME, uses_meshopt, true),
     ];
+    let materials = materials.extensions.into_iter().map(|name| (name, true, false));
+    let extensions: Vec<_> = extensions.into_iter().chain(materials).collect();
     for (key, required) in [("extensionsUsed", false), ("extensionsRequired", true)] {
         let names: Vec<&str> = extensions.iter().filter(|e| e.1 && (e.2 || !required)).map(|e| e.0).collect();
         if !names.is_empty() {

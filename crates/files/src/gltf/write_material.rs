@@ -1,10 +1,11 @@
 //! Materials for a GLB file (glTF 2.0, 3.9), with KHR_materials_emissive_strength,
-//! KHR_materials_unlit and KHR_texture_transform.
+//! KHR_materials_unlit and KHR_texture_transform; other extensions are in `write_extensions.rs`.
 //!
 //! What is glTF's default is left out; metallic and roughness factor are both written or both left
 //! out. Factors out of range are clamped. What has no effect is not kept: an alpha cutoff without
 //! [`AlphaMode::Mask`], the strength of emission that is black or of an unlit material.
 
+use super::write_extensions;
 use crate::texture_out::Use;
 use parbake_model::{AlphaMode, Material, Model, ShParallaxMap, TextureSlot, UvTransform, Wrap};
 use serde_json::{Value, json};
@@ -27,6 +28,8 @@ pub(super) struct Materials {
     pub uses_parallax: bool,
     pub uses_emissive_strength: bool,
     pub uses_unlit: bool,
+    /// The names of the other material extensions in use.
+    pub extensions: Vec<&'static str>,
     texture_keys: Vec<(usize, [Wrap; 2], Filter)>,
     sampler_keys: Vec<([Wrap; 2], Filter)>,
 }
@@ -41,7 +44,8 @@ pub(super) enum Filter {
 }
 
 impl Materials {
-    pub fn of(model: &Model) -> Self {
+    /// Those of a model, the unit of whose mesh is this long in the model when it is written.
+    pub fn of(model: &Model, unit: f32) -> Self {
         let mut out = Self::default();
         let mut is_used = vec![false; model.materials.len()];
         for &material in &model.mesh.triangle_materials {
@@ -49,13 +53,13 @@ impl Materials {
         }
         out.used = (0..is_used.len()).filter(|&i| is_used[i]).collect();
         for i in out.used.clone() {
-            let json = out.material(&model.materials[i]);
+            let json = out.material(&model.materials[i], unit);
             out.json.push(json);
         }
         out
     }
 
-    fn material(&mut self, material: &Material) -> Value {
+    fn material(&mut self, material: &Material, unit: f32) -> Value {
         let pbr = self.metallic_roughness(material);
         let mut json = json!({ "name": material.name });
         if pbr != json!({}) {
@@ -94,6 +98,7 @@ impl Materials {
             json["extensions"][UNLIT] = json!({});
             self.uses_unlit = true;
         }
+        write_extensions::add(self, material, unit, &mut json);
         self.add_parallax(material, &mut json);
         json
     }
@@ -173,8 +178,10 @@ impl Materials {
 /// What an image is used for, by the strictest of the materials' slots that have it.
 pub(super) fn use_of(model: &Model, image: usize) -> Use {
     let any = |slots: [&Option<TextureSlot>; 3]| slots.into_iter().flatten().any(|s| s.image == image);
-    let is_data =
-        |m: &Material| any([&m.normal_texture, &m.metallic_roughness_texture, &m.occlusion_texture]);
+    let is_data = |m: &Material| {
+        any([&m.normal_texture, &m.metallic_roughness_texture, &m.occlusion_texture])
+            || m.extensions.textures().any(|(slot, is_color)| slot.image == image && !is_color)
+    };
     let maps = || model.materials.iter().filter_map(|m| m.parallax.as_ref());
     let is_exact = |map: &ShParallaxMap| {
         map.images.contains(&image)
@@ -193,12 +200,12 @@ pub(super) fn use_of(model: &Model, image: usize) -> Use {
 }
 
 /// From 0 to 1; `otherwise` where it is no number.
-fn in_range(x: f32, otherwise: f64) -> f64 {
+pub(super) fn in_range(x: f32, otherwise: f64) -> f64 {
     if x.is_nan() { otherwise } else { f64::from(x).clamp(0.0, 1.0) }
 }
 
 /// A number without an upper limit; `None` where it is the default, or not finite.
-fn from_zero(x: f32, default: f32) -> Option<f64> {
+pub(super) fn from_zero(x: f32, default: f32) -> Option<f64> {
     (x.is_finite() && x != default).then(|| f64::from(x.max(0.0)))
 }
 

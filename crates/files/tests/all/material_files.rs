@@ -8,7 +8,8 @@ use crate::common::keep;
 use parbake_files::{Limits, Loaded, glb_bytes, read_model, write_glb, write_obj};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{
-    AlphaMode, Image, Material, MaterialExtensions, Mesh, Model, TextureSlot, UvTransform, Wrap,
+    AlphaMode, Anisotropy, Clearcoat, DiffuseTransmission, Image, Iridescence, Material, MaterialExtensions,
+    Mesh, Model, Sheen, Specular, TextureSlot, Transmission, UvTransform, Volume, Wrap,
 };
 use serde_json::{Value, json};
 use std::path::Path;
@@ -62,7 +63,56 @@ fn rich() -> Material {
         double_sided: true,
         unlit: false,
         parallax: None,
-        extensions: MaterialExtensions::default(),
+        extensions: extensions(),
+    }
+}
+
+/// Extensions in which nothing is what it is where the extension says nothing.
+fn extensions() -> MaterialExtensions {
+    MaterialExtensions {
+        clearcoat: Some(Clearcoat {
+            factor: 0.8,
+            texture: slot(0),
+            roughness: 0.1,
+            roughness_texture: slot(1),
+            normal_texture: slot(2),
+            normal_scale: 0.7,
+        }),
+        sheen: Some(Sheen {
+            color: [0.1, 0.2, 0.3],
+            color_texture: slot(3),
+            roughness: 0.4,
+            roughness_texture: slot(4),
+        }),
+        transmission: Some(Transmission { factor: 0.9, texture: slot(5) }),
+        diffuse_transmission: Some(DiffuseTransmission {
+            factor: 0.3,
+            texture: slot(0),
+            color: [0.5, 0.6, 0.7],
+            color_texture: slot(1),
+        }),
+        volume: Some(Volume {
+            thickness: 0.25,
+            texture: slot(2),
+            attenuation_distance: 3.0,
+            attenuation_color: [0.2, 0.9, 0.4],
+        }),
+        iridescence: Some(Iridescence {
+            factor: 0.6,
+            texture: slot(3),
+            ior: 1.8,
+            thickness: [50.0, 700.0],
+            thickness_texture: slot(4),
+        }),
+        anisotropy: Some(Anisotropy { strength: 0.5, rotation: -1.2, texture: slot(5) }),
+        specular: Some(Specular {
+            factor: 0.5,
+            texture: slot(0),
+            color: [2.0, 0.5, 0.25],
+            color_texture: slot(1),
+        }),
+        ior: Some(1.33),
+        dispersion: Some(0.1),
     }
 }
 
@@ -105,7 +155,6 @@ fn glb_keeps_whole_materials() {
         double_sided,
         unlit,
         parallax: _,
-        // Read, and not written yet.
         extensions: _,
     } = bare;
     assert!(rich.base_color.iter().zip(base_color).all(|(a, b)| *a != b));
@@ -114,7 +163,7 @@ fn glb_keeps_whole_materials() {
     assert!(rich.normal_scale != normal_scale && rich.occlusion_strength != occlusion_strength);
     assert!(rich.emissive_strength != emissive_strength && rich.alpha_cutoff != alpha_cutoff);
     assert!(rich.alpha_mode != alpha_mode && rich.double_sided != double_sided && !unlit);
-    assert_eq!(rich.all_texture_slots().count(), 5);
+    assert_eq!(rich.all_texture_slots().count(), 5 + 14);
     let unlit = Material {
         name: "unlit".into(),
         double_sided: false,
@@ -123,6 +172,8 @@ fn glb_keeps_whole_materials() {
         emissive_texture: slot(5),
         emissive_strength: 1.0,
         unlit: true,
+        // The validator warns of others beside this one.
+        extensions: MaterialExtensions::default(),
         ..rich.clone()
     };
     let bare = Material { name: "bare".into(), ..bare };
@@ -138,7 +189,7 @@ fn glb_keeps_whole_materials() {
 fn glb_keeps_each_field_alone() {
     let bare = || Material { name: "m".into(), ..Material::gltf_default() };
     type Change = fn(&mut Material);
-    let changes: [(&str, Change, &[&str]); 13] = [
+    let changes: [(&str, Change, &[&str]); 16] = [
         ("nothing", |_| {}, &[]),
         ("metallic", |m| m.metallic = 0.0, &[]),
         ("roughness", |m| m.roughness = 0.0, &[]),
@@ -156,6 +207,13 @@ fn glb_keeps_each_field_alone() {
         ("blend", |m| m.alpha_mode = AlphaMode::Blend, &[]),
         ("double-sided", |m| m.double_sided = true, &[]),
         ("unlit", |m| m.unlit = true, &["KHR_materials_unlit"]),
+        ("ior", |m| m.extensions.ior = Some(0.0), &["KHR_materials_ior"]),
+        (
+            "glass",
+            |m| m.extensions.transmission = Some(Transmission::default()),
+            &["KHR_materials_transmission"],
+        ),
+        ("sheen", |m| m.extensions.sheen = Some(Sheen::default()), &["KHR_materials_sheen"]),
     ];
     for (name, change, extensions) in changes {
         let mut material = bare();

@@ -1,0 +1,119 @@
+use super::*;
+use crate::alpha_layers::layer_kinds;
+use crate::high_poly::Conventions;
+use crate::pool::Rig;
+use parbake_image::display::{Curve, Display};
+use parbake_model::glam::vec2;
+use parbake_model::{Anisotropy, Clearcoat, Material, Model, Sheen, TextureSlot, Transmission, Volume};
+use parbake_render::camera::Projection;
+use parbake_render::interpretation::Interpretation;
+
+/// Two squares of side 2 across the z axis, one at each end; each has a material and a half of the texture.
+fn squares(materials: Vec<Material>, images: Vec<Image>) -> Model {
+    let mut mesh = Mesh::default();
+    for index in 0..2u32 {
+        let first = mesh.positions.len() as u32;
+        for (x, y) in [(-1.0f32, -1.0f32), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+            mesh.positions.push(Vec3::new(x, y, index as f32));
+            mesh.normals.push(Vec3::Z);
+            mesh.uvs.push(vec2(0.22 * (x + 1.0) + 0.5 * index as f32 + 0.03, 0.47 * (1.0 - y) + 0.03));
+        }
+        mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        mesh.triangle_materials.extend([index; 2]);
+    }
+    Model { name: "squares".into(), mesh, materials, images }
+}
+
+fn maps_of(model: &Model) -> ExtensionMaps {
+    let conventions = Conventions {
+        interpretation: Interpretation::default(),
+        display: Display { gain: 1.0, curve: Curve::Srgb },
+        whole_material: None,
+        rig: Rig { radius: 3.5, projection: Projection::Perspective(0.4) },
+        max_distance: 0.1,
+    };
+    let high = HighPoly::new(model, conventions).expect("it has an extent");
+    assert!(high.is_whole_material, "extensions ask for whole materials");
+    let low = LowPoly::new(model, &high.frame, 16).expect("it has coordinates");
+    extension_maps(&low, &layer_kinds(&low.placed, model, &high), &high)
+}
+
+fn material(change: impl FnOnce(&mut MaterialExtensions)) -> Material {
+    let mut material = Material { double_sided: false, ..Material::default() };
+    change(&mut material.extensions);
+    material
+}
+
+/// Protects parts that differ: cloth beside what has none has an image that says where it is, and what is
+/// the same all over stays a factor.
+#[test]
+fn parts_that_differ_have_an_image() {
+    let sheen = Sheen { color: [0.5, 0.25, 0.0], roughness: 0.5, ..Sheen::default() };
+    let maps = maps_of(&squares(vec![material(|_| {}), material(|e| e.sheen = Some(sheen))], Vec::new()));
+    let [layer] = &maps.layers[..] else { panic!("one layer") };
+    let found = layer.extensions.sheen.expect("a sheen");
+    assert_eq!((found.color, found.roughness), ([0.5; 3], 0.5));
+    assert_eq!((found.color_texture, found.roughness_texture), (Some(TextureSlot::default()), None));
+    assert!(maps.lost.is_empty() && maps.images.len() == 1, "{:?}", maps.lost);
+    let [plain, cloth] = [3, 12].map(|x| maps.images[0].pixels[8 * 16 + x]);
+    assert_eq!((plain[0], cloth[0], cloth[1], cloth[2]), (0, 255, 188, 0));
+}
+
+/// Protects small files: one value all over is a factor without an image, and what shows nothing is not
+/// written.
+#[test]
+fn one_value_is_a_factor() {
+    let coat = |e: &mut MaterialExtensions| {
+        e.clearcoat = Some(Clearcoat { factor: 0.5, roughness: 0.25, ..Clearcoat::default() });
+        e.sheen = Some(Sheen::default());
+        e.ior = Some(1.8);
+    };
+    let maps = maps_of(&squares(vec![material(coat), material(coat)], Vec::new()));
+    let [layer] = &maps.layers[..] else { panic!("one layer") };
+    let expected = Clearcoat { factor: 0.5, roughness: 0.25, ..Clearcoat::default() };
+    let expected =
+        MaterialExtensions { clearcoat: Some(expected), ior: Some(1.8), ..MaterialExtensions::default() };
+    assert_eq!((&layer.extensions, maps.images.len()), (&expected, 0));
+    assert!(layer.coats_normals && !layer.double_sided);
+}
+
+/// Protects what is seen through glass: the glass is a layer of its own, which has the volume, and the rest
+/// transmits nothing. Textures of the high-poly come out where they were.
+#[test]
+fn glass_is_a_layer_of_its_own() {
+    let mut image = Image::solid("t", 16, 16, [255; 4]);
+    (0..8 * 16).for_each(|texel| image.pixels[texel] = [0, 255, 255, 255]);
+    let glass = material(|e| {
+        e.transmission = Some(Transmission { factor: 0.75, texture: Some(TextureSlot::default()) });
+        e.volume = Some(Volume { thickness: 0.5, attenuation_distance: 2.0, ..Volume::default() });
+    });
+    let maps = maps_of(&squares(vec![material(|_| {}), glass], vec![image]));
+    assert_eq!(maps.layers.len(), 2);
+    let [wall, glass] =
+        [0, 1].map(|k| maps.layers.iter().find(|l| l.kind.transmits == (k == 1)).expect("two layers"));
+    assert!(wall.extensions.is_empty());
+    let volume = glass.extensions.volume.expect("a volume");
+    assert_eq!((volume.thickness, volume.attenuation_distance, volume.texture), (0.5, 2.0, None));
+    let transmission = glass.extensions.transmission.expect("it transmits");
+    assert!((transmission.factor - 0.75).abs() < 0.01 && transmission.texture.is_some());
+    let [above, below] = [3, 12].map(|y| maps.images[0].pixels[y * 16 + 12][0]);
+    assert!(above < 10 && below > 245, "{above} {below}");
+}
+
+/// Protects brushed metal: the direction is that of the high-poly in space, whatever the low-poly's tangents.
+#[test]
+fn stretched_highlights_keep_their_direction() {
+    let brushed = material(|e| {
+        e.anisotropy = Some(Anisotropy {
+            strength: 0.5,
+            rotation: std::f32::consts::FRAC_PI_2,
+            ..Anisotropy::default()
+        });
+    });
+    let maps = maps_of(&squares(vec![brushed.clone(), brushed], Vec::new()));
+    let found = maps.layers[0].extensions.anisotropy.expect("it is anisotropic");
+    assert_eq!((found.strength, found.rotation), (0.5, 0.0));
+    // Along the bitangent, all of it.
+    let [x, y, strength, _] = maps.images[0].pixels[8 * 16 + 3];
+    assert!(x.abs_diff(128) <= 1 && y == 255 && strength == 255, "{x} {y} {strength}");
+}
