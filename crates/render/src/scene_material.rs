@@ -21,8 +21,8 @@ use crate::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility, raster
 use crate::scene::{Picture, Scene, Seen};
 use crate::scene_textures::Map;
 use crate::shade::Brdf;
-use parbake_image::maps::MapKind;
 use parbake_image::MapValues;
+use parbake_image::maps::MapKind;
 use parbake_model::AlphaMode;
 use parbake_model::glam::{Vec2, Vec3};
 use rayon::prelude::*;
