@@ -19,6 +19,7 @@ use parbake_metric::Rgb;
 use parbake_model::glam::Vec3;
 use parbake_model::{Model, Placement};
 use parbake_render::camera::Camera;
+use parbake_render::lighting::Lighting;
 use parbake_render::metallic_roughness::MetallicRoughness;
 use parbake_render::scene::{Picture, Scene};
 use parbake_render::scene_material::MaterialPicture;
@@ -56,6 +57,14 @@ impl Studio {
         };
         let whole = is_whole.then(MetallicRoughness::in_studio);
         Ok(Self { frame: common_frame(high)?, options: options.clone(), whole })
+    }
+
+    /// The same under another light, if whole materials are shown.
+    pub fn under(mut self, lighting: Lighting) -> Self {
+        if let Some(brdf) = &mut self.whole {
+            brdf.lighting = lighting;
+        }
+        self
     }
 
     /// How it shades: [`Shading::Pbr`], or [`Shading::Lambert`].
