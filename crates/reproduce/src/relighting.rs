@@ -30,13 +30,16 @@ pub struct Relit {
     pub ms_ssim: Option<f64>,
 }
 
-/// Figures of all models, and pictures to look at: of the first model the high-poly's, then each model's.
+/// Figures of all models, and pictures to look at.
 pub struct Relighting {
     /// In the order of the models.
     pub figures: Vec<Relit>,
-    /// [`SHOWN`] pictures of the high-poly and of each model.
+    /// Pictures of the high-poly, then of each model; [`SHOWN`] of each, or as many as there are views.
     pub pictures: Vec<Vec<Rgb>>,
 }
+
+/// PSNR and MS-SSIM of a view.
+type Figures = (f64, Option<f64>);
 
 /// Numbers between 0 and 1 by SplitMix64.
 struct Random(u64);
@@ -85,13 +88,13 @@ pub fn relight(
     let studio = Studio::new(high, &options)?;
     let subjects: Vec<Subject> =
         std::iter::once(high).chain(models.iter().map(|(_, m)| *m)).map(|m| studio.subject(m)).collect();
-    // Every so many are shown, from the second on: the first looks down from straight above.
+    // Every so many are shown, none of them from straight above.
     let is_shown = |view: usize| view % (views / SHOWN).max(1) == (views / SHOWN / 2).min(views - 1);
     let view = |(view, direction): (usize, Vec3)| {
         let studio = studio.clone().under(random_light(view));
         let taken = |subject: &Subject| studio.develop(&studio.shot(subject, direction), BACKGROUND);
         let pictures: Vec<Rgb> = subjects.iter().map(taken).collect();
-        let figures: Vec<(f64, Option<f64>)> = pictures[1..]
+        let figures: Vec<Figures> = pictures[1..]
             .iter()
             .map(|low| {
                 let error = mean_squared_error(&pictures[0], low).unwrap_or(f64::NAN);
@@ -101,7 +104,7 @@ pub fn relight(
         (figures, if is_shown(view) { pictures } else { Vec::new() })
     };
     let all = fibonacci_sphere(views, 0.0).into_par_iter().enumerate().map(view);
-    let all: Vec<(Vec<(f64, Option<f64>)>, Vec<Rgb>)> = all.collect();
+    let all: Vec<(Vec<Figures>, Vec<Rgb>)> = all.collect();
     let of = |(k, (name, _)): (usize, &(&str, &Model))| {
         let count = all.len().max(1) as f64;
         let ssim: Option<Vec<f64>> = all.iter().map(|(figures, _)| figures[k].1).collect();

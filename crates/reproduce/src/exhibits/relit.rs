@@ -58,9 +58,10 @@ pub fn draw(scope: &Scope, results: &Results) -> Result<Drawn, ReproduceError> {
             let name = of.map_or("high-poly", |of| of.name.as_str());
             let score = of.map_or(String::new(), |of| format!("{} dB", decimal(of.psnr, 2)));
             html += "<figure>";
-            for side in 0..SHOWN {
-                html +=
-                    &frame(&read_image(&place.join(variant_file(index, side)), &Limits::default())?, name)?;
+            // There are fewer where there are fewer views.
+            let files = (0..SHOWN).map(|side| place.join(variant_file(index, side)));
+            for file in files.filter(|file| file.is_file()) {
+                html += &frame(&read_image(&file, &Limits::default())?, name)?;
             }
             html += &format!("<figcaption>{} <b>{score}</b></figcaption></figure>", escape(name));
         }
