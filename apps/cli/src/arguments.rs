@@ -360,8 +360,8 @@ pub struct TurntableCommand {
 #[derive(Args, Debug)]
 #[command(
     after_help = "The folder holds pairs/NAME/high with a textured model and pairs/NAME/low_simplygon, \
-low_simplygon100, low_simplygon50 (or lod1, lod2, lod3) with coarse ones, and images2d with pictures; folders of your \
-own are run as well. Outcomes are kept in the output folder under the content of their files, options and the program: \
+low_simplygon100, low_simplygon50 (or lod1, lod2, lod3) with coarse ones, images2d with pictures, and pbr/NAME with \
+models of whole materials for Figure 14; folders of your own are run as well. Outcomes are kept in the output folder under the content of their files, options and the program: \
 a run that was stopped goes on where it was. With --record the exit code is 4 where a gain fell by more than 0.2 dB."
 )]
 pub struct ReproduceCommand {

@@ -10,8 +10,8 @@ use crate::progress::{Console, interrupted};
 use crate::rules;
 use clap::ArgMatches;
 use parbake::{
-    BakeOptions, BakeReport, Baked, Comparison, Convention, Loaded, Message, Model, NormalY, Stage,
-    StageTime, Warning, WarningKind, Watcher, Work, bake, check_budget, compare_bake, read_model,
+    BakeOptions, BakeReport, Baked, Comparison, Convention, Detail, Loaded, Message, Model, NormalY, Shading,
+    Stage, StageTime, Warning, WarningKind, Watcher, Work, bake, check_budget, compare_bake, read_model,
     with_normal_y, with_threads, write_file,
 };
 use parbake_report::html_report;
@@ -39,7 +39,9 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
         }
         let mut baked = bake_and_write(&pair, &options, (output, &command.formats), &console)?;
         if !command.talk.quiet || command.json.is_some() || command.report.is_some() {
-            compare(&pair.high, &mut baked, command.report.is_some(), &console)?;
+            let (flip, channels) =
+                (command.report.is_some(), command.report.is_some() || command.json.is_some());
+            compare(&pair.high, &mut baked, Detail { flip, channels }, &console)?;
         }
         if let Some(path) = &command.json {
             let files = [("high", command.high.as_path()), ("low", command.low.as_path())];
@@ -131,9 +133,9 @@ pub fn bake_and_write(
 }
 
 /// Compares the result with a ray-cast bake, for the last line, the report and JSON. FLIP, which takes most of
-/// the time, is for the HTML report alone.
-pub fn compare(high: &Model, baked: &mut Baked, with_flip: bool, console: &Console) -> Result<(), Failure> {
-    baked.report.comparison = Some(compare_bake(high, baked, with_flip, console)?);
+/// the time, is for the HTML report alone; channels are for the report and for JSON.
+pub fn compare(high: &Model, baked: &mut Baked, detail: Detail, console: &Console) -> Result<(), Failure> {
+    baked.report.comparison = Some(compare_bake(high, baked, detail, console)?);
     Ok(())
 }
 
@@ -209,8 +211,13 @@ pub fn gains(comparison: &Comparison, before: &str, after: &str) -> String {
     }
     let views = comparison.options.views;
     let paper = if comparison.options.convention == Convention::Gltf { "" } else { " --convention paper" };
+    let shading = match comparison.options.shading {
+        Shading::Auto => "",
+        Shading::Lambert => " --shading lambert",
+        Shading::Pbr => " --shading pbr",
+    };
     let text = text.trim_end_matches(", ");
-    format!("{text} ({views} views; eval HIGH BAKED --views {views}{paper} gives the same)")
+    format!("{text} ({views} views; eval HIGH BAKED --views {views}{paper}{shading} gives the same)")
 }
 
 /// What became of vertices and silhouettes.

@@ -10,7 +10,9 @@ use crate::outputs::{check_beside, check_not_input, check_output, is_stdout};
 use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;
-use parbake::{BakeReport, Stage, StageTime, Work, check_budget, compress, with_normal_y, with_threads};
+use parbake::{
+    BakeReport, Detail, Stage, StageTime, Work, check_budget, compress, with_normal_y, with_threads,
+};
 use std::path::Path;
 
 /// Runs the command.
@@ -38,7 +40,9 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
         baked.report.warnings.splice(0..0, loaded.warnings.iter().map(|warning| warning.text.clone()));
         baked.report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
         if !command.talk.quiet || command.json.is_some() || command.report.is_some() {
-            compare(&loaded.model, &mut baked, command.report.is_some(), &console)?;
+            let (flip, channels) =
+                (command.report.is_some(), command.report.is_some() || command.json.is_some());
+            compare(&loaded.model, &mut baked, Detail { flip, channels }, &console)?;
         }
         if let Some(path) = &command.json {
             let about =

@@ -10,7 +10,7 @@ use crate::pictures::write_pictures;
 use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;
-use parbake::{Work, check_budget, demo_pair, wall_pair, with_threads, write_glb};
+use parbake::{Detail, Work, check_budget, demo_pair, wall_pair, with_threads, write_glb};
 use std::path::Path;
 
 /// File of the pictures.
@@ -39,7 +39,7 @@ pub fn run(command: &DemoCommand, given: &ArgMatches) -> Result<Ending, Failure>
         let output = folder.join("demo.glb");
         let pair = Pair { high, low, warnings: Vec::new(), seconds: None };
         let mut baked = bake_and_write(&pair, &command.bake, (&output, &FormatOptions::default()), &console)?;
-        compare(&pair.high, &mut baked, true, &console)?;
+        compare(&pair.high, &mut baked, Detail { flip: true, channels: true }, &console)?;
         let report = folder.join("demo.html");
         write_report(&report, &pair.high, &baked, &console)?;
         let [high, low] = ["demo_high.glb", "demo_low.glb"].map(|name| folder.join(name));

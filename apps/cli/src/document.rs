@@ -14,7 +14,7 @@ use std::path::Path;
 /// The schema's name, as its `$id` has it.
 const SCHEMA: &str = "parbake/report.schema.json";
 /// Of the JSON outputs.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// A command's JSON output.
 #[derive(Serialize)]

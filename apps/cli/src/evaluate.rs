@@ -29,6 +29,12 @@ pub fn run(command: &EvalCommand) -> Result<Ending, Failure> {
                 table += &format!("\n{index:4}  {}", figures(view));
             }
             table += &format!("\nmean  {}", figures(&evaluation.mean));
+            if !evaluation.channels.is_empty() {
+                table += "\n\nchannel        PSNR dB   MS-SSIM   FLIP";
+            }
+            for of in &evaluation.channels {
+                table += &format!("\n{:13}{}", of.channel.label(), figures(&of.mean));
+            }
             print(&table)?;
         }
         Ok(Ending::Finished)

@@ -10,7 +10,7 @@
 use crate::outliers::Loss;
 use crate::problem::{Problem, Response, footprint, local_places};
 use parbake_image::{MapKind, MapSet};
-use parbake_model::glam::Vec4;
+use parbake_model::glam::{Vec3, Vec4};
 use parbake_render::shade::Jacobian;
 use parbake_solve::grid::gather;
 use parbake_solve::stencil::{Block, Diagonal, Row, Symmetric, add_diagonal, add_symmetric};
@@ -66,6 +66,11 @@ impl SampleBlock for Diagonal {
                 let (curvature, pull) = along(jacobian, response, weights)?;
                 Some((Self((value * value * curvature).extend(0.0)), (value * pull).extend(0.0)))
             }
+            Jacobian::Full(columns) => {
+                let j = columns.map(|column| response.slope * column);
+                let curvature = Vec3::from(j.map(|j| j.dot(j * weights)));
+                Some((Self(curvature.extend(0.0)), pulls(&j, response, weights)))
+            }
         }
     }
 
@@ -88,6 +93,12 @@ impl SampleBlock for Symmetric {
                 let (curvature, pull) = along(jacobian, response, weights)?;
                 Some((Self::outer(value, curvature), (value * pull).extend(0.0)))
             }
+            Jacobian::Full(columns) => {
+                let j = columns.map(|column| response.slope * column);
+                let product = |a: usize, b: usize| j[a].dot(j[b] * weights);
+                let pairs = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+                Some((Self(pairs.map(|(a, b)| product(a, b))), pulls(&j, response, weights)))
+            }
         }
     }
 
@@ -95,6 +106,12 @@ impl SampleBlock for Symmetric {
     fn add_sample(rows: &mut [Row<Self>], places: [usize; 4], w: [f32; 4], block: &Self, right: Vec4) {
         add_symmetric(rows, places, w, block, right);
     }
+}
+
+/// `−Jᵀ s ω r` of three columns of `s J`.
+#[inline(always)]
+fn pulls(j: &[Vec4; 3], response: &Response, weights: Vec4) -> Vec4 {
+    Vec3::from(j.map(|j| -j.dot(response.residual * weights))).extend(0.0)
 }
 
 /// Curvature and pull of the loss along the one number that light depends on.

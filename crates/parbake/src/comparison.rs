@@ -2,13 +2,14 @@
 //! the HTML report and the JSON report show.
 //!
 //! Contract: the views, conventions and code of [`evaluate`](crate::evaluate()), hence the figures that
-//! `eval HIGH BAKED --views 8` gives under the convention of the bake.
+//! `eval HIGH BAKED --views 8` gives under the convention and the shading of the bake.
 
 use crate::bake::Baked;
 use crate::error::BakeError;
+use crate::evaluate::channels::Channel;
 use crate::evaluate::options::EvaluateOptions;
-use crate::evaluate::{ViewFigures, evaluate_each, mean};
-use crate::options::Convention;
+use crate::evaluate::{Compared, ViewFigures, evaluate_each, mean};
+use crate::options::{BakeOptions, Shading};
 use parbake_model::Model;
 use parbake_progress::Watcher;
 use serde::{Deserialize, Serialize};
@@ -39,22 +40,51 @@ pub struct OnBackground {
     pub views: Vec<BeforeAndAfter>,
 }
 
+/// Figures of both models in one channel of the material.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OnChannel {
+    /// Which.
+    pub channel: Channel,
+    /// Means over the views.
+    pub mean: BeforeAndAfter,
+}
+
+/// Which figures are made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Detail {
+    /// FLIP, which takes most of the time.
+    pub flip: bool,
+    /// The channels of whole materials.
+    pub channels: bool,
+}
+
 /// Figures of a bake and of the ray-cast bake of the same pair.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// The options with which `evaluate` gives the same figures on the first background.
     pub options: EvaluateOptions,
+    /// How all were shaded.
+    #[serde(default)]
+    pub shading: Shading,
+    /// The channels of whole materials; none under [`Shading::Lambert`], or where they were left out.
+    #[serde(default)]
+    pub channels: Vec<OnChannel>,
     /// One for each of [`BACKGROUNDS`], in their order.
     pub backgrounds: Vec<OnBackground>,
 }
 
-/// The conventions of a comparison after a bake of this convention.
-pub fn compared_as(convention: Convention) -> EvaluateOptions {
-    EvaluateOptions { views: COMPARED_VIEWS, convention, ..EvaluateOptions::default() }
+/// The conventions of a comparison after a bake with these options.
+pub fn compared_as(options: &BakeOptions) -> EvaluateOptions {
+    EvaluateOptions {
+        views: COMPARED_VIEWS,
+        convention: options.convention,
+        shading: options.shading,
+        ..EvaluateOptions::default()
+    }
 }
 
-/// Compares both models of a bake with the high-poly, under the convention of the bake. FLIP takes most of
-/// the time. Runs on rayon's current thread pool; the watcher is told of progress as
+/// Compares both models of a bake with the high-poly, under the convention and the shading of the bake. Runs on
+/// rayon's current thread pool; the watcher is told of progress as
 /// [`Stage::Evaluate`](crate::Stage::Evaluate) and cannot stop it.
 ///
 /// # Errors
@@ -62,18 +92,30 @@ pub fn compared_as(convention: Convention) -> EvaluateOptions {
 pub fn compare_bake(
     high: &Model,
     baked: &Baked,
-    with_flip: bool,
+    detail: Detail,
     watcher: &dyn Watcher,
 ) -> Result<Comparison, BakeError> {
-    let options = EvaluateOptions { no_flip: !with_flip, ..compared_as(baked.report.options.convention) };
-    let views = evaluate_each(high, &[&baked.ray_cast, &baked.model], &options, &BACKGROUNDS, watcher)?;
-    let of = |k: usize| {
-        let pairs = views.iter().map(|view| BeforeAndAfter { ray_cast: view[0][k], baked: view[1][k] });
-        let pairs: Vec<BeforeAndAfter> = pairs.collect();
-        let mean_of =
-            |one: fn(&BeforeAndAfter) -> ViewFigures| mean(&pairs.iter().map(one).collect::<Vec<_>>());
-        let mean = BeforeAndAfter { ray_cast: mean_of(|p| p.ray_cast), baked: mean_of(|p| p.baked) };
-        OnBackground { background: BACKGROUNDS[k].into(), mean, views: pairs }
+    let options = EvaluateOptions { no_flip: !detail.flip, ..compared_as(&baked.report.options) };
+    let both = [&baked.ray_cast, &baked.model];
+    let Compared { shading, channels, views } =
+        evaluate_each(high, &both, &options, &BACKGROUNDS, detail.channels, watcher)?;
+    let mean_of = |pairs: &[BeforeAndAfter]| {
+        let of = |one: fn(&BeforeAndAfter) -> ViewFigures| mean(&pairs.iter().map(one).collect::<Vec<_>>());
+        BeforeAndAfter { ray_cast: of(|p| p.ray_cast), baked: of(|p| p.baked) }
     };
-    Ok(Comparison { backgrounds: (0..BACKGROUNDS.len()).map(of).collect(), options })
+    let of = |k: usize| {
+        let pairs =
+            views.iter().map(|view| BeforeAndAfter { ray_cast: view.seen[0][k], baked: view.seen[1][k] });
+        let pairs: Vec<BeforeAndAfter> = pairs.collect();
+        OnBackground { background: BACKGROUNDS[k].into(), mean: mean_of(&pairs), views: pairs }
+    };
+    let of_channel = |(k, &channel): (usize, &Channel)| {
+        let pair = |view: &crate::evaluate::ComparedView| BeforeAndAfter {
+            ray_cast: view.channels[0][k],
+            baked: view.channels[1][k],
+        };
+        OnChannel { channel, mean: mean_of(&views.iter().map(pair).collect::<Vec<_>>()) }
+    };
+    let channels = channels.iter().enumerate().map(of_channel).collect();
+    Ok(Comparison { backgrounds: (0..BACKGROUNDS.len()).map(of).collect(), options, shading, channels })
 }

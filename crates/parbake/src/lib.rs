@@ -54,10 +54,12 @@ mod warnings;
 pub use bake::{Baked, bake, bake_prepared, prepare_high_poly};
 pub use budget::check_budget;
 pub use comparison::{
-    BACKGROUNDS, BeforeAndAfter, COMPARED_VIEWS, Comparison, OnBackground, compare_bake, compared_as,
+    BACKGROUNDS, BeforeAndAfter, COMPARED_VIEWS, Comparison, Detail, OnBackground, OnChannel, compare_bake,
+    compared_as,
 };
 pub use compress::compress;
 pub use error::BakeError;
+pub use evaluate::channels::{Channel, ChannelFigures};
 pub use evaluate::options::EvaluateOptions;
 pub use evaluate::{Evaluation, ViewFigures, evaluate, evaluate_on};
 pub use image::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};

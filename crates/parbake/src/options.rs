@@ -90,7 +90,7 @@ pub enum ShapeMode {
     Free,
 }
 
-/// What of the high-poly's materials is fitted.
+/// What of the high-poly's materials is fitted, and shown in comparisons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
@@ -116,6 +116,15 @@ pub enum Parallax {
     /// A parallax map and a cutout of spherical harmonics in a material extension
     /// (docs/parallax_format.md).
     Sh,
+}
+
+/// Checks that whole materials are asked for only where colours are decoded.
+pub(crate) fn check_shading(shading: Shading, convention: Convention) -> Result<(), BakeError> {
+    if shading == Shading::Pbr && convention == Convention::Paper {
+        let range = "auto or lambert with --convention paper".into();
+        return Err(BakeError::Option { option: "shading", value: "pbr".into(), range });
+    }
+    Ok(())
 }
 
 /// Checks that the paper's switch is only used with the paper's method.
@@ -365,10 +374,7 @@ impl BakeOptions {
         within("cutout-size", self.cutout_size as f64, 4.0, 1024.0)?;
         within("threads", self.threads as f64, 0.0, crate::threads::MOST_THREADS as f64)?;
         within("time-budget", self.time_budget.unwrap_or(0.0), 0.0, 1e9)?;
-        if self.shading == Shading::Pbr && self.convention == Convention::Paper {
-            let range = "auto or lambert with --convention paper".into();
-            return Err(BakeError::Option { option: "shading", value: "pbr".into(), range });
-        }
+        check_shading(self.shading, self.convention)?;
         if self.shape == ShapeMode::Laplacian && self.method == Method::Paper {
             let range = "keep or normal with --method paper".into();
             return Err(BakeError::Option { option: "shape", value: "laplacian".into(), range });

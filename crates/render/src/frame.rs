@@ -21,6 +21,37 @@ pub struct TangentLight {
     pub gram: [f32; 6],
 }
 
+/// The same for light that does not stand with the viewer: the frame itself, and the viewer.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Orientation {
+    /// Interpolated tangent, flipped with the face.
+    pub tangent: Vec3,
+    /// Bitangent, flipped with the face.
+    pub bitangent: Vec3,
+    /// Interpolated normal, flipped with the face.
+    pub normal: Vec3,
+    /// Unit vector to the viewer.
+    pub to_viewer: Vec3,
+}
+
+/// Interpolated normal and tangent to [`Orientation`].
+#[inline]
+pub fn orientation(
+    normal: Vec3,
+    tangent: Vec3,
+    handedness: f32,
+    to_viewer: Vec3,
+    facing: f32,
+) -> Orientation {
+    let bitangent = normal.cross(tangent) * handedness;
+    Orientation {
+        tangent: tangent * facing,
+        bitangent: bitangent * facing,
+        normal: normal * facing,
+        to_viewer,
+    }
+}
+
 /// Forward: interpolated normal and tangent to [`TangentLight`].
 #[inline]
 pub fn tangent_light(

@@ -11,7 +11,8 @@
 //! `pipeline.rs` goes the whole way and back; `patch.rs` is its inner loop, from a
 //! triangle's samples to light. `slopes.rs` and `scatter.rs` are the two halves of the
 //! texture's adjoint: towards the coordinates and towards the texels. `surface.rs` is
-//! what goes in. `scene.rs` renders whole models, forward only, with the textures of
+//! what goes in. `shade.rs` is what a BRDF is, and Lambert's; `metallic_roughness.rs` is glTF's, under the
+//! light of `lighting.rs`, with the table of `split_sum.rs` and the derivatives of `real.rs`. `scene.rs` renders whole models, forward only (`scene_material.rs` with all of their materials), with the textures of
 //! `scene_textures.rs`, read as `interpretation.rs` says. `cutout.rs` is where a surface is not there, seen from the wrong side.
 //! `parallax_variants` puts other ways to shift coordinates behind one interface.
 //! `parallax_images.rs` and `cutout_images.rs` take maps to 8-bit images and back, by
@@ -30,16 +31,21 @@ pub mod edges;
 pub mod frame;
 pub mod interpolate;
 pub mod interpretation;
+pub mod lighting;
 pub mod loss;
+pub mod metallic_roughness;
 pub mod parallax;
 mod parallax_images;
 pub mod parallax_variants;
 pub mod patch;
 pub mod pipeline;
 pub mod raster;
+mod real;
 pub mod scatter;
 pub mod scene;
+pub mod scene_material;
 mod scene_textures;
 pub mod shade;
 pub mod spherical_harmonics;
+mod split_sum;
 pub mod surface;

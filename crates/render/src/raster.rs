@@ -93,6 +93,34 @@ impl ScreenTriangles {
 }
 
 impl ScreenTriangle {
+    /// One that is not seen.
+    pub(crate) const HIDDEN: Self =
+        Self { planes: [DVec3::ZERO; 3], nearness: DVec3::ZERO, bounds: [0.0, 0.0, -1.0, -1.0] };
+
+    /// The samples of a row that lie on the triangle, of `size` along a side, with their nearness. A sample on an
+    /// edge belongs to one of the two triangles beside it.
+    pub(crate) fn on_row(&self, row: usize, size: usize) -> impl Iterator<Item = (usize, f64)> {
+        let [x0, y0, x1, y1] = self.bounds;
+        let y = row as f64 + 0.5;
+        let is_beside = x1 < x0 || y < f64::from(y0) || y > f64::from(y1);
+        let first = (x0 - 0.5).ceil().max(0.0) as usize;
+        let end = if is_beside { first } else { ((x1 - 0.5).floor() + 1.0).clamp(0.0, size as f32) as usize };
+        let is_inside = move |s: f64, plane: &DVec3| {
+            s > 0.0 || s == 0.0 && (plane.x > 0.0 || plane.x == 0.0 && plane.y > 0.0)
+        };
+        (first..end).filter_map(move |column| {
+            let x = column as f64 + 0.5;
+            let s = self.at(x, y);
+            let inside = s.iter().zip(&self.planes).all(|(s, plane)| is_inside(*s, plane));
+            inside.then(|| (column, self.nearness_at(x, y)))
+        })
+    }
+
+    /// What is larger where the surface is nearer.
+    pub(crate) fn nearness_at(&self, x: f64, y: f64) -> f64 {
+        self.nearness.x * x + self.nearness.y * y + self.nearness.z
+    }
+
     /// s at this point of the screen: barycentrics divided by depth.
     #[inline(always)]
     pub fn at(&self, x: f64, y: f64) -> [f64; 3] {

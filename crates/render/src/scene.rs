@@ -3,7 +3,8 @@
 //!
 //! Forward: for each sample `raster → interpolate → frame → parallax → texture → shade`,
 //! as in the other files of this crate; samples of a pixel are averaged. Where a material has
-//! a cutout, what that leaves out is looked through (`cutout.rs`).
+//! a cutout, what that leaves out is looked through (`cutout.rs`). Whole materials, with what is cut out and
+//! what is blended, are rendered by `scene_material.rs`.
 //!
 //! Contract: pictures are linear light, premultiplied, with coverage in the fourth
 //! channel; gain and display curve come later (`display.rs`). Pixels are
@@ -11,7 +12,7 @@
 
 use crate::camera::Camera;
 use crate::cutout::rasterise_cut;
-use crate::frame::tangent_light;
+use crate::frame::{Orientation, orientation, tangent_light};
 use crate::interpolate::{barycentrics, interpolate};
 use crate::interpretation::Interpretation;
 use crate::parallax::ViewDirection;
@@ -37,9 +38,9 @@ pub struct Picture {
 }
 
 /// A point of the surface as a camera sees it.
-struct Seen {
+pub(crate) struct Seen {
     /// The normal's is in the tangent frame.
-    values: MapValues,
+    pub values: MapValues,
     normal: Vec3,
     tangent: Vec3,
     handedness: f32,
@@ -48,12 +49,16 @@ struct Seen {
 }
 
 impl Seen {
+    pub fn orientation(&self) -> Orientation {
+        orientation(self.normal, self.tangent, self.handedness, self.to_viewer, self.facing)
+    }
+
     fn light(&self, brdf: &impl Brdf) -> Vec3 {
         let Self { normal, tangent, handedness, to_viewer, facing, .. } = *self;
         brdf.light(&tangent_light(normal, tangent, handedness, to_viewer, facing), &self.values)
     }
 
-    fn world_normal(&self) -> Vec3 {
+    pub fn world_normal(&self) -> Vec3 {
         let m = self.values[MapKind::Normal];
         let bitangent = self.normal.cross(self.tangent) * self.handedness;
         let world = self.tangent * m.x + bitangent * m.y + self.normal * m.z;
@@ -63,11 +68,11 @@ impl Seen {
 
 /// A model with its textures unpacked into mip pyramids.
 pub struct Scene {
-    mesh: Mesh,
-    surfaces: Vec<Surface>,
-    pyramids: Vec<Pyramid<3>>,
+    pub(crate) mesh: Mesh,
+    pub(crate) surfaces: Vec<Surface>,
+    pub(crate) pyramids: Vec<Pyramid<3>>,
     /// 0 where a face is degenerate.
-    face_normals: Vec<Vec3>,
+    pub(crate) face_normals: Vec<Vec3>,
     /// Whether textures are read as they are stored; vertex colours, which are linear, are encoded then.
     as_stored: bool,
 }
@@ -183,7 +188,7 @@ impl Scene {
     }
 
     /// Opacity before any cutoff; 1 where the material is opaque.
-    fn opacity(
+    pub(crate) fn opacity(
         &self,
         surface: &Surface,
         corners: [usize; 3],
@@ -284,7 +289,7 @@ impl Scene {
         values
     }
 
-    fn seen(
+    pub(crate) fn seen(
         &self,
         camera: &Camera,
         on_screen: &ScreenTriangle,

@@ -95,6 +95,8 @@ pub(crate) struct Surface {
     pub alpha_cutoff: f32,
     /// Whether the base colour is shown as it is.
     pub is_unlit: bool,
+    /// Whether its back is seen.
+    pub is_double_sided: bool,
     /// The base colour's alpha in all three channels, where it counts.
     pub opacity: Option<Map>,
     /// As viewers see it that know no parallax.
@@ -164,6 +166,7 @@ impl<'a> Builder<'a> {
             alpha_mode,
             alpha_cutoff,
             is_unlit,
+            is_double_sided: material.double_sided,
             opacity,
             plain,
             shifted,

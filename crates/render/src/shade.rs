@@ -3,7 +3,8 @@
 //! The paper's eq. 2, `shade(d, C, N) = (d·N) C`, a Lambert surface under a
 //! headlight of unit strength, which sends out E besides: `k = max(0, light·m / √(mᵀ gram m))`,
 //! out = k C + E.
-//! [`Brdf`] is the one replaceable piece: glTF's metallic-roughness material will be another.
+//! [`Brdf`] is the one replaceable piece: glTF's metallic-roughness material is another, in
+//! `metallic_roughness.rs`.
 //! Adjoint: `dL/dC = k g`; `dL/dE = g`; `dL/dk = C·g`, zero where the clamp holds.
 //!
 //! Contract: `map_normal` need not be of unit length. Where what it maps to is shorter than
@@ -20,16 +21,16 @@ pub const SHORTEST: f32 = 1e-2;
 
 /// Derivative of a loss by all that shading reads.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BrdfGradient {
+pub struct BrdfGradient<S = TangentLight> {
     /// By the value of each map.
     pub maps: MapValues,
     /// By the surface's orientation.
-    pub surface: TangentLight,
+    pub surface: S,
 }
 
-impl Default for BrdfGradient {
+impl<S: Default> Default for BrdfGradient<S> {
     fn default() -> Self {
-        Self { maps: MapValues::ZERO, surface: TangentLight::default() }
+        Self { maps: MapValues::ZERO, surface: S::default() }
     }
 }
 
@@ -47,6 +48,8 @@ pub enum Jacobian {
         /// Where the surface is turned away from the light, a change can only make it brighter.
         only_brighter: bool,
     },
+    /// Any other: how the light changes with each channel of the map.
+    Full([Vec4; 3]),
 }
 
 impl Jacobian {
@@ -59,24 +62,29 @@ impl Jacobian {
                 let along = to_light.dot(light);
                 if only_brighter && along >= 0.0 { Vec4::ZERO } else { (value * along).extend(0.0) }
             }
+            Self::Full(columns) => Vec3::from(columns.map(|column| to_light.dot(column))).extend(0.0),
         }
     }
 }
 
 /// A BRDF with its light: the one replaceable piece of shading. Renderer, references, texture
 /// solves, the parallax fit and vertices know no other.
-pub trait Brdf: Sync {
+///
+/// `S` is what it needs to know of the surface's orientation: with a light that stands with the viewer a
+/// [`TangentLight`], which is all that samples of a fit carry, else an
+/// [`Orientation`](crate::frame::Orientation).
+pub trait Brdf<S = TangentLight>: Sync {
     /// Whether the light depends on this map.
     fn reads(&self, kind: MapKind) -> bool;
 
     /// Outgoing linear light, three channels.
-    fn light(&self, surface: &TangentLight, maps: &MapValues) -> Vec3;
+    fn light(&self, surface: &S, maps: &MapValues) -> Vec3;
 
     /// Adjoint of [`Brdf::light`]: the gradient by all inputs, given that by the light.
-    fn adjoint(&self, surface: &TangentLight, maps: &MapValues, gradient: Vec3) -> BrdfGradient;
+    fn adjoint(&self, surface: &S, maps: &MapValues, gradient: Vec3) -> BrdfGradient<S>;
 
     /// Outgoing light as of [`Brdf::light`], and its derivative by one map that the BRDF reads.
-    fn jacobian(&self, kind: MapKind, surface: &TangentLight, maps: &MapValues) -> (Vec4, Jacobian);
+    fn jacobian(&self, kind: MapKind, surface: &S, maps: &MapValues) -> (Vec4, Jacobian);
 }
 
 /// Lambert surface that may shine by itself, light at the camera: `max(0, k) C + E`.

@@ -5,6 +5,7 @@
 //!               /low_simplygon/      LOD-1   (lod1 does as well)
 //!               /low_simplygon100/   LOD-2   (lod2)
 //!               /low_simplygon50/    LOD-3   (lod3)
+//! DATA/pbr/NAME/                 one model, whose materials may have more than colour
 //! DATA/images2d/PICTURE.png, .jpg, .webp
 //! ```
 //!
@@ -13,6 +14,8 @@
 
 use crate::error::ReproduceError;
 use parbake::{Limits, read_model};
+use parbake_image::material_maps::fitted_alpha;
+use parbake_model::AlphaMode;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -73,6 +76,8 @@ impl ModelFolder {
 pub struct Catalogue {
     /// Models with at least one level.
     pub models: Vec<ModelFolder>,
+    /// Models without levels; see [`Catalogue::keep_mapped`].
+    pub mapped: Vec<ModelFolder>,
     /// Pictures.
     pub pictures: Vec<PathBuf>,
     /// What was left out and why, a sentence each.
@@ -99,13 +104,35 @@ impl Catalogue {
                 }
             }
         }
+        for folder in list(&data.join("pbr")).unwrap_or_default() {
+            let name = file_name(&folder);
+            if let Some(high) = model_in(&folder).filter(|_| chosen(&name)) {
+                found.mapped.push(ModelFolder { name, high, lows: Vec::new() });
+            }
+        }
         let is_picture = |path: &Path| has_ending(path, &["png", "jpg", "jpeg", "webp"]);
         found.pictures = list(&data.join("images2d")).unwrap_or_default();
         found.pictures.retain(|path| is_picture(path) && chosen(&file_name(path)));
-        if found.models.is_empty() && found.pictures.is_empty() {
+        if found.models.is_empty() && found.pictures.is_empty() && found.mapped.is_empty() {
             return Err(ReproduceError::Nothing { path: data.to_path_buf() });
         }
         Ok(found)
+    }
+
+    /// Reads the models without levels, and keeps those that are opaque and whose roughness or metal is a texture.
+    pub fn keep_mapped(&mut self) {
+        let left_out = &mut self.left_out;
+        self.mapped.retain(|folder| match read_model(&folder.high, &Limits::default()) {
+            Ok(read) => {
+                let materials = &read.model.materials;
+                materials.iter().any(|m| m.metallic_roughness_texture.is_some())
+                    && materials.iter().all(|m| fitted_alpha(m).0 == AlphaMode::Opaque)
+            }
+            Err(error) => {
+                left_out.push(format!("{}: left out: {error}", folder.name));
+                false
+            }
+        });
     }
 }
 

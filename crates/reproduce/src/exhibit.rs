@@ -38,6 +38,8 @@ pub enum Exhibit {
     Figure11,
     /// Measured depth.
     Figure12,
+    /// Further maps under random lights.
+    Figure14,
     /// Convergence of the paper's method.
     Figure15,
     /// One thing at a time.
@@ -51,7 +53,7 @@ pub enum Exhibit {
 impl Exhibit {
     /// All, in the order in which they are made: what most others build on comes first, what takes
     /// longest last.
-    pub const ALL: [Exhibit; 19] = [
+    pub const ALL: [Exhibit; 20] = [
         Exhibit::Table10,
         Exhibit::Table6,
         Exhibit::Table7,
@@ -65,6 +67,7 @@ impl Exhibit {
         Exhibit::Figure10,
         Exhibit::Figure11,
         Exhibit::Figure12,
+        Exhibit::Figure14,
         Exhibit::Figure16,
         Exhibit::Figure17,
         Exhibit::Figure18,
@@ -95,6 +98,7 @@ impl Exhibit {
             Exhibit::Figure10 => "Figure 10",
             Exhibit::Figure11 => "Figure 11",
             Exhibit::Figure12 => "Figure 12",
+            Exhibit::Figure14 => "Figure 14",
             Exhibit::Figure15 => "Figure 15",
             Exhibit::Figure16 => "Figure 16",
             Exhibit::Figure17 => "Figure 17",

@@ -107,6 +107,13 @@ pub enum Recipe {
         /// Texels along a side.
         texture_size: usize,
     },
+    /// A bake of a model onto a coarser copy of itself, under random lights.
+    Relit {
+        /// Its options.
+        options: Box<BakeOptions>,
+        /// Triangles of the copy; no more than half of the model's own.
+        triangles: usize,
+    },
     /// All kinds of parallax mapping.
     Variants {
         /// Their options.
@@ -140,7 +147,9 @@ impl Experiment {
     /// Texels along a side.
     pub fn texture_size(&self) -> usize {
         match &self.recipe {
-            Recipe::Bake { options, .. } | Recipe::Compress { options } => options.texture_size,
+            Recipe::Bake { options, .. } | Recipe::Compress { options } | Recipe::Relit { options, .. } => {
+                options.texture_size
+            }
             Recipe::Picture { options } => options.texture_size,
             Recipe::Downsample { texture_size } => *texture_size,
             Recipe::Variants { options } => options.texture_size,

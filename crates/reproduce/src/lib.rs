@@ -29,6 +29,7 @@ mod outcome;
 mod paper;
 mod perform;
 mod plane;
+mod relighting;
 mod report;
 mod reproduce;
 mod results;

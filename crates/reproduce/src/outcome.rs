@@ -1,5 +1,6 @@
 //! What came of an experiment, as plain data.
 
+use crate::relighting::Relit;
 use crate::variants::VariantFigures;
 use serde::{Deserialize, Serialize};
 
@@ -51,6 +52,9 @@ pub struct Outcome {
     pub convergence: Vec<Point>,
     /// Figures of each kind of parallax mapping; their pictures lie beside this.
     pub variants: Vec<VariantFigures>,
+    /// Figures under random lights; their pictures lie beside this.
+    #[serde(default)]
+    pub relit: Vec<Relit>,
     /// What the product warned of.
     pub warnings: Vec<String>,
     /// Who made it: a digest of the program.

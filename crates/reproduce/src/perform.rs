@@ -9,12 +9,13 @@ use crate::experiment::{Experiment, Recipe, Subject};
 use crate::observer::Observer;
 use crate::outcome::{BACKGROUNDS, Outcome, Point, Score};
 use crate::plane::{as_shown, wanted};
+use crate::relighting::relight;
 use crate::variants::{VariantsOptions, compare_variants};
 use image::imageops::FilterType;
 use parbake::{
-    BakeError, BakeOptions, BakeReport, EvaluateOptions, ImageOptions, Limits, PictureUv, UvMode, Watcher,
-    bake, bake_image, compress, encode_png, evaluate_on, laid_out, read_image, read_model, subdivided,
-    wall_pair, write_file, write_glb,
+    BakeError, BakeOptions, BakeReport, EvaluateOptions, ImageOptions, Limits, PictureUv, Shading, UvMode,
+    Watcher, bake, bake_image, compress, encode_png, evaluate_on, laid_out, read_image, read_model,
+    simplified, subdivided, wall_pair, write_file, write_glb,
 };
 use parbake_metric::{Rgb, mean_squared_error, ms_ssim, psnr_from_mse};
 use parbake_model::{Image, Model};
@@ -50,6 +51,9 @@ pub fn perform(
             run.bake(high, low, options, *start, *subdivided)
         }
         (Recipe::Compress { options }, Subject::Model { path, .. }) => run.compress(path, options),
+        (Recipe::Relit { options, triangles }, Subject::Model { path, .. }) => {
+            run.relit(path, options, *triangles)
+        }
         (Recipe::Picture { options }, Subject::Picture { path }) => run.picture(path, options),
         (Recipe::Downsample { texture_size }, Subject::Picture { path }) => {
             run.downsample(path, *texture_size)
@@ -117,6 +121,26 @@ impl<O: Observer> Run<'_, O> {
         let baked = compress(&high, options, &self.stop)?;
         let outcome = self.written(&baked.model, &baked.report)?;
         self.compared(&high, outcome)
+    }
+
+    fn relit(&self, path: &Path, options: &BakeOptions, triangles: usize) -> Result<Outcome, BakeError> {
+        let high = model(path)?;
+        let low = simplified(&high, triangles.min(high.mesh.triangles.len() / 2));
+        let baked = bake(&high, &low, options, &self.stop)?;
+        let mut outcome = self.written(&baked.model, &baked.report)?;
+        let plain = BakeOptions { shading: Shading::Lambert, ..options.clone() };
+        let without = bake(&high, &low, &plain, &self.stop)?.model;
+        let all = model(&self.place.join(MODEL))?;
+        let models = [("ray-cast", &baked.ray_cast), ("without", &without), ("all maps", &all)];
+        let found = relight(&high, &models, self.evaluate)?;
+        for (variant, pictures) in found.pictures.iter().enumerate() {
+            for (side, picture) in pictures.iter().enumerate() {
+                let png = encode_png(&as_image(picture))?;
+                write_file(&self.place.join(variant_file(variant, side)), &png)?;
+            }
+        }
+        outcome.relit = found.figures;
+        Ok(outcome)
     }
 
     /// Writes a model and takes down what its bake saw.

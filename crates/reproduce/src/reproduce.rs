@@ -51,13 +51,16 @@ pub fn reproduce(
     observer: &impl Observer,
 ) -> Result<Reproduced, ReproduceError> {
     options.check()?;
-    let catalogue = Catalogue::of(data, &options.models)?;
+    let exhibits = exhibits(options);
+    let mut catalogue = Catalogue::of(data, &options.models)?;
+    if exhibits.contains(&Exhibit::Figure14) {
+        catalogue.keep_mapped();
+    }
     for reason in &catalogue.left_out {
         observer.event(Event::Note(reason.clone()));
     }
     std::fs::create_dir_all(output).map_err(ReproduceError::disk(output))?;
     let scope = Scope { catalogue, options: options.clone() };
-    let exhibits = exhibits(options);
     let mut cache = Cache::new(output, digest_of(program)?, options.any_build);
     let plan = plan(&scope, &exhibits);
     let mut state = State::default();
@@ -177,6 +180,7 @@ fn kind(experiment: &Experiment) -> String {
         Recipe::Compress { .. } => "compress",
         Recipe::Picture { .. } => "picture",
         Recipe::Downsample { .. } => "downsample",
+        Recipe::Relit { .. } => "relit",
         Recipe::Variants { .. } => "variants",
     };
     format!("{name} {} {}", experiment.label, experiment.texture_size())

@@ -4,7 +4,7 @@
 
 use crate::error::PrepareError;
 use parbake_mesh::{compute_tangents, ensure_normals};
-use parbake_model::{Bounds, Mesh, Model, Placement};
+use parbake_model::{Bounds, Image, Mesh, Model, Placement};
 use parbake_render::interpretation::Interpretation;
 use parbake_render::scene::Scene;
 
@@ -26,6 +26,13 @@ pub fn placed(model: &Model, frame: &Placement) -> Mesh {
     }
     frame.apply(&mut mesh);
     mesh
+}
+
+/// Whether a material of the model is more than rough, opaque and not metallic, as
+/// [`Scene::needs_whole_material`] says; textures are not unpacked for it.
+pub fn needs_whole_material(model: &Model) -> bool {
+    let images: Vec<Image> = model.images.iter().map(|_| Image::solid("", 1, 1, [255; 4])).collect();
+    Scene::new(Mesh::default(), &model.materials, &images, Interpretation::default()).needs_whole_material()
 }
 
 /// The model in the common frame, ready for rendering.

@@ -99,3 +99,39 @@ fn mistakes_are_told_before_any_work() {
         assert!(text(&output.stderr).contains(part), "{arguments:?}: {}", text(&output.stderr));
     }
 }
+
+/// Protects Figure 14: a model with roughness as a texture is found in its folder, one without is passed over, and
+/// the fit of all maps is ahead of the fit without them under random lights.
+#[test]
+fn further_maps_are_shown_under_random_lights() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut high = parbake::simplified(&parbake::demo_pair().0, 1200);
+    let place = |name: &str| {
+        let place = folder.join("data/pbr").join(name);
+        std::fs::create_dir_all(&place).unwrap();
+        place.join("jar.glb")
+    };
+    parbake::write_glb(&place("a_plain"), &high).unwrap();
+    let stripes = (0..64).map(|i| [255, if i % 8 < 4 { 60 } else { 200 }, 255, 255]).collect();
+    let image = parbake::Picture { name: "rough".into(), width: 8, height: 8, pixels: stripes };
+    for material in &mut high.materials {
+        (material.metallic, material.roughness) = (1.0, 1.0);
+        material.metallic_roughness_texture =
+            Some(parbake_model::TextureSlot { image: high.images.len(), ..Default::default() });
+    }
+    high.images.push(image);
+    parbake::write_glb(&place("b_metal"), &high).unwrap();
+    let arguments =
+        ["reproduce", "data", "-o", "out", "--quick", "--views", "6", "--resolution", "64", "--only"];
+    let out = parbake(folder).args(arguments).arg("figure14").output().unwrap();
+    assert!(out.status.success(), "{}", text(&out.stderr));
+    let tables = std::fs::read_to_string(folder.join("out/tables.md")).unwrap();
+    assert!(tables.contains("b_metal") && !tables.contains("a_plain"), "{tables}");
+    let row = tables.lines().find(|line| line.contains("b_metal")).unwrap();
+    let gain = row.trim_end_matches(['|', ' ']).rsplit('|').next().unwrap().trim().to_string();
+    assert!(gain.starts_with('+'), "{row}");
+    let page = std::fs::read_to_string(folder.join("out/report.html")).unwrap();
+    // Three pictures of four models, and the maps.
+    assert!(page.matches("data:image/png;base64,").count() >= 3 * 4 + 2);
+}

@@ -100,12 +100,14 @@ fn outputs_keep_to_the_schema() {
     };
     std::fs::write(folder.join("checks.png"), parbake::encode_png(&picture).unwrap()).unwrap();
     let pair = ["demo_high.glb", "demo_low.glb"];
-    let runs: [(&str, Vec<&str>); 5] = [
+    let runs: [(&str, Vec<&str>); 7] = [
         ("bake", [&pair[..], &SMALL].concat()),
         ("bake", [&pair[..], &SMALL, &["--parallax", "sh", "--preset", "fast"]].concat()),
         ("compress", [&pair[..1], &["--texture-size", "32", "--uv-steps", "2"]].concat()),
         ("image", vec!["checks.png", "--texture-size", "16", "--grid", "8"]),
         ("eval", [&pair[..], &["--views", "2", "--resolution", "64"]].concat()),
+        ("eval", [&pair[..], &["--views", "2", "--resolution", "64", "--shading", "pbr"]].concat()),
+        ("bake", [&pair[..], &SMALL, &["--shading", "pbr"]].concat()),
     ];
     for (command, arguments) in runs {
         run(folder, &[&[command, "-q", "--json", "out.json"], &arguments[..]].concat());
@@ -113,7 +115,7 @@ fn outputs_keep_to_the_schema() {
         let wrong = faults(&out, &schema, &schema, "");
         assert!(wrong.is_empty(), "{command} {arguments:?}: {wrong:#?}");
         assert_snake_case(&out, command);
-        assert_eq!((&out["command"], &out["version"]), (&command.into(), &2.into()));
+        assert_eq!((&out["command"], &out["version"]), (&command.into(), &3.into()));
     }
 }
 
@@ -134,4 +136,47 @@ fn a_bake_and_eval_agree() {
     let own = report["comparison"]["backgrounds"][0]["mean"]["baked"]["psnr"].as_f64().unwrap();
     let evaluated = json(&folder.join("e.json"))["mean"]["psnr"].as_f64().unwrap();
     assert!((own - evaluated).abs() < 0.005, "{own} {evaluated}");
+    assert_eq!(report["comparison"]["shading"], "lambert");
+}
+
+/// Protects the same of whole materials: metal is shown as metal by both, also by default, channel by channel.
+#[test]
+fn a_bake_and_eval_agree_on_metal() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (mut high, low) = parbake::demo_pair();
+    for material in &mut high.materials {
+        (material.metallic, material.roughness) = (1.0, 0.3);
+    }
+    for (name, model) in [("metal.glb", &high), ("low.glb", &low)] {
+        parbake::write_glb(&folder.join(name), model).unwrap();
+    }
+    run(folder, &[&["bake", "metal.glb", "low.glb", "-o", "a.glb", "--json", "a.json"], &SMALL[..]].concat());
+    run(folder, &["eval", "metal.glb", "a.glb", "--views", "8", "--no-flip", "--json", "e.json"]);
+    let (report, evaluated) = (json(&folder.join("a.json")), json(&folder.join("e.json")));
+    let comparison = &report["comparison"];
+    assert_eq!((&comparison["shading"], &evaluated["shading"]), (&"pbr".into(), &"pbr".into()));
+    let own = comparison["backgrounds"][0]["mean"]["baked"]["psnr"].as_f64().unwrap();
+    assert!((own - evaluated["mean"]["psnr"].as_f64().unwrap()).abs() < 0.005);
+    let channels = |value: &Value| -> Vec<(String, f64)> {
+        let one = |of: &Value| {
+            let psnr = of["mean"].pointer("/baked/psnr").unwrap_or(&of["mean"]["psnr"]).as_f64().unwrap();
+            (of["channel"].as_str().unwrap().to_string(), psnr)
+        };
+        value["channels"].as_array().unwrap().iter().map(one).collect()
+    };
+    let (own, evaluated) = (channels(comparison), channels(&evaluated));
+    let names = ["base_color", "normal", "roughness", "metallic", "opacity"];
+    assert_eq!(own.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), names);
+    for ((name, own), (_, evaluated)) in own.iter().zip(&evaluated) {
+        assert!((own - evaluated).abs() < 0.005, "{name} {own} {evaluated}");
+    }
+    // One value all over is kept.
+    assert!(own[3].1 > 45.0, "{own:?}");
+    // Under a headlight on matte surfaces the same files give another figure.
+    let lambert = ["eval", "metal.glb", "a.glb", "--views", "8", "--no-flip", "--shading", "lambert"];
+    run(folder, &[&lambert[..], &["--json", "l.json"]].concat());
+    let lambert = json(&folder.join("l.json"));
+    assert!(lambert["channels"].as_array().unwrap().is_empty());
+    assert_ne!(lambert["mean"]["psnr"], json(&folder.join("e.json"))["mean"]["psnr"]);
 }

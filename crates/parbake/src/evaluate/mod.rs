@@ -1,10 +1,13 @@
 //! Compares two models picture by picture: PSNR, MS-SSIM and FLIP over views spread
-//! around them.
+//! around them; where whole materials are compared, of what is seen and of each channel (`channels.rs`).
 
+pub mod channels;
 pub mod options;
 
 use crate::error::BakeError;
-use crate::studio::{Studio, Subject};
+use crate::options::Shading;
+use crate::studio::{Shot, Studio, Subject};
+use channels::{Channel, ChannelFigures};
 use options::EvaluateOptions;
 use parbake_metric::Rgb;
 use parbake_model::Model;
@@ -30,10 +33,14 @@ pub struct ViewFigures {
 pub struct Evaluation {
     /// The conventions.
     pub options: EvaluateOptions,
+    /// How both were shaded: [`Shading::Lambert`] or [`Shading::Pbr`].
+    pub shading: Shading,
     /// Averages over the views.
     pub mean: ViewFigures,
     /// Each view's figures.
     pub views: Vec<ViewFigures>,
+    /// The material's channels; none under [`Shading::Lambert`]. They do not depend on the background.
+    pub channels: Vec<ChannelFigures>,
 }
 
 /// FLIP's viewing distance: pixels per degree of its authors' default monitor.
@@ -65,17 +72,41 @@ pub fn evaluate_on(
     backgrounds: &[&str],
     watcher: &dyn Watcher,
 ) -> Result<Vec<Evaluation>, BakeError> {
-    let views = evaluate_each(high, &[low], options, backgrounds, watcher)?;
+    let Compared { shading, channels, views } =
+        evaluate_each(high, &[low], options, backgrounds, true, watcher)?;
+    let of_channel = |(k, &channel): (usize, &Channel)| {
+        let views: Vec<ViewFigures> = views.iter().map(|view| view.channels[0][k]).collect();
+        ChannelFigures { channel, mean: mean(&views), views }
+    };
+    let channels: Vec<ChannelFigures> = channels.iter().enumerate().map(of_channel).collect();
     let of = |(k, &name): (usize, &&str)| {
-        let views: Vec<ViewFigures> = views.iter().map(|view| view[0][k]).collect();
+        let views: Vec<ViewFigures> = views.iter().map(|view| view.seen[0][k]).collect();
         let options = EvaluateOptions { background: name.into(), ..options.clone() };
-        Evaluation { options, mean: mean(&views), views }
+        Evaluation { options, shading, mean: mean(&views), views, channels: channels.clone() }
     };
     Ok(backgrounds.iter().enumerate().map(of).collect())
 }
 
-/// Compares several models with one high-poly, which is rendered once for all of them: for each view the
-/// figures of each model on each background.
+/// What became of a comparison.
+pub(crate) struct Compared {
+    /// How all were shaded.
+    pub shading: Shading,
+    /// The channels that were compared.
+    pub channels: Vec<Channel>,
+    /// Each view.
+    pub views: Vec<ComparedView>,
+}
+
+/// One view.
+pub(crate) struct ComparedView {
+    /// The figures of each model on each background.
+    pub seen: Vec<Vec<ViewFigures>>,
+    /// Those of each model's channels.
+    pub channels: Vec<Vec<ViewFigures>>,
+}
+
+/// Compares several models with one high-poly, which is rendered once for all of them, on each background, and
+/// channel by channel if `with_channels` and if whole materials are compared.
 ///
 /// # Errors
 /// As of [`evaluate`].
@@ -84,31 +115,44 @@ pub(crate) fn evaluate_each(
     low: &[&Model],
     options: &EvaluateOptions,
     backgrounds: &[&str],
+    with_channels: bool,
     watcher: &dyn Watcher,
-) -> Result<Vec<Vec<Vec<ViewFigures>>>, BakeError> {
+) -> Result<Compared, BakeError> {
     let color =
         |&name: &&str| EvaluateOptions { background: name.into(), ..options.clone() }.checked_background();
     let colors: Vec<[f32; 3]> = backgrounds.iter().map(color).collect::<Result<_, _>>()?;
     let studio = Studio::new(high, options)?;
+    let shading = studio.shading();
     let high = studio.subject(high);
     let low: Vec<Subject> = low.iter().map(|low| studio.subject(low)).collect();
+    let channels = match with_channels && shading == Shading::Pbr {
+        true => Channel::of(std::iter::once(&high).chain(&low)),
+        false => Vec::new(),
+    };
     let done = AtomicUsize::new(0);
     let views = fibonacci_sphere(options.views, 0.0).into_par_iter().map(|direction| {
-        let shot = studio.shot(&high, direction);
-        let high: Vec<Rgb> = colors.iter().map(|&color| studio.develop(&shot, color)).collect();
-        let figures = low.iter().map(|low| {
-            let shot = studio.shot(low, direction);
-            let pairs = colors.iter().zip(&high);
-            pairs
-                .map(|(&color, high)| compare(high, &studio.develop(&shot, color), !options.no_flip))
-                .collect()
-        });
-        let figures = figures.collect();
+        let shoot = |subject: &Subject| match channels.is_empty() {
+            true => studio.shot(subject, direction),
+            false => studio.shot_with_channels(subject, direction),
+        };
+        let shot = shoot(&high);
+        let pictures: Vec<Rgb> = colors.iter().map(|&color| studio.develop(&shot, color)).collect();
+        let mut view = ComparedView { seen: Vec::new(), channels: Vec::new() };
+        for low in &low {
+            let own: Shot = shoot(low);
+            let pairs = colors.iter().zip(&pictures);
+            let on = |(&color, high): (&[f32; 3], &Rgb)| {
+                compare(high, &studio.develop(&own, color), !options.no_flip)
+            };
+            view.seen.push(pairs.map(on).collect());
+            let of = |channel: &Channel| channel.compare(&shot, &own, !options.no_flip);
+            view.channels.push(channels.iter().map(of).collect());
+        }
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
         watcher.message(Message::Progress { stage: Stage::Evaluate, done, total: options.views });
-        figures
+        view
     });
-    Ok(views.collect())
+    Ok(Compared { shading, views: views.collect(), channels })
 }
 
 /// All figures of one pair of pictures of equal size.

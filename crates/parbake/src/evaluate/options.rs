@@ -1,7 +1,7 @@
 //! Options of an evaluation, as plain data for library, command line and files.
 
 use crate::error::BakeError;
-use crate::options::Convention;
+use crate::options::{Convention, Shading, check_shading};
 use parbake_image::display::Display;
 use parbake_render::camera::Projection;
 use parbake_render::interpretation::Interpretation;
@@ -45,6 +45,11 @@ pub struct EvaluateOptions {
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Convention::Gltf))]
     pub convention: Convention,
 
+    /// What of the materials is shown; pbr is the whole metallic-roughness material under a built-in light, lambert
+    /// colours, normals and emission under a headlight. auto is what bake fits by default
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Shading::Auto))]
+    pub shading: Shading,
+
     /// Strength of the light, 0.001 to 100 [default: 1, with --convention paper 1.59]
     #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR"))]
     pub gain: Option<f32>,
@@ -76,6 +81,7 @@ impl Default for EvaluateOptions {
             fov: 43.602_818,
             ortho: None,
             convention: Convention::Gltf,
+            shading: Shading::Auto,
             gain: None,
             no_mips: false,
             no_parallax: false,
@@ -107,6 +113,7 @@ impl EvaluateOptions {
     /// # Errors
     /// An option out of range.
     pub fn checked_background(&self) -> Result<[f32; 3], BakeError> {
+        check_shading(self.shading, self.convention)?;
         let fail = |option, value: String, range: &str| {
             Err(BakeError::Option { option, value, range: range.into() })
         };

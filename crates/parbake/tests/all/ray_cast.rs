@@ -1,7 +1,7 @@
 //! What a bake is compared with: a ray-cast bake of the low-poly as it was delivered.
 
 use parbake::{BakeOptions, EvaluateOptions, Preset, ShapeMode, UvMode};
-use parbake::{bake, compare_bake, compared_as, demo_pair, evaluate_on};
+use parbake::{Detail, bake, compare_bake, compared_as, demo_pair, evaluate_on};
 
 fn quick() -> BakeOptions {
     BakeOptions {
@@ -45,8 +45,8 @@ fn a_baseline_without_coordinates_is_repaired() {
 fn the_figures_are_those_of_evaluate() {
     let (high, low) = demo_pair();
     let baked = bake(&high, &low, &quick(), &()).unwrap();
-    let comparison = compare_bake(&high, &baked, false, &()).unwrap();
-    let options = EvaluateOptions { no_flip: true, ..compared_as(baked.report.options.convention) };
+    let comparison = compare_bake(&high, &baked, Detail::default(), &()).unwrap();
+    let options = EvaluateOptions { no_flip: true, ..compared_as(&baked.report.options) };
     let names: Vec<&str> = comparison.backgrounds.iter().map(|on| on.background.as_str()).collect();
     let own = evaluate_on(&high, &baked.model, &options, &names, &()).unwrap();
     for (on, own) in comparison.backgrounds.iter().zip(own) {

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! models ─┬──────── figures ─ tables, view_chart ───┐
-//!         └ scenes ─ pictures ─ gallery ─────────────┤
+//!         └ scenes ┬ pictures ─ gallery ─────────────┤
+//!                  └ channels ───────────────────────┤
 //! report ─ loss_curve, tables, settings ─────────────┼─ page
 //! textures ─ uv_layout, textures, uv_check, uv_moves ─┘
 //! ```
@@ -14,6 +15,7 @@
 //! asked: whoever stopped a bake wants to see what came of it, the more so, and
 //! drawing takes a bounded time, which depends on the models' sizes only.
 
+mod channels;
 mod figures;
 mod gallery;
 mod loss_curve;
@@ -51,6 +53,7 @@ pub fn html_report(high: &Model, baked: &Baked, watcher: &dyn Watcher) -> Result
     let scenes = scenes::Scenes::new(high, baked)?;
     let compared = figures::compared(high, baked, tick)?;
     let sides = pictures::sides(&scenes, tick);
+    let channels = channels::rows(&scenes, &compared);
     drop(scenes);
-    page::page(high, baked, &compared, &sides)
+    page::page(high, baked, &compared, &sides, &channels)
 }

@@ -1,5 +1,6 @@
 //! The page: its head, what is most important, its sections in order.
 
+use super::channels::{ChannelRow, channels};
 use super::gallery::gallery;
 use super::loss_curve::loss_curve;
 use super::pictures::{AMPLIFIED, Side};
@@ -13,12 +14,18 @@ use crate::page::text::{bytes, change, count, decimal, duration, escape, verdict
 use crate::page::{document, section};
 use parbake::BakeError;
 use parbake::BakeReport;
-use parbake::{Baked, BeforeAndAfter, Comparison};
+use parbake::{Baked, BeforeAndAfter, Comparison, Shading};
 use parbake_model::Model;
 use std::fmt::Write;
 
 /// Puts everything together.
-pub fn page(high: &Model, baked: &Baked, compared: &Comparison, sides: &[Side]) -> Result<String, BakeError> {
+pub fn page(
+    high: &Model,
+    baked: &Baked,
+    compared: &Comparison,
+    sides: &[Side],
+    rows: &[ChannelRow],
+) -> Result<String, BakeError> {
     let report = &baked.report;
     let name = match baked.model.name.trim() {
         "" => "a model without a name".into(),
@@ -33,8 +40,9 @@ pub fn page(high: &Model, baked: &Baked, compared: &Comparison, sides: &[Side]) 
         &format!(
             "Ray-cast is {}, baked is the result. Point at a picture, or tap it, to see \
              the high-poly in its place. Differences are those of the values on screen, {AMPLIFIED} times as strong. \
-             The decibels are PSNR of these very pictures, on dark grey.",
-            report.start()
+             The decibels are PSNR of these very pictures, on dark grey. {}",
+            report.start(),
+            lighting(compared.shading)
         ),
         &gallery(sides)?,
     );
@@ -50,6 +58,16 @@ pub fn page(high: &Model, baked: &Baked, compared: &Comparison, sides: &[Side]) 
             view_chart(compared)
         ),
     );
+    if !compared.channels.is_empty() {
+        section(
+            &mut out,
+            "channels",
+            "Channel by channel",
+            "What each map holds where a camera looks. PSNR is that of pixels that both models cover; of opacity, which \
+             is their coverage, of pixels that either covers. FLIP is for colours.",
+            &channels(compared, rows)?,
+        );
+    }
     section(
         &mut out,
         "textures",
@@ -79,6 +97,16 @@ pub fn page(high: &Model, baked: &Baked, compared: &Comparison, sides: &[Side]) 
         ),
     );
     Ok(document(&name, &out))
+}
+
+/// How pictures and figures are lit.
+fn lighting(shading: Shading) -> &'static str {
+    match shading {
+        Shading::Pbr => {
+            "The whole material is shown, under a built-in light: a room with soft lamps, and one far away."
+        }
+        _ => "Light comes from the camera, on matte surfaces.",
+    }
 }
 
 /// Name, headline figures and facts.

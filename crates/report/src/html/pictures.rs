@@ -6,12 +6,10 @@
 
 use super::scenes::Scenes;
 use crate::page::amplified_difference;
-use parbake::studio::shown;
+use parbake::Subject;
 use parbake_metric::{Rgb, mean_squared_error, psnr_from_mse};
 use parbake_model::glam::Vec3;
 use parbake_render::camera::{Camera, Projection};
-use parbake_render::scene::Scene;
-use parbake_render::shade::Lambert;
 
 /// Sides to look at.
 pub const SIDES: usize = 4;
@@ -24,7 +22,7 @@ pub const AMPLIFIED: f32 = 4.0;
 const BACKGROUND: [f32; 3] = [0.04; 3];
 
 /// Samples along a side of each pixel.
-const SUPERSAMPLE: usize = 2;
+pub const SUPERSAMPLE: usize = 2;
 /// Azimuth from +Z towards +X and height, in degrees: the usual front and the back
 /// as a photographer would take them, then one from above and one from below on
 /// the sides in between.
@@ -70,8 +68,9 @@ fn direction(angles: [f32; 2]) -> Vec3 {
 
 fn side(scenes: &Scenes, direction: Vec3) -> Side {
     let camera = framed(scenes, direction);
-    let picture = |scene: &Scene| {
-        shown(&scene.render(&Lambert, &camera, PIXELS, SUPERSAMPLE), &scenes.display, BACKGROUND)
+    let picture = |subject: &Subject| {
+        let shot = scenes.studio.photograph(subject, &camera, (PIXELS, SUPERSAMPLE), false);
+        scenes.studio.develop(&shot, BACKGROUND)
     };
     let (high, ray_cast, baked) = (picture(&scenes.high), picture(&scenes.ray_cast), picture(&scenes.baked));
     let psnr = |low| psnr_from_mse(mean_squared_error(&high, low).unwrap_or(f64::NAN));
@@ -87,12 +86,18 @@ fn side(scenes: &Scenes, direction: Vec3) -> Side {
     }
 }
 
+/// The camera of the first side.
+pub fn front(scenes: &Scenes) -> Camera {
+    framed(scenes, direction(DIRECTIONS[0]))
+}
+
 /// A camera whose picture all shapes just fit into.
 fn framed(scenes: &Scenes, direction: Vec3) -> Camera {
     let wide = Camera::towards_origin(direction, RADIUS, Projection::Perspective(1.0));
     let reach = [&scenes.high, &scenes.baked, &scenes.ray_cast]
         .iter()
-        .flat_map(|scene| {
+        .flat_map(|subject| {
+            let scene = subject.scene();
             scene.mesh().triangles.iter().flatten().map(|&i| scene.mesh().positions[i as usize])
         })
         .map(|p| {

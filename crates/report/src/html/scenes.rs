@@ -1,35 +1,26 @@
 //! The three models of a bake, made ready for rendering once for the whole page.
 
-use parbake::BakeError;
-use parbake::Baked;
-use parbake_image::display::Display;
+use parbake::{BakeError, Baked, Studio, Subject, compared_as};
 use parbake_model::Model;
-use parbake_render::scene::Scene;
-use parbake_views::frame::{common_frame, scene};
 
-/// Scenes in the high-poly's frame, read by the bake's own convention.
+/// Models in the high-poly's frame, read and shaded as the bake's figures are.
 pub struct Scenes {
+    /// Where they are photographed.
+    pub studio: Studio,
     /// The detailed model.
-    pub high: Scene,
+    pub high: Subject,
     /// What a ray-cast baker delivers.
-    pub ray_cast: Scene,
+    pub ray_cast: Subject,
     /// The coarse model with fitted textures.
-    pub baked: Scene,
-    /// Light strength and display curve of the convention.
-    pub display: Display,
+    pub baked: Subject,
 }
 
 impl Scenes {
     /// Places and unpacks all three.
     pub fn new(high: &Model, baked: &Baked) -> Result<Self, BakeError> {
-        let convention = baked.report.options.convention;
-        let frame = common_frame(high)?;
-        let scene = |model: &Model| scene(model, &frame, convention.interpretation());
-        Ok(Self {
-            high: scene(high),
-            ray_cast: scene(&baked.ray_cast),
-            baked: scene(&baked.model),
-            display: convention.display(),
-        })
+        let studio = Studio::new(high, &compared_as(&baked.report.options))?;
+        let [high, ray_cast, baked] =
+            [high, &baked.ray_cast, &baked.model].map(|model| studio.subject(model));
+        Ok(Self { studio, high, ray_cast, baked })
     }
 }

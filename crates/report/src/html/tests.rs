@@ -82,3 +82,25 @@ fn the_page_is_whole() {
         }
     }
 }
+
+/// Protects whole materials on the page: each channel has its figures and its pictures, and textures are named by
+/// what they hold.
+#[test]
+fn a_metal_page_shows_channels() {
+    let (mut high, low) = (tent("high", 0.5), tent("low", 0.4));
+    for material in &mut high.materials {
+        (material.metallic, material.emissive) = (1.0, [0.0, 0.5, 0.0]);
+    }
+    let baked = bake(&high, &low, &options(), &Impatient).unwrap();
+    let page = html_report(&high, &baked, &Impatient).unwrap();
+    for name in ["base color", "normal", "roughness", "metallic", "emission", "opacity"] {
+        assert!(page.contains(&format!("<h3>{name}</h3>")), "{name}");
+        assert!(page.contains(&format!(r#"<th scope="row">{name}</th>"#)), "{name}");
+    }
+    // None of the models has it.
+    assert!(!page.contains("<h3>occlusion</h3>") && !page.contains("NaN"));
+    let textures = page.matches("× 32</figcaption>").count();
+    let pictures = page.matches("data:image/png;base64,").count();
+    assert_eq!(pictures, 4 * 5 + 6 * 3 + textures);
+    assert_elements_are_closed(&page);
+}

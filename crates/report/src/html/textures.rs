@@ -1,14 +1,43 @@
-//! The baked textures on the page, the colours under the texture layout.
+//! The baked textures on the page, the first one under the texture layout.
 //!
-//! Contract: the model's first image is its base colour and its second its normal
-//! map, as a bake writes them; what is missing is left out.
+//! Contract: a bake's materials share their textures, so the first material says what each image is; images that
+//! no map of it uses, as those of parallax maps, are left out.
 
 use crate::page::text::escape;
 use crate::page::{embed, uv_layout};
 use parbake::BakeError;
+use parbake_image::MapKind;
+use parbake_image::material_maps::texture_slot;
 use parbake_model::{Image, Model};
 
-/// Both textures.
+/// What a map is called; of an image that several maps share, each names its channels.
+fn name(kind: MapKind) -> &'static str {
+    match kind {
+        MapKind::BaseColor => "base colour",
+        MapKind::Normal => "normals, in the low-poly's tangent space",
+        MapKind::MetallicRoughness => "roughness (green), metallic (blue)",
+        MapKind::Emissive => "emission",
+        MapKind::Occlusion => "occlusion (red)",
+    }
+}
+
+/// The images that are maps, each once, with their names.
+fn maps(model: &Model) -> Vec<(&Image, String)> {
+    let mut found: Vec<(usize, String)> = Vec::new();
+    let slots = MapKind::ALL.into_iter().filter_map(|kind| {
+        let slot = texture_slot(model.materials.first()?, kind)?;
+        Some((kind, slot.image))
+    });
+    for (kind, image) in slots {
+        match found.iter_mut().find(|(own, _)| *own == image) {
+            Some((_, names)) => *names = format!("{names}, {}", name(kind)),
+            None => found.push((image, name(kind).into())),
+        }
+    }
+    found.into_iter().filter_map(|(image, names)| Some((model.images.get(image)?, names))).collect()
+}
+
+/// All textures.
 pub fn textures(model: &Model) -> Result<String, BakeError> {
     let layout = uv_layout(&model.mesh, "borders");
     let (lines, left_out) = layout.map_or((String::new(), None), |l| (l.svg, l.left_out));
@@ -17,11 +46,8 @@ pub fn textures(model: &Model) -> Result<String, BakeError> {
         out += r#"<input type="checkbox" id="lines" checked><label for="lines">show the texture layout's lines</label>"#;
     }
     out += r#"<div class="textures">"#;
-    if let Some(image) = model.images.first() {
-        out += &texture(image, "base colour", &lines)?;
-    }
-    if let Some(image) = model.images.get(1) {
-        out += &texture(image, "normals, in the low-poly's tangent space", "")?;
+    for (index, (image, what)) in maps(model).into_iter().enumerate() {
+        out += &texture(image, &what, if index == 0 { &lines } else { "" })?;
     }
     out += "</div>";
     if let Some(note) = left_out {

@@ -14,6 +14,7 @@
 //! side_by_side Figures 7, 8         levels and texture sizes to look at
 //! layouts      Figures 10, 18       texture coordinates over pictures and from other starts
 //! wall         Figures 11, 12       the brick wall, heights fitted and measured
+//! relit        Figure 14            metal and roughness under random lights
 //! convergence  Figure 15            the paper's method, iteration by iteration
 //! ablation     Figures 16, 17       one thing at a time, and SH orders
 //! ```
@@ -29,6 +30,7 @@ mod methods;
 mod parallax;
 mod photos;
 mod pictures;
+mod relit;
 mod scores;
 mod side_by_side;
 mod timings;
@@ -58,6 +60,7 @@ impl Exhibit {
             Exhibit::Figure10 => layouts::LEAD_PICTURES,
             Exhibit::Figure11 => wall::LEAD_FITTED,
             Exhibit::Figure12 => wall::LEAD_MEASURED,
+            Exhibit::Figure14 => relit::LEAD,
             Exhibit::Figure15 => convergence::LEAD,
             Exhibit::Figure16 => ablation::LEAD_PARTS,
             Exhibit::Figure17 => ablation::LEAD_ORDERS,
@@ -82,6 +85,7 @@ impl Exhibit {
             Exhibit::Figure10 => layouts::picture_experiments(scope),
             Exhibit::Figure11 => vec![wall::run(scope, false)],
             Exhibit::Figure12 => vec![wall::run(scope, true)],
+            Exhibit::Figure14 => relit::experiments(scope),
             Exhibit::Figure15 => convergence::experiments(scope),
             Exhibit::Figure16 => ablation::part_experiments(scope),
             Exhibit::Figure17 => ablation::order_experiments(scope),
@@ -110,6 +114,7 @@ impl Exhibit {
             Exhibit::Figure10 => layouts::draw_pictures(scope, results),
             Exhibit::Figure11 => wall::draw(scope, results, false),
             Exhibit::Figure12 => wall::draw(scope, results, true),
+            Exhibit::Figure14 => relit::draw(scope, results),
             Exhibit::Figure15 => Ok(convergence::draw(scope, results)),
             Exhibit::Figure16 => ablation::draw_parts(scope, results),
             Exhibit::Figure17 => ablation::draw_orders(scope, results),

@@ -1,0 +1,271 @@
+//! Whole materials in a picture: shaded by a BRDF that knows where the viewer is, single-sided where they say so,
+//! cut out, and blended in order.
+//!
+//! Forward, for each sample: the nearest solid surface is found, opaque or above its cutoff (glTF 2.0, 3.9.4);
+//! of all blended surfaces in front of it, from front to back, with transmittance `T`:
+//!
+//! ```text
+//! light += T α c,  T ← T (1 − α);  at last light += T c of the solid one,  coverage = 1 − T after it
+//! ```
+//!
+//! (Porter and Duff, Compositing Digital Images, 1984), in linear light. What the maps hold is composited with
+//! the same weights. Samples of a pixel are averaged.
+//!
+//! Contract: pictures are as in `scene.rs`. Bands of rows are independent, so nothing depends on the number of
+//! threads; memory grows with the layers of one band.
+
+use crate::camera::Camera;
+use crate::frame::Orientation;
+use crate::interpolate::{barycentrics, interpolate};
+use crate::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility, rasterise};
+use crate::scene::{Picture, Scene, Seen};
+use crate::scene_textures::Map;
+use crate::shade::Brdf;
+use parbake_image::MapValues;
+use parbake_image::maps::MapKind;
+use parbake_model::AlphaMode;
+use parbake_model::glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+/// A view of whole materials.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MaterialPicture {
+    /// What is seen.
+    pub light: Picture,
+    /// What the maps hold there, premultiplied by coverage, row 0 on top; none unless asked for. Normals are unit
+    /// vectors of the common frame that look to the viewer's side.
+    pub values: Vec<MapValues>,
+}
+
+/// Rows of pixels in a band.
+const BAND: usize = 8;
+
+/// A triangle that takes more than a look at its depth.
+struct Special {
+    triangle: u32,
+    on_screen: ScreenTriangle,
+    is_blended: bool,
+}
+
+/// What a sample sees of a special triangle.
+struct Layer {
+    sample: usize,
+    nearness: f64,
+    /// Index among the special triangles.
+    special: usize,
+}
+
+/// The solid surface at a sample.
+#[derive(Clone, Copy)]
+enum Solid {
+    Nothing,
+    Plain(u32),
+    Special(usize),
+}
+
+/// What stands still during one view.
+struct Stage<'a, B> {
+    scene: &'a Scene,
+    brdf: &'a B,
+    camera: &'a Camera,
+    screen: ScreenTriangles,
+    special: Vec<Special>,
+    /// Of all that is not special.
+    opaque: Visibility,
+    /// Samples along a side of the picture, and of a pixel.
+    fine: usize,
+    supersample: usize,
+}
+
+impl Scene {
+    /// The whole view with whole materials, each pixel the mean of `supersample`² samples; the maps' values too,
+    /// if `with_values`.
+    pub fn render_material(
+        &self,
+        brdf: &impl Brdf<Orientation>,
+        camera: &Camera,
+        (size, supersample): (usize, usize),
+        with_values: bool,
+    ) -> MaterialPicture {
+        let fine = size * supersample;
+        let mut screen = self.on_screen(camera, fine);
+        let special = self.take_special(camera, &mut screen);
+        let mut opaque = Visibility::default();
+        rasterise(&screen, fine, (0.0, 0.0), &mut opaque);
+        let stage = Stage { scene: self, brdf, camera, screen, special, opaque, fine, supersample };
+        let mut light = Picture { size, rgba: vec![[0.0; 4]; size * size] };
+        let mut values = vec![MapValues::ZERO; if with_values { size * size } else { 0 }];
+        let bands = light.rgba.par_chunks_mut(size * BAND);
+        if with_values {
+            let bands = bands.zip(values.par_chunks_mut(size * BAND)).enumerate();
+            bands.for_each(|(band, (light, values))| stage.fill(band, light, values));
+        } else {
+            bands.enumerate().for_each(|(band, light)| stage.fill(band, light, &mut []));
+        }
+        MaterialPicture { light, values }
+    }
+
+    /// Takes all triangles off the screen that are cut out or blended, and those that show only their back.
+    fn take_special(&self, camera: &Camera, screen: &mut ScreenTriangles) -> Vec<Special> {
+        let mut special = Vec::new();
+        for (index, on_screen) in screen.triangles.iter_mut().enumerate() {
+            let surface = &self.surfaces[self.mesh.triangle_materials[index] as usize];
+            if !surface.is_double_sided {
+                let corner = self.mesh.positions[self.mesh.triangles[index][0] as usize];
+                if camera.view_direction(corner).dot(self.face_normals[index]) < 0.0 {
+                    *on_screen = ScreenTriangle::HIDDEN;
+                    continue;
+                }
+            }
+            let is_blended = surface.alpha_mode == AlphaMode::Blend;
+            let is_cut = surface.shifted.as_ref().is_some_and(|shifted| shifted.cutout.is_some());
+            if is_blended || is_cut || surface.alpha_mode == AlphaMode::Mask {
+                let taken = std::mem::replace(on_screen, ScreenTriangle::HIDDEN);
+                special.push(Special { triangle: index as u32, on_screen: taken, is_blended });
+            }
+        }
+        special
+    }
+
+    /// Whether a point of a triangle is there at all: not left out by its cutout, nor below the cutoff of its mask.
+    fn is_there(&self, camera: &Camera, triangle: usize, on_screen: &ScreenTriangle, at: (f64, f64)) -> bool {
+        let surface = &self.surfaces[self.mesh.triangle_materials[triangle] as usize];
+        let mesh = &self.mesh;
+        let corners = mesh.triangles[triangle].map(|i| i as usize);
+        let b = barycentrics(on_screen, at.0, at.1);
+        if let Some(shifted) = &surface.shifted {
+            let point: Vec3 = interpolate(corners.map(|i| mesh.positions[i]), b.weights);
+            if !shifted.is_opaque(mesh, corners, b.weights, camera.view_direction(point)) {
+                return false;
+            }
+        }
+        if surface.alpha_mode != AlphaMode::Mask {
+            return true;
+        }
+        let fetch = |map: &Map| {
+            let uvs = map.uvs(mesh, corners);
+            let along = |w: [f32; 3]| -> Vec2 { interpolate(uvs, w) };
+            let pyramid = &self.pyramids[map.pyramid];
+            Vec3::from(pyramid.fetch(along(b.weights), pyramid.lod(along(b.per_x), along(b.per_y))))
+        };
+        self.opacity(surface, corners, b.weights, &fetch) >= surface.alpha_cutoff
+    }
+}
+
+impl<B: Brdf<Orientation>> Stage<'_, B> {
+    /// Fills the pixels of a band.
+    fn fill(&self, band: usize, light: &mut [[f32; 4]], values: &mut [MapValues]) {
+        let size = self.fine / self.supersample;
+        let first = band * BAND * self.supersample;
+        let rows = first..first + light.len() / size * self.supersample;
+        let (solid, layers) = self.visible(rows.clone());
+        let share = 1.0 / (self.supersample * self.supersample) as f32;
+        let mut next = 0;
+        for (sample, solid) in solid.into_iter().enumerate() {
+            let from = next;
+            next += layers[from..].iter().take_while(|layer| layer.sample == sample).count();
+            let (column, row) = (sample % self.fine, sample / self.fine);
+            let pixel = row / self.supersample * size + column / self.supersample;
+            let at = (column as f64 + 0.5, (rows.start + row) as f64 + 0.5);
+            let mut passed = 1.0;
+            let mut add = |triangle: u32, on_screen: &ScreenTriangle, is_blended: bool, passed: &mut f32| {
+                let (seen, lit) = self.shade(triangle as usize, on_screen, at);
+                let alpha = if is_blended { seen.values[MapKind::BaseColor].w.clamp(0.0, 1.0) } else { 1.0 };
+                let weight = *passed * alpha * share;
+                let to = &mut light[pixel];
+                (0..3).for_each(|k| to[k] += lit[k] * weight);
+                to[3] += weight;
+                if let Some(to) = values.get_mut(pixel) {
+                    for kind in MapKind::ALL {
+                        to[kind] += match kind {
+                            MapKind::Normal => seen.world_normal().extend(0.0),
+                            _ => seen.values[kind],
+                        } * weight;
+                    }
+                }
+                *passed *= 1.0 - alpha;
+            };
+            for layer in &layers[from..next] {
+                let special = &self.special[layer.special];
+                add(special.triangle, &special.on_screen, true, &mut passed);
+            }
+            match solid {
+                Solid::Nothing => {}
+                Solid::Plain(triangle) => {
+                    add(triangle, &self.screen.triangles[triangle as usize], false, &mut passed);
+                }
+                Solid::Special(special) => {
+                    let special = &self.special[special];
+                    add(special.triangle, &special.on_screen, false, &mut passed);
+                }
+            }
+        }
+    }
+
+    /// The light of a triangle at a sample.
+    fn shade(&self, triangle: usize, on_screen: &ScreenTriangle, at: (f64, f64)) -> (Seen, Vec3) {
+        let seen = self.scene.seen(self.camera, on_screen, triangle, at, 1.0);
+        let surface = &self.scene.surfaces[self.scene.mesh.triangle_materials[triangle] as usize];
+        let light = match surface.is_unlit {
+            true => seen.values[MapKind::BaseColor].truncate(),
+            false => self.brdf.light(&seen.orientation(), &seen.values),
+        };
+        (seen, light)
+    }
+
+    /// What is seen in some rows: the solid surface of each sample, and the blended ones in front of it, sample by
+    /// sample and from front to back.
+    fn visible(&self, rows: std::ops::Range<usize>) -> (Vec<Solid>, Vec<Layer>) {
+        let begin = rows.start * self.fine;
+        let seen = &self.opaque.triangle[begin..rows.end * self.fine];
+        let place = |sample: usize| {
+            let (column, row) = (sample % self.fine, rows.start + sample / self.fine);
+            (column as f64 + 0.5, row as f64 + 0.5)
+        };
+        let solid = |(sample, &triangle): (usize, &u32)| {
+            if triangle == NOTHING {
+                return (Solid::Nothing, f64::NEG_INFINITY);
+            }
+            let (x, y) = place(sample);
+            (Solid::Plain(triangle), self.screen.triangles[triangle as usize].nearness_at(x, y))
+        };
+        if self.special.is_empty() {
+            return (seen.iter().enumerate().map(|own| solid(own).0).collect(), Vec::new());
+        }
+        let mut solids: Vec<(Solid, f64)> = seen.iter().enumerate().map(solid).collect();
+        let each = |is_blended: bool, found: &mut dyn FnMut(usize, usize, f64)| {
+            let all = self.special.iter().enumerate().filter(|(_, s)| s.is_blended == is_blended);
+            for (index, special) in all {
+                for row in rows.clone() {
+                    for (column, nearness) in special.on_screen.on_row(row, self.fine) {
+                        found(index, (row - rows.start) * self.fine + column, nearness);
+                    }
+                }
+            }
+        };
+        let is_there = |index: usize, sample: usize| {
+            let special = &self.special[index];
+            self.scene.is_there(self.camera, special.triangle as usize, &special.on_screen, place(sample))
+        };
+        each(false, &mut |index, sample, nearness| {
+            if nearness > solids[sample].1 && is_there(index, sample) {
+                solids[sample] = (Solid::Special(index), nearness);
+            }
+        });
+        let mut layers = Vec::new();
+        each(true, &mut |index, sample, nearness| {
+            if nearness > solids[sample].1 && is_there(index, sample) {
+                layers.push(Layer { sample, nearness, special: index });
+            }
+        });
+        layers.sort_by(|a, b| {
+            let order = a.sample.cmp(&b.sample).then(b.nearness.total_cmp(&a.nearness));
+            order.then(a.special.cmp(&b.special))
+        });
+        (solids.into_iter().map(|(solid, _)| solid).collect(), layers)
+    }
+}
+
+#[cfg(test)]
+#[path = "scene_material_tests.rs"]
+mod tests;

@@ -1,0 +1,97 @@
+//! Pictures of whole materials, on squares before one another.
+
+use super::*;
+use crate::camera::Projection;
+use crate::interpretation::Interpretation;
+use crate::lighting::Lighting;
+use crate::metallic_roughness::MetallicRoughness;
+use parbake_model::glam::Vec4;
+use parbake_model::{Material, Mesh};
+
+/// Squares of half a side across the z axis at these heights, each of a material of its own.
+fn squares(heights: &[f32], materials: &[Material]) -> Scene {
+    let mut mesh = Mesh::default();
+    for (index, z) in heights.iter().enumerate() {
+        let first = mesh.positions.len() as u32;
+        for (x, y) in [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)] {
+            mesh.positions.push(Vec3::new(x, y, *z));
+            mesh.normals.push(Vec3::Z);
+        }
+        mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        mesh.triangle_materials.extend([index as u32; 2]);
+    }
+    Scene::new(mesh, materials, &[], Interpretation::default())
+}
+
+/// What shines in one colour, and shows nothing else.
+fn glowing(color: [f32; 3], alpha: f32, alpha_mode: AlphaMode) -> Material {
+    let black = [0.0, 0.0, 0.0, alpha];
+    Material { base_color: black, emissive: color, alpha_mode, ..Material::default() }
+}
+
+fn seen_from(scene: &Scene, direction: Vec3) -> MaterialPicture {
+    let camera = Camera::towards_origin(direction, 3.5, Projection::Orthographic(0.4));
+    let dark = MetallicRoughness { lighting: Lighting::default() };
+    scene.render_material(&dark, &camera, (16, 2), true)
+}
+
+/// Protects panes: layers are blended in the order of their depth from either side, whatever their order in the
+/// file, each sample once, also along the edge that two triangles share.
+#[test]
+fn blended_layers_are_composited_in_order() {
+    let (red, green, blue) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+    let materials = [
+        glowing(green, 0.25, AlphaMode::Blend),
+        glowing(blue, 1.0, AlphaMode::Opaque),
+        glowing(red, 0.5, AlphaMode::Blend),
+    ];
+    let scene = squares(&[0.1, -0.3, 0.4], &materials);
+    let front = seen_from(&scene, Vec3::Z);
+    for pixel in &front.light.rgba {
+        let want = Vec4::new(0.5, 0.5 * 0.25, 0.5 * 0.75, 1.0);
+        assert!((Vec4::from(*pixel) - want).length() < 1e-5, "{pixel:?}");
+    }
+    // What the maps hold is weighted alike.
+    assert!((front.values[0][MapKind::Emissive].y - 0.125).abs() < 1e-5);
+    let back = seen_from(&scene, -Vec3::Z);
+    assert!((Vec4::from(back.light.rgba[0]) - Vec4::new(0.0, 0.0, 1.0, 1.0)).length() < 1e-5);
+    // With nothing behind them the background shows through.
+    let panes = squares(&[0.1, 0.4], &[materials[0].clone(), materials[2].clone()]);
+    let pixel = seen_from(&panes, Vec3::Z).light.rgba[100];
+    assert!((Vec4::from(pixel) - Vec4::new(0.5, 0.125, 0.0, 0.625)).length() < 1e-5, "{pixel:?}");
+}
+
+/// Protects leaves: what is below the cutoff is not there, what is above is solid; a dozen sheets are no end.
+#[test]
+fn masks_cut() {
+    let (red, green) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+    let mut materials = vec![glowing(green, 0.4, AlphaMode::Mask); 12];
+    materials.push(glowing(red, 0.6, AlphaMode::Mask));
+    let heights: Vec<f32> = (0..13).map(|i| 0.5 - 0.05 * i as f32).collect();
+    let picture = seen_from(&squares(&heights, &materials), Vec3::Z);
+    assert!(picture.light.rgba.iter().all(|p| *p == [1.0, 0.0, 0.0, 1.0]), "{:?}", picture.light.rgba[0]);
+}
+
+/// Protects shells: a single-sided surface is not seen from behind, as in viewers; a double-sided one is, and its
+/// normal looks to the viewer.
+#[test]
+fn single_sided_surfaces_have_no_back() {
+    let white = [1.0; 3];
+    let single = Material { double_sided: false, ..glowing(white, 1.0, AlphaMode::Opaque) };
+    let double = glowing(white, 1.0, AlphaMode::Opaque);
+    let covered = |material: &Material, side: Vec3| {
+        let picture = seen_from(&squares(&[0.0], std::slice::from_ref(material)), side);
+        (picture.light.rgba[0][3], picture.values[0][MapKind::Normal].z)
+    };
+    assert_eq!(covered(&single, Vec3::Z), (1.0, 1.0));
+    assert_eq!(covered(&single, -Vec3::Z), (0.0, 0.0));
+    assert_eq!(covered(&double, -Vec3::Z), (1.0, -1.0));
+}
+
+/// Protects unlit materials: their base colour is shown as it is.
+#[test]
+fn unlit_surfaces_show_their_colour() {
+    let material = Material { base_color: [0.2, 0.4, 0.6, 1.0], unlit: true, ..Material::default() };
+    let picture = seen_from(&squares(&[0.0], &[material]), Vec3::Z);
+    assert!((Vec4::from(picture.light.rgba[5]) - Vec4::new(0.2, 0.4, 0.6, 1.0)).length() < 1e-6);
+}
