@@ -12,7 +12,8 @@
 //! triangle's samples to light. `slopes.rs` and `scatter.rs` are the two halves of the
 //! texture's adjoint: towards the coordinates and towards the texels. `surface.rs` is
 //! what goes in. `scene.rs` renders whole models, forward only, with the textures of
-//! `scene_textures.rs`, read as `interpretation.rs` says. `cutout.rs` is where a surface is not there, seen from the wrong side.
+//! `scene_textures.rs`, read as `interpretation.rs` says; meshes of many small triangles by
+//! `raster_clusters.rs`. `cutout.rs` is where a surface is not there, seen from the wrong side.
 //! `parallax_variants` puts other ways to shift coordinates behind one interface.
 //! `parallax_images.rs` and `cutout_images.rs` take maps to 8-bit images and back, by
 //! `channels.rs`.
@@ -31,12 +32,14 @@ pub mod frame;
 pub mod interpolate;
 pub mod interpretation;
 pub mod loss;
+pub mod on_screen;
 pub mod parallax;
 mod parallax_images;
 pub mod parallax_variants;
 pub mod patch;
 pub mod pipeline;
 pub mod raster;
+pub mod raster_clusters;
 pub mod scatter;
 pub mod scene;
 mod scene_textures;
