@@ -24,6 +24,9 @@ use rayon::prelude::*;
 /// cosine says little.
 const LONGEST: f32 = 0.3;
 
+/// Textures with longer sides have one matrix at a time: at 2048² texels it takes 0.4 or 0.6 GB.
+const LARGE: usize = 1024;
+
 /// How a step is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepOptions {
@@ -35,7 +38,8 @@ pub struct StepOptions {
     pub damping: f32,
 }
 
-/// Room for the matrices of steps, from one to the next.
+/// Room for the matrices of steps, from one to the next. Those of large textures are not kept beside each
+/// other: they are the largest things of a bake.
 #[derive(Default)]
 pub struct Workspace {
     diagonal: Vec<Row<Diagonal>>,
@@ -54,8 +58,12 @@ pub fn fit_step<P: Problem>(
     workspace: &mut Workspace,
 ) -> (Loss, Outcome) {
     let size = problem.samples().size;
+    let is_large = size > LARGE;
     match kind.spec().domain {
         Domain::Box => {
+            if is_large {
+                workspace.symmetric = Vec::new();
+            }
             let rows = &mut workspace.diagonal;
             let loss = backend.assemble(kind, problem, maps, rows);
             let Some(map) = maps.get_mut(kind) else { return (loss, Outcome::default()) };
@@ -68,6 +76,9 @@ pub fn fit_step<P: Problem>(
             (loss, outcome)
         }
         Domain::Hemisphere => {
+            if is_large {
+                workspace.diagonal = Vec::new();
+            }
             let rows = &mut workspace.symmetric;
             let loss = backend.assemble(kind, problem, maps, rows);
             let Some(map) = maps.get_mut(kind) else { return (loss, Outcome::default()) };

@@ -7,6 +7,7 @@
 use crate::FloatImage;
 use glam::{Vec3, Vec4};
 use std::ops::{Index, IndexMut};
+use std::sync::Arc;
 
 /// A map of glTF's metallic-roughness material. Opacity is the base colour's fourth channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -159,12 +160,12 @@ impl IndexMut<MapKind> for MapValues {
     }
 }
 
-/// Maps of one size, at most one of each kind.
+/// Maps of one size, at most one of each kind. Copies share their maps until one of them is changed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MapSet {
     /// Texels along a side.
     size: usize,
-    maps: [Option<FloatImage<Vec4>>; KINDS],
+    maps: [Option<Arc<FloatImage<Vec4>>>; KINDS],
 }
 
 impl MapSet {
@@ -189,19 +190,19 @@ impl MapSet {
     /// Puts a map of the set's size in the place of the one of its kind.
     pub fn insert(&mut self, kind: MapKind, map: FloatImage<Vec4>) {
         debug_assert_eq!([map.width, map.height], [self.size; 2]);
-        self.maps[kind as usize] = Some(map);
+        self.maps[kind as usize] = Some(Arc::new(map));
     }
 
     /// The map of a kind.
     #[inline]
     pub fn get(&self, kind: MapKind) -> Option<&FloatImage<Vec4>> {
-        self.maps[kind as usize].as_ref()
+        self.maps[kind as usize].as_deref()
     }
 
     /// The map of a kind, to be changed.
     #[inline]
     pub fn get_mut(&mut self, kind: MapKind) -> Option<&mut FloatImage<Vec4>> {
-        self.maps[kind as usize].as_mut()
+        self.maps[kind as usize].as_mut().map(Arc::make_mut)
     }
 
     /// The kinds that are there, in the order of [`MapKind::ALL`].
@@ -216,7 +217,10 @@ impl MapSet {
 
     /// The maps that are there, to be changed.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = (MapKind, &mut FloatImage<Vec4>)> {
-        MapKind::ALL.into_iter().zip(&mut self.maps).filter_map(|(kind, map)| Some((kind, map.as_mut()?)))
+        MapKind::ALL
+            .into_iter()
+            .zip(&mut self.maps)
+            .filter_map(|(kind, map)| Some((kind, Arc::make_mut(map.as_mut()?))))
     }
 
     /// The bilinear blend of all maps: four texels and their weights. Maps that are not there are
@@ -248,6 +252,19 @@ mod tests {
             let boxed = Domain::Box.clamp(value);
             assert!(boxed.min_element() >= 0.0 && boxed.max_element() <= 1.0);
         }
+    }
+
+    /// Protects a state that is kept while another goes on from it.
+    #[test]
+    fn copies_share_until_one_is_changed() {
+        let kept = MapSet::of(FloatImage::solid(2, Vec4::ONE), FloatImage::solid(2, Vec4::Z));
+        let mut other = kept.clone();
+        other.get_mut(MapKind::BaseColor).expect("it is there").texels[0] = Vec4::ZERO;
+        let texels = |set: &MapSet, kind| set.get(kind).expect("it is there").texels.clone();
+        assert_eq!(texels(&kept, MapKind::BaseColor)[0], Vec4::ONE);
+        assert_eq!(texels(&other, MapKind::BaseColor)[0], Vec4::ZERO);
+        let address = |set: &MapSet| set.get(MapKind::Normal).expect("it is there").texels.as_ptr();
+        assert_eq!(address(&kept), address(&other));
     }
 
     /// Protects materials without a map: it reads as its neutral value.

@@ -13,7 +13,8 @@
 //!
 //! Contract: as of `parallax.rs`.
 
-use crate::raster::{NOTHING, ScreenTriangles, Visibility, rasterise, rasterise_behind};
+use crate::on_screen::Raster;
+use crate::raster::{NOTHING, Visibility};
 use crate::spherical_harmonics::{MOST_FUNCTIONS, as_constant, evaluate, functions};
 use parbake_image::pyramid::{Taps, taps};
 use parbake_model::Wrap;
@@ -93,16 +94,16 @@ impl ShCutout {
 /// Layers that are looked through before a pixel is taken for empty.
 const MOST_LAYERS: usize = 8;
 
-/// [`rasterise`] for surfaces with cutouts: finds the nearest triangle at each sample that is
+/// [`Raster::rasterise`] for surfaces with cutouts: finds the nearest triangle at each sample that is
 /// opaque there. `opaque` is asked with a triangle and a point of the screen.
 pub fn rasterise_cut(
-    screen: &ScreenTriangles,
+    screen: &impl Raster,
     size: usize,
     offset: (f32, f32),
     seen: &mut Visibility,
     opaque: impl Fn(usize, (f64, f64)) -> bool + Sync,
 ) {
-    rasterise(screen, size, offset, seen);
+    screen.rasterise(size, offset, None, seen);
     let mut layer = Visibility::default();
     let at = |pixel: usize| {
         let along = |i: usize, shift: f32| i as f64 + 0.5 + f64::from(shift);
@@ -117,7 +118,7 @@ pub fn rasterise_cut(
             return;
         }
         if depth + 1 < MOST_LAYERS {
-            rasterise_behind(screen, size, offset, seen, &mut layer);
+            screen.rasterise(size, offset, Some(seen), &mut layer);
         }
         for &pixel in &cut {
             seen.replace(pixel, (depth + 1 < MOST_LAYERS).then_some(&layer));
@@ -130,6 +131,7 @@ pub fn rasterise_cut(
 mod tests {
     use super::*;
     use crate::camera::{Camera, Projection};
+    use crate::raster::ScreenTriangles;
 
     /// Protects the fit's gradient.
     #[test]

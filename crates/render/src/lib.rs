@@ -14,6 +14,9 @@
 //! what goes in. `shade.rs` is what a BRDF is, and Lambert's; `metallic_roughness.rs` is glTF's, under the
 //! light of `lighting.rs`, with the table of `split_sum.rs` and the derivatives of `real.rs`. `scene.rs` renders whole models, forward only (`scene_material.rs` with all of their materials), with the textures of
 //! `scene_textures.rs`, read as `interpretation.rs` says. `cutout.rs` is where a surface is not there, seen from the wrong side.
+//! what goes in. `scene.rs` renders whole models, forward only, with the textures of
+//! `scene_textures.rs`, read as `interpretation.rs` says; meshes of many small triangles by
+//! `raster_clusters.rs`. `cutout.rs` is where a surface is not there, seen from the wrong side.
 //! `parallax_variants` puts other ways to shift coordinates behind one interface.
 //! `parallax_images.rs` and `cutout_images.rs` take maps to 8-bit images and back, by
 //! `channels.rs`.
@@ -34,6 +37,7 @@ pub mod interpretation;
 pub mod lighting;
 pub mod loss;
 pub mod metallic_roughness;
+pub mod on_screen;
 pub mod parallax;
 mod parallax_images;
 pub mod parallax_variants;
@@ -41,6 +45,7 @@ pub mod patch;
 pub mod pipeline;
 pub mod raster;
 mod real;
+pub mod raster_clusters;
 pub mod scatter;
 pub mod scene;
 pub mod scene_material;

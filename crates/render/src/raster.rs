@@ -10,7 +10,7 @@
 //! Contract: two-sided, nothing is culled; samples lie at pixel + 0.5 + offset;
 //! on equal depth the first triangle wins, so the result is deterministic.
 
-use crate::camera::{Camera, Projection};
+use crate::camera::{Camera, Projection, ScreenPoint};
 use glam::{DVec3, Vec3};
 
 /// No triangle is seen here.
@@ -41,55 +41,90 @@ pub struct Visibility {
     pub size: usize,
     /// size² triangle indices, [`NOTHING`] where nothing is seen.
     pub triangle: Vec<u32>,
-    nearness: Vec<f32>,
+    pub(crate) nearness: Vec<f32>,
 }
 
 /// Points nearer to the camera's plane than this are behind it.
-const NEAR: f64 = 1e-4;
+pub(crate) const NEAR: f64 = 1e-4;
 
 impl ScreenTriangles {
     /// Projects every vertex once and sets up every triangle.
     pub fn new(positions: &[Vec3], triangles: &[[u32; 3]], camera: &Camera, size: usize) -> Self {
         let points: Vec<_> = positions.iter().map(|&p| camera.project(p, size)).collect();
-        let orthographic = matches!(camera.projection, Projection::Orthographic(_));
         let triangles = triangles
             .iter()
-            .map(|corners| {
-                let p = corners.map(|i| points[i as usize]);
-                let v = p.map(|q| q.homogeneous);
-                let hidden = ScreenTriangle { bounds: [0.0, 0.0, -1.0, -1.0], ..Default::default() };
-                if p.iter().all(|q| q.depth < NEAR) {
-                    return hidden;
-                }
-                let cofactors = [v[1].cross(v[2]), v[2].cross(v[0]), v[0].cross(v[1])];
-                let determinant = v[0].dot(cofactors[0]);
-                // A triangle seen exactly edge-on covers nothing.
-                if determinant == 0.0 || !determinant.is_finite() {
-                    return hidden;
-                }
-                let planes = cofactors.map(|c| c / determinant);
-                let nearness = if orthographic {
-                    -(planes[0] * p[0].depth + planes[1] * p[1].depth + planes[2] * p[2].depth)
-                } else {
-                    planes[0] + planes[1] + planes[2]
-                };
-                let bounds = if p.iter().any(|q| q.depth < NEAR) {
-                    [0.0, 0.0, size as f32, size as f32]
-                } else {
-                    let xs = v.map(|q| (q.x / q.z) as f32);
-                    let ys = v.map(|q| (q.y / q.z) as f32);
-                    [
-                        xs[0].min(xs[1]).min(xs[2]),
-                        ys[0].min(ys[1]).min(ys[2]),
-                        xs[0].max(xs[1]).max(xs[2]),
-                        ys[0].max(ys[1]).max(ys[2]),
-                    ]
-                };
-                ScreenTriangle { planes, nearness, bounds }
-            })
+            .map(|corners| set_up(corners.map(|i| points[i as usize]), camera, size, None).unwrap_or(HIDDEN))
             .collect();
         Self { triangles }
     }
+}
+
+/// Covers nothing.
+const HIDDEN: ScreenTriangle =
+    ScreenTriangle { planes: [DVec3::ZERO; 3], nearness: DVec3::ZERO, bounds: [0.0, 0.0, -1.0, -1.0] };
+
+/// A triangle with these corners, as [`ScreenTriangles`] has it; none where it cannot be seen, or is
+/// known to cover none of the samples at `offset`.
+#[inline]
+pub(crate) fn triangle_on_screen(
+    corners: &[Vec3; 3],
+    camera: &Camera,
+    size: usize,
+    offset: Option<(f32, f32)>,
+) -> Option<ScreenTriangle> {
+    set_up(corners.map(|p| camera.project(p, size)), camera, size, offset)
+}
+
+#[inline(always)]
+fn set_up(
+    p: [ScreenPoint; 3],
+    camera: &Camera,
+    size: usize,
+    offset: Option<(f32, f32)>,
+) -> Option<ScreenTriangle> {
+    let v = p.map(|q| q.homogeneous);
+    if p.iter().all(|q| q.depth < NEAR) {
+        return None;
+    }
+    let bounds = if p.iter().any(|q| q.depth < NEAR) {
+        [0.0, 0.0, size as f32, size as f32]
+    } else {
+        let xs = v.map(|q| (q.x / q.z) as f32);
+        let ys = v.map(|q| (q.y / q.z) as f32);
+        [
+            xs[0].min(xs[1]).min(xs[2]),
+            ys[0].min(ys[1]).min(ys[2]),
+            xs[0].max(xs[1]).max(xs[2]),
+            ys[0].max(ys[1]).max(ys[2]),
+        ]
+    };
+    if let Some(offset) = offset {
+        samples_within(bounds, size, offset)?;
+    }
+    let cofactors = [v[1].cross(v[2]), v[2].cross(v[0]), v[0].cross(v[1])];
+    let determinant = v[0].dot(cofactors[0]);
+    // A triangle seen exactly edge-on covers nothing.
+    if determinant == 0.0 || !determinant.is_finite() {
+        return None;
+    }
+    let planes = cofactors.map(|c| c / determinant);
+    let nearness = if matches!(camera.projection, Projection::Orthographic(_)) {
+        -(planes[0] * p[0].depth + planes[1] * p[1].depth + planes[2] * p[2].depth)
+    } else {
+        planes[0] + planes[1] + planes[2]
+    };
+    Some(ScreenTriangle { planes, nearness, bounds })
+}
+
+/// First and last column, first and last row of the samples within bounds; none where there are none.
+#[inline(always)]
+fn samples_within(bounds: [f32; 4], size: usize, offset: (f32, f32)) -> Option<[f32; 4]> {
+    let [x0, y0, x1, y1] = bounds;
+    let (cx, cy) = (0.5 + offset.0, 0.5 + offset.1);
+    let last = size as f32 - 1.0;
+    let (column0, column1) = ((x0 - cx).ceil().max(0.0), (x1 - cx).floor().min(last));
+    let (row0, row1) = ((y0 - cy).ceil().max(0.0), (y1 - cy).floor().min(last));
+    (column0 <= column1 && row0 <= row1).then_some([column0, column1, row0, row1])
 }
 
 impl ScreenTriangle {
@@ -150,6 +185,22 @@ pub fn rasterise_behind(
 }
 
 impl Visibility {
+    /// `size`² samples at which nothing is seen.
+    pub fn empty(size: usize) -> Self {
+        let mut seen = Self::default();
+        seen.clear(size);
+        seen
+    }
+
+    /// Forgets all, and makes room for `size`² samples.
+    pub(crate) fn clear(&mut self, size: usize) {
+        self.size = size;
+        self.triangle.clear();
+        self.triangle.resize(size * size, NOTHING);
+        self.nearness.clear();
+        self.nearness.resize(size * size, f32::NEG_INFINITY);
+    }
+
     /// Puts what another sees at a sample into the place of what is seen there; nothing,
     /// without another.
     pub fn replace(&mut self, sample: usize, other: Option<&Self>) {
@@ -166,52 +217,58 @@ fn fill(
     seen: &mut Visibility,
     passes: impl Fn(usize, f32) -> bool,
 ) {
-    seen.size = size;
-    seen.triangle.clear();
-    seen.triangle.resize(size * size, NOTHING);
-    seen.nearness.clear();
-    seen.nearness.resize(size * size, f32::NEG_INFINITY);
-    let (cx, cy) = (0.5 + offset.0, 0.5 + offset.1);
-    let last = size as f32 - 1.0;
+    seen.clear(size);
     for (index, triangle) in screen.triangles.iter().enumerate() {
-        let [x0, y0, x1, y1] = triangle.bounds;
-        let (column0, column1) = ((x0 - cx).ceil().max(0.0), (x1 - cx).floor().min(last));
-        let (row0, row1) = ((y0 - cy).ceil().max(0.0), (y1 - cy).floor().min(last));
-        if !(column0 <= column1 && row0 <= row1) {
+        draw::<false>(triangle, index as u32, size, offset, seen, &passes);
+    }
+}
+
+/// Draws one triangle. Triangles come in the order of their indices, or, if `ANY_ORDER`, in any.
+#[inline(always)]
+pub(crate) fn draw<const ANY_ORDER: bool>(
+    triangle: &ScreenTriangle,
+    index: u32,
+    size: usize,
+    offset: (f32, f32),
+    seen: &mut Visibility,
+    passes: impl Fn(usize, f32) -> bool,
+) {
+    let Some([column0, column1, row0, row1]) = samples_within(triangle.bounds, size, offset) else {
+        return;
+    };
+    let (cx, cy) = (0.5 + offset.0, 0.5 + offset.1);
+    let inverse_slope = triangle.planes.map(|p| 1.0 / p.x);
+    for row in row0 as usize..=row1 as usize {
+        let y = row as f64 + f64::from(cy);
+        let (mut first, mut end) = (f64::from(column0), f64::from(column1));
+        for (plane, inverse) in triangle.planes.iter().zip(inverse_slope) {
+            // The sign of x where this plane crosses zero bounds the span.
+            let rest = plane.y * y + plane.z;
+            if plane.x > 0.0 {
+                first = first.max((-rest * inverse - f64::from(cx)).ceil());
+            } else if plane.x < 0.0 {
+                end = end.min((-rest * inverse - f64::from(cx)).floor());
+            } else if rest < 0.0 {
+                end = -1.0;
+            }
+        }
+        if first > end {
             continue;
         }
-        let inverse_slope = triangle.planes.map(|p| 1.0 / p.x);
-        for row in row0 as usize..=row1 as usize {
-            let y = row as f64 + f64::from(cy);
-            let (mut first, mut end) = (f64::from(column0), f64::from(column1));
-            for (plane, inverse) in triangle.planes.iter().zip(inverse_slope) {
-                // The sign of x where this plane crosses zero bounds the span.
-                let rest = plane.y * y + plane.z;
-                if plane.x > 0.0 {
-                    first = first.max((-rest * inverse - f64::from(cx)).ceil());
-                } else if plane.x < 0.0 {
-                    end = end.min((-rest * inverse - f64::from(cx)).floor());
-                } else if rest < 0.0 {
-                    end = -1.0;
-                }
-            }
-            if first > end {
-                continue;
-            }
-            let (first, end) = (first as usize, end as usize);
-            let n = triangle.nearness;
-            let start = (n.x * (first as f64 + f64::from(cx)) + n.y * y + n.z) as f32;
-            let step = n.x as f32;
-            let range = row * size + first..row * size + end + 1;
-            let begin = range.start;
-            let nearness = &mut seen.nearness[range.clone()];
-            let seen = &mut seen.triangle[range];
-            for (i, (z, t)) in nearness.iter_mut().zip(seen).enumerate() {
-                let here = start + step * i as f32;
-                if here > *z && passes(begin + i, here) {
-                    *z = here;
-                    *t = index as u32;
-                }
+        let (first, end) = (first as usize, end as usize);
+        let n = triangle.nearness;
+        let start = (n.x * (first as f64 + f64::from(cx)) + n.y * y + n.z) as f32;
+        let step = n.x as f32;
+        let range = row * size + first..row * size + end + 1;
+        let begin = range.start;
+        let nearness = &mut seen.nearness[range.clone()];
+        let seen = &mut seen.triangle[range];
+        for (i, (z, t)) in nearness.iter_mut().zip(seen).enumerate() {
+            let here = start + step * i as f32;
+            let is_nearer = here > *z || (ANY_ORDER && here == *z && index < *t && *t != NOTHING);
+            if is_nearer && passes(begin + i, here) {
+                *z = here;
+                *t = index;
             }
         }
     }

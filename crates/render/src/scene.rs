@@ -15,8 +15,10 @@ use crate::cutout::rasterise_cut;
 use crate::frame::{Orientation, orientation, tangent_light};
 use crate::interpolate::{barycentrics, interpolate};
 use crate::interpretation::Interpretation;
+use crate::on_screen::{ClustersOnScreen, OnScreen, Raster};
 use crate::parallax::ViewDirection;
-use crate::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility, rasterise};
+use crate::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility};
+use crate::raster_clusters::Clusters;
 pub use crate::scene_textures::unpack;
 use crate::scene_textures::{Builder, Map, Surface, Textures};
 use crate::shade::Brdf;
@@ -75,7 +77,15 @@ pub struct Scene {
     pub(crate) face_normals: Vec<Vec3>,
     /// Whether textures are read as they are stored; vertex colours, which are linear, are encoded then.
     as_stored: bool,
+    /// The triangles of each alpha mode in use, where there are many; else none.
+    clusters: Vec<(AlphaMode, Clusters)>,
 }
+
+/// Meshes of at least as many triangles are rasterised by clusters.
+const MANY_TRIANGLES: usize = 100_000;
+
+/// Sides of pictures that clusters can number the samples of.
+const MOST_CLUSTERED: usize = u16::MAX as usize;
 
 impl Scene {
     /// Multiplies all emission, so that it fits into what maps can hold.
@@ -96,8 +106,27 @@ impl Scene {
         let mut builder = Builder::new(images, interpretation);
         let surfaces = materials.iter().map(|m| builder.surface(m)).collect();
         let pyramids = builder.pyramids;
-        let face_normals = (0..mesh.triangles.len()).map(|t| mesh.area_normal(t)).collect();
-        Self { mesh, surfaces, pyramids, face_normals, as_stored: !interpretation.decode_srgb }
+        let as_stored = !interpretation.decode_srgb;
+        let mut scene =
+            Self { mesh, surfaces, pyramids, face_normals: Vec::new(), as_stored, clusters: Vec::new() };
+        let mesh = &scene.mesh;
+        let count = mesh.triangles.len();
+        let face_normals = (0..count).into_par_iter().map(|t| mesh.area_normal(t)).collect();
+        if count >= MANY_TRIANGLES {
+            scene.clusters = scene.clustered();
+        }
+        scene.face_normals = face_normals;
+        scene
+    }
+
+    fn clustered(&self) -> Vec<(AlphaMode, Clusters)> {
+        let of = |mode: AlphaMode| {
+            let all = 0..self.mesh.triangles.len() as u32;
+            let own: Vec<u32> = all.filter(|&t| self.alpha(t as usize).0 == mode).collect();
+            let clusters = || Clusters::new(&self.mesh.positions, &self.mesh.triangles, &own);
+            (!own.is_empty()).then(|| (mode, clusters()))
+        };
+        [AlphaMode::Opaque, AlphaMode::Mask, AlphaMode::Blend].into_iter().filter_map(of).collect()
     }
 
     /// The mesh being rendered.
@@ -113,9 +142,31 @@ impl Scene {
         })
     }
 
-    /// Sets up all triangles for one camera.
-    pub fn on_screen(&self, camera: &Camera, size: usize) -> ScreenTriangles {
-        ScreenTriangles::new(&self.mesh.positions, &self.mesh.triangles, camera, size)
+    /// All triangles on the screen of one camera.
+    pub fn on_screen(&self, camera: &Camera, size: usize) -> OnScreen<'_> {
+        self.clusters_on_screen(camera, size, |_| true).unwrap_or_else(|| {
+            OnScreen::All(ScreenTriangles::new(&self.mesh.positions, &self.mesh.triangles, camera, size))
+        })
+    }
+
+    /// The triangles of one alpha mode on the screen, by their indices in the mesh; none where they are
+    /// not kept apart, since there are few.
+    pub fn layer_on_screen(&self, mode: AlphaMode, camera: &Camera, size: usize) -> Option<OnScreen<'_>> {
+        self.clusters_on_screen(camera, size, |own| own == mode)
+    }
+
+    fn clusters_on_screen(
+        &self,
+        camera: &Camera,
+        size: usize,
+        is_meant: impl Fn(AlphaMode) -> bool,
+    ) -> Option<OnScreen<'_>> {
+        let is_known = !self.clusters.is_empty() && size <= MOST_CLUSTERED;
+        is_known.then(|| {
+            let meant = self.clusters.iter().filter(|(mode, _)| is_meant(*mode));
+            let clusters = meant.map(|(_, clusters)| clusters).collect();
+            OnScreen::Clustered(ClustersOnScreen { clusters, mesh: &self.mesh, camera: *camera, size })
+        })
     }
 
     /// The maps' values at a point of the surface, textures included; the normal is a unit vector of
@@ -264,12 +315,12 @@ impl Scene {
         &self,
         brdf: &impl Brdf,
         camera: &Camera,
-        screen: &ScreenTriangles,
+        screen: &OnScreen,
         triangle: usize,
         at: (f64, f64),
         footprint: f32,
     ) -> Vec3 {
-        self.seen(camera, &screen.triangles[triangle], triangle, at, footprint).light(brdf)
+        self.seen(camera, &screen.triangle(triangle), triangle, at, footprint).light(brdf)
     }
 
     /// The maps' values at one sample, as of [`Scene::shade`]; the normal is a unit vector of the
@@ -331,18 +382,18 @@ impl Scene {
     }
 
     /// What is seen at each sample, through all that is cut out.
-    fn see(&self, camera: &Camera, screen: &ScreenTriangles, size: usize) -> Visibility {
+    fn see(&self, camera: &Camera, screen: &OnScreen, size: usize) -> Visibility {
         let mut seen = Visibility::default();
         // Asking every sample takes time, so it is done only where the answer matters.
         if self.surfaces.iter().filter_map(|s| s.shifted.as_ref()).all(|s| s.cutout.is_none()) {
-            rasterise(screen, size, (0.0, 0.0), &mut seen);
+            screen.rasterise(size, (0.0, 0.0), None, &mut seen);
             return seen;
         }
         rasterise_cut(screen, size, (0.0, 0.0), &mut seen, |triangle, (x, y)| {
             let mesh = &self.mesh;
             let surface = &self.surfaces[mesh.triangle_materials[triangle] as usize];
             let Some(shifted) = &surface.shifted else { return true };
-            let weights = barycentrics(&screen.triangles[triangle], x, y).weights;
+            let weights = barycentrics(&screen.triangle(triangle), x, y).weights;
             let corners = mesh.triangles[triangle].map(|i| i as usize);
             let point = interpolate(corners.map(|i| mesh.positions[i]), weights);
             shifted.is_opaque(mesh, corners, weights, camera.view_direction(point))

@@ -21,7 +21,8 @@ use parbake_progress::Watcher;
 use parbake_render::camera::Camera;
 use parbake_render::cutout::rasterise_cut;
 use parbake_render::interpolate::{barycentrics, interpolate};
-use parbake_render::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility, rasterise};
+use parbake_render::on_screen::{OnScreen, Raster};
+use parbake_render::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility};
 use rayon::prelude::*;
 
 /// One pixel of a training view: 40 bytes.
@@ -168,22 +169,25 @@ impl MaterialSampler<'_> {
             (along(pixel % size, jitter.0), along(pixel / size, jitter.1))
         };
         let footprint = filter.max(1.0 / 16.0);
-        let high = Part::of(scene.mesh(), &layer.high, camera, size);
+        let high = match scene.layer_on_screen(layer.mode, camera, size) {
+            Some(screen) => Part { screen, own: None },
+            None => Part::of(scene.mesh(), &layer.high, camera, size),
+        };
         let mut shown = Visibility::default();
         match layer.mode {
             AlphaMode::Mask => rasterise_cut(&high.screen, size, jitter, &mut shown, |triangle, at| {
                 let own = high.triangle(triangle);
-                let values = scene.material(camera, &high.screen.triangles[triangle], own, at, footprint);
+                let values = scene.material(camera, &high.screen.triangle(triangle), own, at, footprint);
                 values[MapKind::BaseColor].w >= scene.alpha(own).1
             }),
-            _ => rasterise(&high.screen, size, jitter, &mut shown),
+            _ => high.screen.rasterise(size, jitter, None, &mut shown),
         }
         let low = Part::of(self.low, &layer.low, camera, size);
         let mut seen = Visibility::default();
         match self.shift {
-            None => rasterise(&low.screen, size, jitter, &mut seen),
+            None => low.screen.rasterise(size, jitter, None, &mut seen),
             Some(shift) => rasterise_cut(&low.screen, size, jitter, &mut seen, |triangle, at| {
-                let point = Point::of(self.low, low.triangle(triangle), &low.screen.triangles[triangle], at);
+                let point = Point::of(self.low, low.triangle(triangle), &low.screen.triangle(triangle), at);
                 shift(point.uv, camera.view_direction(point.position), point.normal).is_some()
             }),
         }
@@ -194,7 +198,8 @@ impl MaterialSampler<'_> {
                 continue;
             }
             let at = at(pixel);
-            let point = Point::of(self.low, low.triangle(under), &low.screen.triangles[under], at);
+            let below = low.screen.triangle(under);
+            let point = Point::of(self.low, low.triangle(under), &below, at);
             let direction = camera.view_direction(point.position);
             let Some(uv) =
                 self.shift.map_or(Some(point.uv), |shift| shift(point.uv, direction, point.normal))
@@ -203,10 +208,10 @@ impl MaterialSampler<'_> {
             };
             // Where the layer is not there, or only far behind, it has a gap.
             let depth = |of: &ScreenTriangle| 1.0 / of.nearness.dot(DVec3::new(at.0, at.1, 1.0)).max(1e-9);
-            let own = depth(&low.screen.triangles[under]);
+            let own = depth(&below);
             let theirs = match over {
                 NOTHING => f64::INFINITY,
-                over => depth(&high.screen.triangles[over as usize]),
+                over => depth(&high.screen.triangle(over as usize)),
             };
             if has_gaps && theirs > own + BEHIND {
                 out.push(MaterialSample::new(uv, texture_size, &GAP, [0.0, 1.0]));
@@ -215,7 +220,7 @@ impl MaterialSampler<'_> {
             if has_gaps && theirs < own - BEHIND {
                 continue;
             }
-            let on_screen = &high.screen.triangles[over as usize];
+            let on_screen = &high.screen.triangle(over as usize);
             let mut values = scene.material(camera, on_screen, high.triangle(over as usize), at, footprint);
             if layer.mode == AlphaMode::Mask {
                 values[MapKind::BaseColor].w = 1.0;
@@ -232,7 +237,7 @@ const GAP: MapValues = MapValues::ZERO;
 
 /// Some triangles of a mesh on a screen.
 struct Part<'a> {
-    screen: ScreenTriangles,
+    screen: OnScreen<'a>,
     /// Their indices in the mesh; none where all are there.
     own: Option<&'a [u32]>,
 }
@@ -241,10 +246,11 @@ impl<'a> Part<'a> {
     fn of(mesh: &Mesh, triangles: &'a [u32], camera: &Camera, size: usize) -> Self {
         if triangles.len() == mesh.triangles.len() {
             let screen = ScreenTriangles::new(&mesh.positions, &mesh.triangles, camera, size);
-            return Self { screen, own: None };
+            return Self { screen: OnScreen::All(screen), own: None };
         }
         let corners: Vec<[u32; 3]> = triangles.iter().map(|&t| mesh.triangles[t as usize]).collect();
-        Self { screen: ScreenTriangles::new(&mesh.positions, &corners, camera, size), own: Some(triangles) }
+        let screen = ScreenTriangles::new(&mesh.positions, &corners, camera, size);
+        Self { screen: OnScreen::All(screen), own: Some(triangles) }
     }
 
     fn triangle(&self, on_screen: usize) -> usize {

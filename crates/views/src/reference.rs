@@ -9,7 +9,8 @@ use crate::pool::View;
 use half::f16;
 use half::slice::HalfFloatSliceExt;
 use parbake_progress::{Stage, Watcher};
-use parbake_render::raster::{NOTHING, Visibility, rasterise};
+use parbake_render::on_screen::Raster;
+use parbake_render::raster::{NOTHING, Visibility};
 use parbake_render::scene::Scene;
 use parbake_render::shade::Brdf;
 use rayon::prelude::*;
@@ -96,7 +97,7 @@ fn render(high: &Scene, brdf: &impl Brdf, view: &View, sampling: &Sampling) -> R
         let shift =
             [sample % samples, sample / samples].map(|i| filter * ((i as f32 + 0.5) / samples as f32 - 0.5));
         let offset = (view.jitter[0] + shift[0], view.jitter[1] + shift[1]);
-        rasterise(&screen, size, offset, &mut seen);
+        screen.rasterise(size, offset, None, &mut seen);
         for (index, (&triangle, pixel)) in seen.triangle.iter().zip(&mut sum).enumerate() {
             if triangle == NOTHING {
                 continue;
