@@ -152,7 +152,7 @@ impl Work {
         let turned = areas.iter().filter(|a| is_mirrored(a)).count();
         if turned > 0 && areas.iter().all(|a| (is_mirrored(a) || a[0] + a[1] == 0.0) && !is_folded(a)) {
             self.corners.uv.iter_mut().flatten().for_each(|p| p.x = f64::from(1.0 - p.x as f32));
-            self.told.whole_mirrored = true;
+            (self.told.whole_mirrored, self.told.mirrored) = (true, turned);
             return Some(());
         }
         for (chart, areas) in charts.iter().zip(&areas) {
@@ -351,9 +351,6 @@ impl Told {
         if self.tiles {
             sentences.push("Charts in other tiles of the texture were moved into its square.".to_string());
         }
-        if self.whole_mirrored {
-            sentences.push("All charts were mirrored; the layout was mirrored back as a whole.".into());
-        }
         let mut say = |count: usize, one: &str, many: &str| match count {
             0 => {}
             1 => sentences.push(format!("1 {one}")),
@@ -393,7 +390,14 @@ impl Told {
         if sentences.is_empty() && rounds == 0 {
             sentences.push("Texture coordinates outside the square were brought into it.".into());
         } else {
-            sentences.push("All else stayed where it was.".into());
+            sentences.push(
+                if self.whole_mirrored {
+                    "The layout was mirrored as a whole."
+                } else {
+                    "All else stayed where it was."
+                }
+                .into(),
+            );
         }
         sentences
     }
