@@ -6,6 +6,8 @@
 //! the low-poly's tangent frame, `m = F⁻¹ N` with F as in `parbake_render::frame`. Nothing is shaded, so
 //! what is fitted to these samples is right under any light.
 //!
+//! A pixel whose low-poly is one side of a thin wall and whose high-poly is the other one is left out.
+//!
 //! Contract: samples are sorted as in `samples.rs`; nothing depends on the number of threads.
 
 use crate::alpha_layers::AlphaLayer;
@@ -215,6 +217,10 @@ impl MaterialSampler<'_> {
             if has_gaps && theirs < own - BEHIND {
                 continue;
             }
+            let behind = (theirs - own) as f32;
+            if !has_gaps && self.is_of_another_side(&point, high.triangle(over as usize), behind) {
+                continue;
+            }
             let on_screen = &high.screen.triangles[over as usize];
             let mut values = scene.material(camera, on_screen, high.triangle(over as usize), at, footprint);
             if layer.mode == AlphaMode::Mask {
@@ -224,6 +230,21 @@ impl MaterialSampler<'_> {
                 point.in_frame(values[MapKind::Normal].truncate(), direction).extend(0.0);
             out.push(MaterialSample::new(uv, texture_size, &values, [1.0, if has_gaps { 1.0 } else { 0.0 }]));
         }
+    }
+}
+
+impl MaterialSampler<'_> {
+    /// Whether a pixel of the low-poly shows a side of the high-poly that is another one's: one that faces
+    /// the other way, as a thin wall's back does, or what lies far behind a rim. That is so only where the
+    /// high-poly has, within reach, a surface that faces as the low-poly does there; else what is seen is all
+    /// there is.
+    fn is_of_another_side(&self, point: &Point, high_triangle: usize, behind: f32) -> bool {
+        let reach = self.high.conventions.max_distance;
+        let is_opposite = self.high.scene.mesh().area_normal(high_triangle).dot(point.face_normal) < 0.0;
+        // A parallax map fetches what lies behind.
+        let is_far = behind > reach && self.shift.is_none();
+        (is_opposite || is_far)
+            && self.high.surface.closest_facing(point.position, point.face_normal, reach).is_some()
     }
 }
 
@@ -323,15 +344,18 @@ mod tests {
         Model { name: "squares".into(), mesh, materials, images: Vec::new() }
     }
 
-    fn sampled(high: &Model, low: &Model) -> Vec<MaterialSample> {
-        let conventions = Conventions {
+    fn conventions() -> Conventions {
+        Conventions {
             interpretation: Interpretation::default(),
             display: Display { gain: 1.0, curve: Curve::Srgb },
             whole_material: Some(true),
             rig: Rig { radius: 3.5, projection: Projection::Perspective(0.4) },
             max_distance: 0.1,
-        };
-        let high = HighPoly::new(high, conventions).expect("it has an extent");
+        }
+    }
+
+    fn sampled(high: &Model, low: &Model) -> Vec<MaterialSample> {
+        let high = HighPoly::new(high, conventions()).expect("it has an extent");
         let prepared = LowPoly::new(low, &high.frame, 32).expect("it has coordinates");
         let layers = alpha_layers(&alpha_modes(&prepared.placed, low, &high), &high);
         let set = ViewSet {
@@ -407,6 +431,64 @@ mod tests {
             let color = wall.target(MapKind::BaseColor);
             assert!((color - Vec4::new(1.0, 0.0, 0.0, 1.0)).length() < 1e-3, "{color}");
             assert_eq!(wall.opacity_weight(), 0.0);
+        }
+    }
+
+    /// An open tube around the y axis, of two shells of one segment in height: white outside, black inside,
+    /// each with a half of the texture. Normals at the rims look along the wall, as smooth ones do.
+    fn tube(segments: u32) -> Model {
+        let mut mesh = Mesh::default();
+        for (shell, radius) in [0.6f32, 0.59].into_iter().enumerate() {
+            let first = mesh.positions.len() as u32;
+            let outwards = if shell == 0 { 1.0 } else { -1.0 };
+            for i in 0..=segments {
+                let along = i as f32 / segments as f32;
+                let (sin, cos) = (std::f32::consts::TAU * along).sin_cos();
+                for y in [-1.0f32, 1.0] {
+                    mesh.positions.push(Vec3::new(radius * cos, y, radius * sin));
+                    mesh.normals.push((Vec3::new(cos, 0.0, sin) * outwards * 0.3 + Vec3::Y * y).normalize());
+                    mesh.uvs.push(vec2(0.03 + 0.44 * along + 0.5 * shell as f32, 0.5 - 0.45 * y));
+                }
+            }
+            for i in 0..segments {
+                let v = first + 2 * i;
+                let quad = [[v, v + 1, v + 2], [v + 2, v + 1, v + 3]];
+                mesh.triangles.extend(if shell == 0 { quad } else { quad.map(|[a, b, c]| [a, c, b]) });
+            }
+        }
+        let count = mesh.triangles.len() as u32;
+        mesh.triangle_materials = (0..count).map(|t| u32::from(t >= count / 2)).collect();
+        let plain = |value: f32| Material {
+            base_color: [value, value, value, 1.0],
+            double_sided: true,
+            ..Material::default()
+        };
+        Model { name: "tube".into(), mesh, materials: vec![plain(1.0), plain(0.0)], images: Vec::new() }
+    }
+
+    /// Protects thin walls: where a coarse wall is far thicker in its sag than the fine one is, no pixel asks
+    /// one side for the other's colour, from any side, nor does the projection find it.
+    #[test]
+    fn no_side_of_a_thin_wall_takes_the_other_s_colour() {
+        let (high, low) = (tube(96), tube(12));
+        let samples = sampled(&high, &low);
+        let is_outside = |texel: usize| texel % 32 < 16;
+        for outside in [true, false] {
+            let own: Vec<f32> = samples
+                .iter()
+                .filter(|s| is_outside(s.texel()) == outside)
+                .map(|s| s.target(MapKind::BaseColor).x)
+                .collect();
+            let wrong = own.iter().filter(|x| (**x > 0.5) != outside).count();
+            assert!(own.len() > 300 && wrong == 0, "{wrong} of {} with outside = {outside}", own.len());
+        }
+        let conventions = conventions();
+        let high = HighPoly::new(&high, conventions).expect("it has an extent");
+        let prepared = LowPoly::new(&low, &high.frame, 32).expect("it has coordinates");
+        let projected = crate::projection::project(&prepared, &high);
+        let base = projected.maps.get(MapKind::BaseColor).expect("a bake has one");
+        for (texel, value) in base.texels.iter().enumerate().filter(|(i, _)| prepared.atlas.covered[*i]) {
+            assert_eq!(value.x > 0.5, is_outside(texel), "texel {texel}: {value}");
         }
     }
 }
