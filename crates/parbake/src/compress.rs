@@ -466,7 +466,7 @@ mod tests {
         mesh.uvs
             .iter_mut()
             .enumerate()
-            .for_each(|(i, uv)| *uv = vec2((i % 4 % 3 != 0) as u32 as f32, (i % 4 / 2) as f32) * 4.0);
+            .for_each(|(i, uv)| *uv = vec2(f32::from(u8::from(i % 4 % 3 != 0)), (i % 4 / 2) as f32) * 4.0);
         let mut model = noisy(mesh.clone());
         model.materials[0].base_color_texture.iter_mut().for_each(|slot| slot.wrap = [Wrap::Repeat; 2]);
         let preset = crate::options::Preset::Fast;

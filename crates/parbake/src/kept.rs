@@ -15,6 +15,8 @@ use parbake_progress::{Message, Watcher};
 
 /// Decibels that coordinates which are sound may cost.
 const MOST_LOST: f64 = 0.05;
+/// Beyond this views are equal.
+const MOST_DECIBELS: f64 = 120.0;
 /// Views that are compared.
 const VIEWS: usize = 12;
 
@@ -34,17 +36,11 @@ pub(crate) fn lost(
     found: &Model,
     convention: Convention,
 ) -> Result<Option<f64>, BakeError> {
-    let options = EvaluateOptions {
-        views: VIEWS,
-        supersample: 1,
-        no_flip: true,
-        convention,
-        ..EvaluateOptions::default()
-    };
+    let options = EvaluateOptions { views: VIEWS, no_flip: true, convention, ..EvaluateOptions::default() };
     let views = evaluate_each(model, &[kept, found], &options, &[&options.background], &())?;
+    // Views that are equal in every pixel have no finite figure.
     let mean = |which: usize| {
-        let all = views.iter().map(|view| view[which][0].psnr).filter(|psnr| psnr.is_finite());
-        all.sum::<f64>() / views.len().max(1) as f64
+        views.iter().map(|view| view[which][0].psnr.min(MOST_DECIBELS)).sum::<f64>() / VIEWS as f64
     };
     let lost = mean(0) - mean(1);
     Ok((lost > MOST_LOST).then_some(lost))
