@@ -14,6 +14,7 @@ use crate::alpha_layers::AlphaLayer;
 use crate::high_poly::{HighPoly, ViewSet};
 use crate::pool::View;
 use crate::samples::{Fetched, SampleSet, collect, place};
+use crate::sides::is_of_another_side;
 use parbake_image::display::encode_srgb;
 use parbake_image::{MapKind, MapValues};
 use parbake_model::AlphaMode;
@@ -217,8 +218,10 @@ impl MaterialSampler<'_> {
             if has_gaps && theirs < own - BEHIND {
                 continue;
             }
-            let behind = (theirs - own) as f32;
-            if !has_gaps && self.is_of_another_side(&point, high.triangle(over as usize), behind) {
+            // A parallax map fetches what lies behind.
+            let behind = self.shift.is_none().then_some((theirs - own) as f32);
+            let (seen, place) = (high.triangle(over as usize), [point.position, point.face_normal]);
+            if !has_gaps && is_of_another_side(self.high, place, seen, behind) {
                 continue;
             }
             let on_screen = &high.screen.triangles[over as usize];
@@ -230,21 +233,6 @@ impl MaterialSampler<'_> {
                 point.in_frame(values[MapKind::Normal].truncate(), direction).extend(0.0);
             out.push(MaterialSample::new(uv, texture_size, &values, [1.0, if has_gaps { 1.0 } else { 0.0 }]));
         }
-    }
-}
-
-impl MaterialSampler<'_> {
-    /// Whether a pixel of the low-poly shows a side of the high-poly that is another one's: one that faces
-    /// the other way, as a thin wall's back does, or what lies far behind a rim. That is so only where the
-    /// high-poly has, within reach, a surface that faces as the low-poly does there; else what is seen is all
-    /// there is.
-    fn is_of_another_side(&self, point: &Point, high_triangle: usize, behind: f32) -> bool {
-        let reach = self.high.conventions.max_distance;
-        let is_opposite = self.high.scene.mesh().area_normal(high_triangle).dot(point.face_normal) < 0.0;
-        // A parallax map fetches what lies behind.
-        let is_far = behind > reach && self.shift.is_none();
-        (is_opposite || is_far)
-            && self.high.surface.closest_facing(point.position, point.face_normal, reach).is_some()
     }
 }
 
@@ -310,7 +298,7 @@ impl Point {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::alpha_layers::{alpha_layers, alpha_modes};
     use crate::high_poly::Conventions;
@@ -344,7 +332,7 @@ mod tests {
         Model { name: "squares".into(), mesh, materials, images: Vec::new() }
     }
 
-    fn conventions() -> Conventions {
+    pub(crate) fn conventions() -> Conventions {
         Conventions {
             interpretation: Interpretation::default(),
             display: Display { gain: 1.0, curve: Curve::Srgb },
@@ -436,7 +424,7 @@ mod tests {
 
     /// An open tube around the y axis, of two shells of one segment in height: white outside, black inside,
     /// each with a half of the texture. Normals at the rims look along the wall, as smooth ones do.
-    fn tube(segments: u32) -> Model {
+    pub(crate) fn tube(segments: u32) -> Model {
         let mut mesh = Mesh::default();
         for (shell, radius) in [0.6f32, 0.59].into_iter().enumerate() {
             let first = mesh.positions.len() as u32;
