@@ -13,9 +13,9 @@
 //! sentences      the problems in words
 //! ```
 
-mod box_tree;
+pub(crate) mod box_tree;
 mod distortion;
-mod gutter;
+pub(crate) mod gutter;
 mod orientations;
 mod overlaps;
 mod sentences;

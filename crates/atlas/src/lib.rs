@@ -8,6 +8,8 @@
 //! pack        charts into the square
 //! unwrap      a new layout for any mesh
 //! repair      a sound layout from a delivered one
+//! mend        its faults mended where they are
+//! sharing     texels that several parts share, in words
 //! tiles       charts of repeated textures brought into one tile
 //! tutte       an embedding of each piece in a circle or square
 //! ```
@@ -15,10 +17,12 @@
 pub mod check;
 pub mod error;
 pub mod layout;
+mod mend;
 pub mod model_check;
 pub mod pack;
 pub mod predicates;
 pub mod repair;
+pub mod sharing;
 pub mod tiles;
 pub mod tutte;
 pub mod unwrap;
@@ -29,6 +33,7 @@ pub use layout::{BoundaryEdge, Layout};
 pub use model_check::{LayoutCheck, ModelCheck, check_mesh, check_model};
 pub use pack::{ChartScale, PackOptions, pack};
 pub use repair::{RepairOptions, repair};
+pub use sharing::{Sharing, sharing};
 pub use tiles::in_one_tile;
 pub use tutte::{TutteBoundary, TutteOptions, TutteWeights, tutte};
 pub use unwrap::{UnwrapOptions, UnwrappedMesh, unwrap};

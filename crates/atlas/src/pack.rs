@@ -6,6 +6,7 @@
 //! how a place is found and `pack/mask.rs` for why the gutter is kept exactly.
 
 mod board;
+pub(crate) mod free_space;
 mod mask;
 mod pieces;
 mod polygon;

@@ -3,15 +3,19 @@
 //! ```text
 //! nothing wrong                      left as it is
 //! only in other tiles                each chart moved by whole tiles
+//! faults of a few triangles or charts mended where they are (mend.rs)
 //! only outside the square            all brought in together, unless it would be nearly empty
+//! else, where too much is wrong or no place is left:
 //! mirrored charts                    mirrored back
 //! charts folded along few lines      cut there
 //! triangles or charts beyond that    these alone laid out afresh
-//! then, or if charts are too close   those too long for the square cut across, all packed again, sizes kept
+//! then                               those too long for the square cut across, all packed again, sizes kept
 //! ```
 
-mod faults;
+pub(crate) mod faults;
 
+use crate::mend::{MendOptions, mended};
+use crate::sharing;
 use crate::tiles::in_one_tile;
 use crate::unwrap::corners::{Corners, Surface};
 use crate::unwrap::long::{LEAST_COVER, cut_across};
@@ -26,6 +30,9 @@ pub struct RepairOptions {
     /// Texture size, gutter and packing. Charts keep their relative sizes; `chart_scale`
     /// is not looked at.
     pub pack: PackOptions,
+    /// Whether charts that are sound but closer than the gutter must move apart. What is mended or packed
+    /// has the gutter in any case.
+    pub gutter_required: bool,
     /// For what is laid out afresh, as in [`UnwrapOptions`].
     pub max_chart_angle: f32,
 }
@@ -33,7 +40,7 @@ pub struct RepairOptions {
 impl Default for RepairOptions {
     fn default() -> Self {
         let UnwrapOptions { pack, max_chart_angle } = UnwrapOptions::default();
-        Self { pack, max_chart_angle }
+        Self { pack, gutter_required: true, max_chart_angle }
     }
 }
 
@@ -57,14 +64,14 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> Result<(Mesh, Vec<String>
         return unwrapped("The model has no texture coordinates; it was unwrapped.");
     }
     let delivered = check(&surface.delivered, size);
-    if is_good(&delivered, &options.pack) {
+    if is_good(&delivered, options) {
         return Ok((mesh.clone(), Vec::new()));
     }
     if delivered.orientations.outside.count > 0
         && let Some(uvs) = in_one_tile(mesh, 0.0)
     {
         let home = Mesh { uvs, tangents: Vec::new(), ..mesh.clone() };
-        if is_good(&check(&Layout::new(&home), size), &options.pack) {
+        if is_good(&check(&Layout::new(&home), size), options) {
             return Ok((
                 home,
                 vec!["Charts in other tiles of the texture were moved into its square.".into()],
@@ -76,9 +83,18 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> Result<(Mesh, Vec<String>
     if live.clone().all(|t| surface.delivered.doubled_area(t) == 0.0) {
         return unwrapped("The texture coordinates cover no area; the model was unwrapped afresh.");
     }
-    let mut sentences = Vec::new();
+    let mut sentences: Vec<String> = sharing::in_layout(&surface.delivered).sentence().into_iter().collect();
+    let mend = MendOptions {
+        pack: &options.pack,
+        gutter_required: options.gutter_required,
+        max_chart_angle: options.max_chart_angle,
+    };
+    if let Some((mesh, done)) = mended(&surface, &mend) {
+        sentences.extend(done);
+        return Ok((mesh, sentences));
+    }
     if delivered.orientations.outside.count > 0 {
-        if let Some(mesh) = brought_in(&surface, &corners, &options.pack) {
+        if let Some(mesh) = brought_in(&surface, &corners, options) {
             return Ok((mesh, vec!["Texture coordinates outside the square were brought into it.".into()]));
         }
         sentences.push("Texture coordinates outside the square were brought into it.".into());
@@ -96,7 +112,7 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> Result<(Mesh, Vec<String>
     let close = delivered.gutter.as_ref().is_some_and(|g| g.texels < options.pack.gutter_texels);
     sentences.push(match (delivered.overlaps.pairs > 0, close) {
         (true, _) => {
-            "Triangles lay on each other; all charts were packed again at their relative sizes.".into()
+            "Triangles lay on each other; all charts were packed again at their relative sizes, since mending would have left no room or moved most of them.".into()
         }
         (false, true) => format!(
             "Charts lay closer to each other than {} texels; all were packed again at their relative sizes.",
@@ -108,11 +124,12 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> Result<(Mesh, Vec<String>
 }
 
 /// Whether there is nothing to do.
-fn is_good(check: &UvCheck, pack: &PackOptions) -> bool {
-    check.is_bijective() && check.gutter.as_ref().is_none_or(|g| g.texels >= pack.gutter_texels)
+fn is_good(check: &UvCheck, options: &RepairOptions) -> bool {
+    let is_wide = |least: f64| check.gutter.as_ref().is_none_or(|g| g.texels >= least);
+    check.is_bijective() && (!options.gutter_required || is_wide(options.pack.gutter_texels))
 }
 
-fn corners_of(surface: &Surface) -> Corners {
+pub(crate) fn corners_of(surface: &Surface) -> Corners {
     let layout = &surface.delivered;
     let count = layout.triangles.len();
     let chart = (0..count)
@@ -124,7 +141,8 @@ fn corners_of(surface: &Surface) -> Corners {
 
 /// The whole layout moved, and shrunk if need be, into the square, if nothing else is
 /// wrong with it and shrinking leaves no more of the square empty than it should.
-fn brought_in(surface: &Surface, corners: &Corners, pack: &PackOptions) -> Option<Mesh> {
+fn brought_in(surface: &Surface, corners: &Corners, options: &RepairOptions) -> Option<Mesh> {
+    let pack = &options.pack;
     let all = || corners.uv.iter().flatten().copied();
     let low = all().reduce(|a, b| a.min(b))?;
     let high = all().reduce(|a, b| a.max(b))?;
@@ -134,7 +152,7 @@ fn brought_in(surface: &Surface, corners: &Corners, pack: &PackOptions) -> Optio
     moved.uv.iter_mut().flatten().for_each(|p| *p = (*p - low) * scale + border);
     let mesh = surface.mesh_with(&moved).0;
     let check = check(&Layout::new(&mesh), pack.texture_size);
-    (is_good(&check, pack) && (scale == 1.0 || check.utilisation >= LEAST_COVER)).then_some(mesh)
+    (is_good(&check, options) && (scale == 1.0 || check.utilisation >= LEAST_COVER)).then_some(mesh)
 }
 
 fn tell(sentences: &mut Vec<String>, found: &Found, fresh: usize) {

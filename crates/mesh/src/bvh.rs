@@ -151,6 +151,12 @@ impl Corners {
         t.is_finite().then_some((t, [u, v.min(1.0 - u)], determinant > 0.0))
     }
 
+    /// The normal, as long as twice the area.
+    #[inline]
+    pub(crate) fn normal(&self) -> Vec3A {
+        self.ab.cross(self.ac)
+    }
+
     /// The nearest point of the triangle.
     #[inline]
     pub(crate) fn closest(&self, point: Vec3A) -> Near {

@@ -41,12 +41,28 @@ impl HighSurface {
     /// the surface. The direction may have any length but zero; distances are in
     /// the mesh's unit.
     pub fn cast(&self, origin: Vec3, direction: Vec3, max_distance: f32) -> Option<SurfacePoint> {
-        self.along_line::<false>(origin, direction.try_normalize()?, max_distance, false)
+        self.along_line::<false>(origin, direction.try_normalize()?, max_distance, None)
     }
 
     /// The nearest point of the surface within `max_distance`, which may be
     /// infinite.
     pub fn closest(&self, point: Vec3, max_distance: f32) -> Option<SurfacePoint> {
+        self.nearest(point, max_distance, |_| true)
+    }
+
+    /// The nearest point within `max_distance` of what faces along `direction`: of triangles whose normals
+    /// are within 90° of it.
+    pub fn closest_facing(&self, point: Vec3, direction: Vec3, max_distance: f32) -> Option<SurfacePoint> {
+        let direction = Vec3A::from(direction);
+        self.nearest(point, max_distance, |slot| self.bvh.triangle(slot).normal().dot(direction) > 0.0)
+    }
+
+    fn nearest(
+        &self,
+        point: Vec3,
+        max_distance: f32,
+        is_meant: impl Fn(u32) -> bool,
+    ) -> Option<SurfacePoint> {
         let point = Vec3A::from(point);
         let mut best = Near { square: max_distance * max_distance, ..Near::default() };
         let mut found = None;
@@ -63,7 +79,8 @@ impl HighSurface {
             if node.is_leaf() {
                 for slot in node.first_index..node.first_index + node.prim_count {
                     let near = self.bvh.triangle(slot).closest(point);
-                    if near.square < best.square || (found.is_none() && near.square == best.square) {
+                    let nearer = near.square < best.square || (found.is_none() && near.square == best.square);
+                    if nearer && is_meant(slot) {
                         best = near;
                         found = Some(slot);
                     }
@@ -99,22 +116,34 @@ impl HighSurface {
     /// apart; nearness, instead of coming first from outside, keeps other parts of
     /// the model that reach into the cage from hiding what is under the point.
     /// Where the segment meets nothing that faces outwards: the closest point of
-    /// the surface, however far. `None` only for a surface without any area.
+    /// the surface that does, up to `reach` farther than the closest of all, else that one,
+    /// however far. `None` only for a surface without any area.
     pub fn project(&self, point: Vec3, normal: Vec3, reach: f32) -> Option<SurfacePoint> {
-        let hit = normal.try_normalize().and_then(|n| self.along_line::<true>(point, n, reach, true));
-        hit.or_else(|| self.closest(point, f32::INFINITY))
+        self.project_facing(point, normal, normal, reach)
+    }
+
+    /// The same where the coarse surface's own side is known: `side` is the normal of its triangle, of any
+    /// length, and places must face outwards by that too. At rims and creases an interpolated normal looks
+    /// along the wall, where either side of it may pass for the outer one.
+    pub fn project_facing(&self, point: Vec3, normal: Vec3, side: Vec3, reach: f32) -> Option<SurfacePoint> {
+        let hit = normal.try_normalize().and_then(|n| self.along_line::<true>(point, n, reach, Some(side)));
+        hit.or_else(|| {
+            let any = self.closest(point, f32::INFINITY)?;
+            Some(self.closest_facing(point, side, any.distance + reach).unwrap_or(any))
+        })
     }
 
     /// The hit nearest to the origin on a line: only ahead of it or, if
     /// `BOTH_WAYS`, behind it too. Optionally only of triangles whose normals are
-    /// within 90° of the direction.
+    /// within 90° of the direction and of another one.
     fn along_line<const BOTH_WAYS: bool>(
         &self,
         origin: Vec3,
         direction: Vec3,
         max_distance: f32,
-        facing_only: bool,
+        facing: Option<Vec3>,
     ) -> Option<SurfacePoint> {
+        let side = facing.map(Vec3A::from);
         let (origin, direction) = (Vec3A::from(origin), Vec3A::from(direction));
         // A zero component would make ∞ · 0 in the slab test.
         let inverse = Vec3A::from_array(
@@ -147,13 +176,14 @@ impl HighSurface {
             let node = &nodes[index as usize];
             if node.is_leaf() {
                 for slot in node.first_index..node.first_index + node.prim_count {
-                    let Some((t, barycentric, facing)) = self.bvh.triangle(slot).intersect(origin, direction)
-                    else {
+                    let triangle = self.bvh.triangle(slot);
+                    let Some((t, barycentric, ahead)) = triangle.intersect(origin, direction) else {
                         continue;
                     };
                     let distance = if BOTH_WAYS { t.abs() } else { t };
                     let nearer = distance < best || (found.is_none() && distance == best);
-                    if distance >= 0.0 && nearer && (facing || !facing_only) {
+                    let is_meant = || side.is_none_or(|side| ahead && triangle.normal().dot(side) > 0.0);
+                    if distance >= 0.0 && nearer && is_meant() {
                         best = distance;
                         found = Some((slot, barycentric));
                     }

@@ -6,18 +6,20 @@
 //! counts for as much as is seen of it.
 //!
 //! ```text
-//! delivered coordinates ────────────────────────── texture, to compare with
-//! repaired, where they are not sound ─┬─────────── texture ─┬ the better one ─ Model
-//!              more triangles, moved ─┴─────────── texture ─┘
+//! delivered coordinates ────────────────────────── texture ─────────────────────┐
+//! repaired, where they are not sound ─┬─────────── texture ─┬ the better one ───┴ the better one ─ Model
+//!              more triangles, moved ─┴─────────── texture ─┘                     (kept.rs)
 //! ```
 //!
-//! Contract: what is written is sound, unless coordinates are to be kept, and shows the surface no worse
-//! than coordinates that were only repaired. Texels are compared as they are stored, as when a picture is
+//! Contract: what is written shows the surface no worse than coordinates that were only repaired, and not
+//! more than a twentieth of a decibel worse than the delivered ones. It is sound, unless coordinates are to be
+//! kept, or delivered ones that share texels show more and no other layout was asked for. Texels are compared as they are stored, as when a picture is
 //! scaled.
 
 use crate::bake::{Baked, bake_onto_itself};
 use crate::budget::check_budget;
 use crate::error::BakeError;
+use crate::kept;
 use crate::options::{BakeOptions, Convention, Parallax, Shading, UvMode};
 use crate::report::{BakeReport, LossStep, Work, layout_warning};
 use parbake_atlas::{check_mesh, in_one_tile};
@@ -63,8 +65,31 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> 
     let is_whole = options.shading != Shading::Lambert && options.convention == Convention::Gltf;
     let is_plain = |m: &Material| m.normal_texture.is_none() && !(is_whole && has_more_than_colour(m));
     if keeps_tiles || !model.materials.iter().all(is_plain) {
-        return bake_onto_itself(model, options, watcher);
+        return whole(model, options, watcher);
     }
+    if kept::may_be_kept(options) && !is_in_the_square(&delivered.mesh, slack) {
+        // Where no chart is longer than a tile, coordinates can be read in the square.
+        if in_one_tile(&delivered.mesh, slack).is_none() && !delivered.mesh.uvs.is_empty() {
+            let plain = |options: &BakeOptions, watcher: &dyn Watcher| match options.uv {
+                UvMode::Keep => bake_onto_itself(model, options, watcher),
+                _ => plain(model, options, watcher),
+            };
+            return kept::weighed(model, options, watcher, plain);
+        }
+    }
+    plain(model, options, watcher)
+}
+
+/// Bakes a model with all its maps onto itself.
+fn whole(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<Baked, BakeError> {
+    kept::weighed(model, options, watcher, |options, watcher| bake_onto_itself(model, options, watcher))
+}
+
+/// Solves for the texture of a model whose materials have colour alone.
+fn plain(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<Baked, BakeError> {
+    let as_it_is = options.uv_stage_as(UvMode::Keep);
+    let delivered = repair_uvs(model, &as_it_is)?;
+    let slack = 0.5 / options.texture_size as f64;
     let begin = Instant::now();
     let watcher = &ProgressScope::new(&watcher, begin, options.time_budget);
     // Coordinates are all that takes long; a texture is solved for those before and after.
@@ -111,6 +136,16 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> 
         // The judges of its moves had fewer samples.
         if !moved.is_worse(&begun) {
             written = moved;
+        }
+    }
+    if let Some(kept) = &delivered
+        && kept::may_be_kept(options)
+        && kept.low.model.mesh.uvs != written.low.model.mesh.uvs
+    {
+        let finished = |of: &Solved| textured(of.low.model.clone(), &of.solved);
+        if let Some(lost) = kept::lost(model, &finished(kept), &finished(&written), options.convention)? {
+            written = kept.clone();
+            written.low.report.repaired.extend(kept::sentences(model, lost));
         }
     }
     clock.lap(Stage::Solve);
@@ -405,20 +440,48 @@ mod tests {
         assert_eq!(sample_width(&mesh, 4096), sample_width(&mesh, 2048));
     }
 
-    /// Protects soundness: boxes that share their texels have more of them each, and are given their
-    /// own all the same.
+    /// Protects soundness where it is asked for, and texels where it is not: boxes that share their texels
+    /// have more of them each, which is kept, and said, unless each shall have its own.
     #[test]
-    fn what_overlaps_is_not_written_back() {
+    fn what_is_shared_is_kept_where_it_shows_more() {
         let mut mesh = Mesh::default();
         for i in 0..24 {
             let first = mesh.positions.len();
             add_box(&mut mesh, 1.0, 0.1);
             mesh.positions[first..].iter_mut().for_each(|p| p.x += 3.0 * i as f32);
         }
-        let options = BakeOptions { texture_size: 128, ..BakeOptions::default() };
-        let baked = compress(&noisy(mesh), &options, &()).expect("boxes can be compressed");
-        let [before, after] = [0, 1].map(|i| baked.report.losses[i].mean_square);
+        let options = BakeOptions { texture_size: 128, uv_steps: Some(2), ..BakeOptions::default() };
+        let uvs = mesh.uvs.clone();
+        let shared = compress(&noisy(mesh.clone()), &options, &()).expect("boxes can be compressed");
+        assert_eq!(shared.model.mesh.uvs, uvs);
+        let told = shared.report.warnings.join(" ");
+        assert!(told.contains("kept as they are") && told.contains("lie on copies"), "{told}");
+        let options = BakeOptions { gutter: Some(1.0), ..options };
+        let own = compress(&noisy(mesh), &options, &()).expect("boxes can be compressed");
+        let [before, after] = [0, 1].map(|i| own.report.losses[i].mean_square);
         assert!(after > before, "{after} of {before}");
-        assert!(baked.report.uv.is_bijective());
+        assert!(own.report.uv.is_bijective());
+    }
+
+    /// Protects textures that repeat: a chart longer than the texture is kept where cutting it up shows less.
+    #[test]
+    fn what_repeats_is_kept_where_it_shows_more() {
+        let mut mesh = Mesh::default();
+        add_box(&mut mesh, 1.0, 0.1);
+        mesh.uvs
+            .iter_mut()
+            .enumerate()
+            .for_each(|(i, uv)| *uv = vec2(f32::from(u8::from(i % 4 % 3 != 0)), (i % 4 / 2) as f32) * 4.0);
+        let mut model = noisy(mesh.clone());
+        model.materials[0].base_color_texture.iter_mut().for_each(|slot| slot.wrap = [Wrap::Repeat; 2]);
+        let preset = crate::options::Preset::Fast;
+        let options = BakeOptions { texture_size: 64, uv_steps: Some(2), preset, ..BakeOptions::default() };
+        let baked = compress(&model, &options, &()).expect("a box can be compressed");
+        assert_eq!(baked.model.mesh.uvs, mesh.uvs);
+        assert!(
+            baked.report.warnings.iter().any(|w| w.contains("repeat the texture")),
+            "{:?}",
+            baked.report.warnings
+        );
     }
 }

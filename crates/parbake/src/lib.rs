@@ -37,6 +37,7 @@ pub mod evaluate;
 mod geometry;
 mod image;
 mod image_options;
+mod kept;
 mod look;
 mod lost;
 mod memory;

@@ -12,9 +12,8 @@
 //! triangle's samples to light. `slopes.rs` and `scatter.rs` are the two halves of the
 //! texture's adjoint: towards the coordinates and towards the texels. `surface.rs` is
 //! what goes in. `shade.rs` is what a BRDF is, and Lambert's; `metallic_roughness.rs` is glTF's, under the
-//! light of `lighting.rs`, with the table of `split_sum.rs` and the derivatives of `real.rs`. `scene.rs` renders whole models, forward only (`scene_material.rs` with all of their materials), with the textures of
-//! `scene_textures.rs`, read as `interpretation.rs` says. `cutout.rs` is where a surface is not there, seen from the wrong side.
-//! what goes in. `scene.rs` renders whole models, forward only, with the textures of
+//! light of `lighting.rs`, with the table of `split_sum.rs` and the derivatives of `real.rs`. `scene.rs`
+//! renders whole models, forward only (`scene_material.rs` with all of their materials), with the textures of
 //! `scene_textures.rs`, read as `interpretation.rs` says; meshes of many small triangles by
 //! `raster_clusters.rs`. `cutout.rs` is where a surface is not there, seen from the wrong side.
 //! `parallax_variants` puts other ways to shift coordinates behind one interface.
@@ -44,8 +43,8 @@ pub mod parallax_variants;
 pub mod patch;
 pub mod pipeline;
 pub mod raster;
-mod real;
 pub mod raster_clusters;
+mod real;
 pub mod scatter;
 pub mod scene;
 pub mod scene_material;

@@ -25,6 +25,7 @@ pub mod pool;
 pub mod projection;
 pub mod reference;
 pub mod samples;
+pub mod sides;
 pub mod view_sample;
 pub mod view_sampler;
 

@@ -6,12 +6,15 @@
 //! the low-poly's tangent frame, `m = F⁻¹ N` with F as in `parbake_render::frame`. Nothing is shaded, so
 //! what is fitted to these samples is right under any light.
 //!
+//! A pixel whose low-poly is one side of a thin wall and whose high-poly is the other one is left out.
+//!
 //! Contract: samples are sorted as in `samples.rs`; nothing depends on the number of threads.
 
 use crate::alpha_layers::AlphaLayer;
 use crate::high_poly::{HighPoly, ViewSet};
 use crate::pool::View;
 use crate::samples::{Fetched, SampleSet, collect, place};
+use crate::sides::is_of_another_side;
 use parbake_image::display::encode_srgb;
 use parbake_image::{MapKind, MapValues};
 use parbake_model::AlphaMode;
@@ -220,6 +223,12 @@ impl MaterialSampler<'_> {
             if has_gaps && theirs < own - BEHIND {
                 continue;
             }
+            // A parallax map fetches what lies behind.
+            let behind = self.shift.is_none().then_some((theirs - own) as f32);
+            let (seen, place) = (high.triangle(over as usize), [point.position, point.face_normal]);
+            if !has_gaps && is_of_another_side(self.high, place, seen, behind) {
+                continue;
+            }
             let on_screen = &high.screen.triangle(over as usize);
             let mut values = scene.material(camera, on_screen, high.triangle(over as usize), at, footprint);
             if layer.mode == AlphaMode::Mask {
@@ -295,7 +304,7 @@ impl Point {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::alpha_layers::{alpha_layers, layer_kinds};
     use crate::high_poly::Conventions;
@@ -329,15 +338,18 @@ mod tests {
         Model { name: "squares".into(), mesh, materials, images: Vec::new() }
     }
 
-    fn sampled(high: &Model, low: &Model) -> Vec<MaterialSample> {
-        let conventions = Conventions {
+    pub(crate) fn conventions() -> Conventions {
+        Conventions {
             interpretation: Interpretation::default(),
             display: Display { gain: 1.0, curve: Curve::Srgb },
             whole_material: Some(true),
             rig: Rig { radius: 3.5, projection: Projection::Perspective(0.4) },
             max_distance: 0.1,
-        };
-        let high = HighPoly::new(high, conventions).expect("it has an extent");
+        }
+    }
+
+    fn sampled(high: &Model, low: &Model) -> Vec<MaterialSample> {
+        let high = HighPoly::new(high, conventions()).expect("it has an extent");
         let prepared = LowPoly::new(low, &high.frame, 32).expect("it has coordinates");
         let layers = alpha_layers(&layer_kinds(&prepared.placed, low, &high), &high);
         let set = ViewSet {
@@ -414,6 +426,64 @@ mod tests {
             let color = wall.target(MapKind::BaseColor);
             assert!((color - Vec4::new(1.0, 0.0, 0.0, 1.0)).length() < 1e-3, "{color}");
             assert_eq!(wall.opacity_weight(), 0.0);
+        }
+    }
+
+    /// An open tube around the y axis, of two shells of one segment in height: white outside, black inside,
+    /// each with a half of the texture. Normals at the rims look along the wall, as smooth ones do.
+    pub(crate) fn tube(segments: u32) -> Model {
+        let mut mesh = Mesh::default();
+        for (shell, radius) in [0.6f32, 0.59].into_iter().enumerate() {
+            let first = mesh.positions.len() as u32;
+            let outwards = if shell == 0 { 1.0 } else { -1.0 };
+            for i in 0..=segments {
+                let along = i as f32 / segments as f32;
+                let (sin, cos) = (std::f32::consts::TAU * along).sin_cos();
+                for y in [-1.0f32, 1.0] {
+                    mesh.positions.push(Vec3::new(radius * cos, y, radius * sin));
+                    mesh.normals.push((Vec3::new(cos, 0.0, sin) * outwards * 0.3 + Vec3::Y * y).normalize());
+                    mesh.uvs.push(vec2(0.03 + 0.44 * along + 0.5 * shell as f32, 0.5 - 0.45 * y));
+                }
+            }
+            for i in 0..segments {
+                let v = first + 2 * i;
+                let quad = [[v, v + 1, v + 2], [v + 2, v + 1, v + 3]];
+                mesh.triangles.extend(if shell == 0 { quad } else { quad.map(|[a, b, c]| [a, c, b]) });
+            }
+        }
+        let count = mesh.triangles.len() as u32;
+        mesh.triangle_materials = (0..count).map(|t| u32::from(t >= count / 2)).collect();
+        let plain = |value: f32| Material {
+            base_color: [value, value, value, 1.0],
+            double_sided: true,
+            ..Material::default()
+        };
+        Model { name: "tube".into(), mesh, materials: vec![plain(1.0), plain(0.0)], images: Vec::new() }
+    }
+
+    /// Protects thin walls: where a coarse wall is far thicker in its sag than the fine one is, no pixel asks
+    /// one side for the other's colour, from any side, nor does the projection find it.
+    #[test]
+    fn no_side_of_a_thin_wall_takes_the_other_s_colour() {
+        let (high, low) = (tube(96), tube(12));
+        let samples = sampled(&high, &low);
+        let is_outside = |texel: usize| texel % 32 < 16;
+        for outside in [true, false] {
+            let own: Vec<f32> = samples
+                .iter()
+                .filter(|s| is_outside(s.texel()) == outside)
+                .map(|s| s.target(MapKind::BaseColor).x)
+                .collect();
+            let wrong = own.iter().filter(|x| (**x > 0.5) != outside).count();
+            assert!(own.len() > 300 && wrong == 0, "{wrong} of {} with outside = {outside}", own.len());
+        }
+        let conventions = conventions();
+        let high = HighPoly::new(&high, conventions).expect("it has an extent");
+        let prepared = LowPoly::new(&low, &high.frame, 32).expect("it has coordinates");
+        let projected = crate::projection::project(&prepared, &high);
+        let base = projected.maps.get(MapKind::BaseColor).expect("a bake has one");
+        for (texel, value) in base.texels.iter().enumerate().filter(|(i, _)| prepared.atlas.covered[*i]) {
+            assert_eq!(value.x > 0.5, is_outside(texel), "texel {texel}: {value}");
         }
     }
 }

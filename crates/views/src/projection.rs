@@ -1,7 +1,8 @@
 //! The start: the high-poly's colour and normal, projected onto the texture.
 //!
-//! Each texel on the surface asks the high-poly along its normal, to either side, and
-//! where that finds nothing, for its closest point (`parbake_mesh::projection`); normals go into the texel's tangent frame,
+//! Each texel on the surface asks the high-poly along its normal, to either side, for what faces as its
+//! triangle does, and where that finds nothing, for the closest such point (`parbake_mesh::projection`):
+//! a thin wall's other side is nearer at a rim, and is not what this side shows. Normals go into the texel's tangent frame,
 //! `m = F⁻¹ N` with F as in `frame.rs`, so that an evaluation there finds N again.
 //! Texels off the surface take the value of the nearest chart.
 //!
@@ -48,7 +49,8 @@ pub fn project(low: &LowPoly, high: &HighPoly) -> ProjectedMaps {
             let weights = [1.0 - second - third, second, third];
             let point = interpolate(corners.map(|i| low.positions[i]), weights);
             let normal = interpolate(corners.map(|i| low.normals[i]), weights);
-            let hit = surface.project(point, normal.normalize_or_zero(), reach)?;
+            let side = low.area_normal(triangle);
+            let hit = surface.project_facing(point, normal.normalize_or_zero(), side, reach)?;
             let [b1, b2] = hit.barycentric;
             let mut values =
                 scene.look(hit.triangle as usize, [1.0 - b1 - b2, b1, b2], texel_width[triangle]);

@@ -31,6 +31,11 @@ impl Bounds {
         points.iter().fold(none, |b, &p| Self { low: b.low.min(p), high: b.high.max(p) })
     }
 
+    /// The same with so much more on each side.
+    pub fn grown(self, by: f64) -> Self {
+        Self { low: self.low - by, high: self.high + by }
+    }
+
     fn with(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }

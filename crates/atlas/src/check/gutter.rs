@@ -17,7 +17,7 @@ use rayon::prelude::*;
 const MAX_LOOKS: usize = 200_000_000;
 const LOOKS_OF_ONE: std::ops::RangeInclusive<usize> = 256..=8_192;
 
-type Segment = [DVec2; 2];
+pub(crate) type Segment = [DVec2; 2];
 
 /// The distances between charts; `None` where there is but one chart or none.
 pub(super) fn gutter(layout: &Layout, texture_size: usize) -> Option<Gutter> {
@@ -82,7 +82,7 @@ pub(super) fn border(layout: &Layout, texture_size: usize) -> Option<f64> {
 }
 
 /// Squared distance of two closed segments, 0 exactly where they meet.
-fn squared_distance(a: Segment, b: Segment) -> f64 {
+pub(crate) fn squared_distance(a: Segment, b: Segment) -> f64 {
     if predicates::segments_meet(a, b) {
         return 0.0;
     }

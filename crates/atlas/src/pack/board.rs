@@ -68,6 +68,21 @@ impl Board {
         best
     }
 
+    /// Whether a mask fits with its column 0 of row 0 at `x` and `y`, all of it on the board.
+    pub fn is_free(&self, mask: &Mask, x: i32, y: i32) -> bool {
+        let fits = |at: i32, length: usize| at >= 0 && at as usize + length <= self.size;
+        fits(x, mask.width)
+            && fits(y, mask.height)
+            && mask.runs.iter().all(|run| {
+                let level = run.length.ilog2() as usize;
+                let row = (y as usize + run.row) * self.words;
+                let words = &self.levels[level][row..row + self.words];
+                let is_taken = |at: usize| words[at / 64] >> (at % 64) & 1 == 1;
+                let start = x as usize + run.start;
+                !is_taken(start) && !is_taken(start + run.length - (1 << level))
+            })
+    }
+
     /// The leftmost column at which the mask fits in row `y`.
     fn first_free(&self, mask: &Mask, y: usize, free: &mut [u64]) -> Option<usize> {
         // Most rows are ruled out by the longest runs alone.

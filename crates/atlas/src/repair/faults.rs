@@ -8,10 +8,10 @@ use crate::unwrap::sound::by_chart;
 
 /// A chart that falls into more pieces than this when cut along its folds is noise
 /// rather than folded.
-const MOST_PIECES: usize = 4;
+pub(crate) const MOST_PIECES: usize = 4;
 
 /// A chart of which more than this share is at fault is laid out afresh as a whole.
-const MOST_FAULTS: f64 = 0.05;
+pub(crate) const MOST_FAULTS: f64 = 0.05;
 
 /// What was found.
 #[derive(Default)]

@@ -10,7 +10,7 @@ use parbake_image::{FloatImage, MapKind, MapSet};
 use parbake_model::glam::Vec4;
 use parbake_render::camera::Projection;
 use parbake_render::interpretation::Interpretation;
-use parbake_views::alpha_layers::{alpha_layers, alpha_modes};
+use parbake_views::alpha_layers::{alpha_layers, layer_kinds};
 use parbake_views::high_poly::{Conventions, HighPoly, ViewSet};
 use parbake_views::low_poly::LowPoly;
 use parbake_views::material_samples::MaterialSampler;
@@ -62,7 +62,7 @@ fn error_of_normals(high: &Model, baked: &Model) -> f64 {
     let slot = baked.materials[0].normal_texture.unwrap();
     let image = &baked.images[slot.image];
     let low = LowPoly::new(baked, &high.frame, image.width).unwrap();
-    let layers = alpha_layers(&alpha_modes(&low.placed, baked, &high), &high);
+    let layers = alpha_layers(&layer_kinds(&low.placed, baked, &high), &high);
     let sampling = Sampling { size: 64, filter: 0.5, samples: 1 };
     let set = ViewSet { count: 24, seed: 7, jitter: true, sampling };
     let sampler = MaterialSampler { high: &high, low: &low.placed, layers: &layers, shift: None };

@@ -184,7 +184,10 @@ pub fn repair_uvs(low: &Model, options: &UvStageOptions) -> Result<RepairedLowPo
             tutte(&mesh, &TutteOptions { in_the_middle: true, pack, ..Default::default() })?.mesh,
             Vec::new(),
         ),
-        UvMode::Repair | UvMode::Optimize => repair(&mesh, &RepairOptions { pack, ..Default::default() })?,
+        UvMode::Repair | UvMode::Optimize => {
+            let gutter_required = options.gutter_required;
+            repair(&mesh, &RepairOptions { pack, gutter_required, ..Default::default() })?
+        }
     };
     if normals_replaced > 0 && !low.mesh.normals.is_empty() {
         repaired.push(format!("{normals_replaced} unusable normals were replaced."));

@@ -1,0 +1,119 @@
+//! Whether a model that is baked onto itself had better keep its coordinates.
+//!
+//! Parts of a model may share texels on purpose: mirrored halves, stacked copies, textures that repeat. A
+//! layout in which each part has texels of its own then shows less with as many texels. So both models are
+//! finished, photographed as `eval` does, and the one that was found has to keep up.
+
+use crate::bake::Baked;
+use crate::error::BakeError;
+use crate::evaluate::evaluate_each;
+use crate::evaluate::options::EvaluateOptions;
+use crate::options::{BakeOptions, Convention, UvMode};
+use parbake_atlas::sharing;
+use parbake_model::Model;
+use parbake_progress::{Message, Watcher};
+
+/// Decibels that coordinates which are sound may cost.
+const MOST_LOST: f64 = 0.05;
+/// Beyond this views are equal.
+const MOST_DECIBELS: f64 = 120.0;
+/// Views that are compared.
+const VIEWS: usize = 12;
+
+/// Whether coordinates as they were delivered may be written: a layout that the user asked for in so many
+/// words, or a gutter, is not weighed against them.
+pub(crate) fn may_be_kept(options: &BakeOptions) -> bool {
+    options.uv == UvMode::Optimize && options.gutter.is_none()
+}
+
+/// Decibels that `found` shows less of a model than `kept` does, where that is more than it may.
+///
+/// # Errors
+/// A model without extent.
+pub(crate) fn lost(
+    model: &Model,
+    kept: &Model,
+    found: &Model,
+    convention: Convention,
+) -> Result<Option<f64>, BakeError> {
+    let options = EvaluateOptions { views: VIEWS, no_flip: true, convention, ..EvaluateOptions::default() };
+    let views = evaluate_each(model, &[kept, found], &options, &[&options.background], &())?;
+    // Views that are equal in every pixel have no finite figure.
+    let mean = |which: usize| {
+        views.iter().map(|view| view[which][0].psnr.min(MOST_DECIBELS)).sum::<f64>() / VIEWS as f64
+    };
+    let lost = mean(0) - mean(1);
+    Ok((lost > MOST_LOST).then_some(lost))
+}
+
+/// What the user is told of it.
+pub(crate) fn sentences(model: &Model, lost: f64) -> Vec<String> {
+    let mut sentences = vec![format!(
+        "Coordinates were kept as they are, for the best ones with which no texel is shared show {lost:.1} dB less \
+         (--uv repair, or a --gutter, forces such)."
+    )];
+    sentences.extend(sharing(&model.mesh).sentence());
+    sentences
+}
+
+/// Runs the bake with its own coordinates after the one that is `found`, if that changed them, and returns
+/// the one that shows more. `bake` runs with other options.
+///
+/// # Errors
+/// As of `bake`.
+pub(crate) fn weighed(
+    model: &Model,
+    options: &BakeOptions,
+    watcher: &dyn Watcher,
+    bake: impl Fn(&BakeOptions, &dyn Watcher) -> Result<Baked, BakeError>,
+) -> Result<Baked, BakeError> {
+    if !may_be_kept(options) || model.mesh.uvs.is_empty() {
+        return bake(options, watcher);
+    }
+    let begin = std::time::Instant::now();
+    let quiet = Quiet(watcher);
+    // Of a budget the bake with the coordinates as they are needs the smaller part.
+    let first = BakeOptions { time_budget: options.time_budget.map(|s| FIRST_SHARE * s), ..options.clone() };
+    let mut found = bake(&first, &quiet)?;
+    found.report.options = options.clone();
+    let has_new = |baked: &Baked| {
+        let (before, after) = (&model.mesh, &baked.model.mesh);
+        before.uvs != after.uvs || before.triangles != after.triangles
+    };
+    if has_new(&found) && !watcher.stopped() {
+        let time_budget = options.time_budget.map(|s| (s - begin.elapsed().as_secs_f64()).max(0.0));
+        let own = BakeOptions { uv: UvMode::Keep, time_budget, ..options.clone() };
+        let mut kept = bake(&own, &quiet)?;
+        if let Some(lost) = lost(model, &kept.model, &found.model, options.convention)? {
+            kept.report.options = options.clone();
+            let told = sentences(model, lost).into_iter().map(|text| format!("{}: {text}", model.name));
+            kept.report.warnings.splice(0..0, told);
+            found = kept;
+        }
+    }
+    let warnings = found.report.warnings.iter().cloned();
+    warnings.for_each(|warning| watcher.message(Message::Warning(warning)));
+    Ok(found)
+}
+
+/// Share of a time budget that the first of two bakes has.
+const FIRST_SHARE: f64 = 0.6;
+
+/// A watcher that is told no warnings: those of the bake that is written follow.
+struct Quiet<'a>(&'a dyn Watcher);
+
+impl Watcher for Quiet<'_> {
+    fn message(&self, message: Message) {
+        if !matches!(message, Message::Warning(_)) {
+            self.0.message(message);
+        }
+    }
+
+    fn stopped(&self) -> bool {
+        self.0.stopped()
+    }
+
+    fn seconds_left(&self) -> Option<f64> {
+        self.0.seconds_left()
+    }
+}
