@@ -37,10 +37,11 @@ pub(crate) fn lost(
     convention: Convention,
 ) -> Result<Option<f64>, BakeError> {
     let options = EvaluateOptions { views: VIEWS, no_flip: true, convention, ..EvaluateOptions::default() };
-    let views = evaluate_each(model, &[kept, found], &options, &[&options.background], &())?;
+    let compared = evaluate_each(model, &[kept, found], &options, &[&options.background], false, &())?;
     // Views that are equal in every pixel have no finite figure.
     let mean = |which: usize| {
-        views.iter().map(|view| view[which][0].psnr.min(MOST_DECIBELS)).sum::<f64>() / VIEWS as f64
+        let psnr = compared.views.iter().map(|view| view.seen[which][0].psnr.min(MOST_DECIBELS));
+        psnr.sum::<f64>() / VIEWS as f64
     };
     let lost = mean(0) - mean(1);
     Ok((lost > MOST_LOST).then_some(lost))

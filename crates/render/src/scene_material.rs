@@ -88,7 +88,7 @@ impl Scene {
         with_values: bool,
     ) -> MaterialPicture {
         let fine = size * supersample;
-        let mut screen = self.on_screen(camera, fine);
+        let mut screen = ScreenTriangles::new(&self.mesh.positions, &self.mesh.triangles, camera, fine);
         let special = self.take_special(camera, &mut screen);
         let mut opaque = Visibility::default();
         rasterise(&screen, fine, (0.0, 0.0), &mut opaque);
