@@ -47,7 +47,7 @@ impl Bounds {
     }
 }
 
-/// Some triangles of a mesh, in a tree of boxes: about 50 bytes a triangle.
+/// Some triangles of a mesh, in a tree of boxes: 48 bytes a triangle.
 #[derive(Clone, Debug)]
 pub struct Clusters {
     /// The triangles' indices in the mesh, along the curve.
