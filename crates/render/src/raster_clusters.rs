@@ -341,7 +341,7 @@ mod tests {
             let clusters = Clusters::new(&positions, &[[0, 1, 2]], &[0][..count]);
             let mut seen = Visibility::empty(16);
             clusters.rasterise(&camera, 16, (0.0, 0.0), None, &mut seen);
-            assert_eq!(seen.triangle.iter().any(|&t| t == 0), count == 1);
+            assert_eq!(seen.triangle.contains(&0), count == 1);
         }
     }
 
