@@ -87,6 +87,10 @@ impl Problem for MaterialProblem<'_> {
         self.kinds.contains(&kind)
     }
 
+    fn is_coupled(&self, _kind: MapKind) -> bool {
+        false
+    }
+
     #[inline]
     fn linearise(
         &self,

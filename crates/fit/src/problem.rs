@@ -32,6 +32,12 @@ pub trait Problem: Sync {
     /// Whether a kind of map has a say.
     fn reads(&self, kind: MapKind) -> bool;
 
+    /// Whether the channels of this map depend on each other, as a normal's do in the light they make.
+    /// Where they do not, a step's matrix is a third smaller.
+    fn is_coupled(&self, _kind: MapKind) -> bool {
+        true
+    }
+
     /// Half of a step's linear model: how what is compared changes with one map, what it is and what
     /// was wanted, how much each channel counts, and the sample's part of the loss.
     fn linearise(

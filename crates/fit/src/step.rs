@@ -9,6 +9,7 @@
 //! (`parbake_solve::boxed`); unit normals take a damped step (Levenberg–Marquardt) of limited length
 //! and are put back onto their hemisphere.
 
+use crate::assemble::SampleBlock;
 use crate::backend::Backend;
 use crate::membrane::{Membrane, add_membrane, mean_pull};
 use crate::outliers::Loss;
@@ -17,7 +18,7 @@ use parbake_image::{Domain, FloatImage, MapKind, MapSet};
 use parbake_model::glam::Vec4;
 use parbake_solve::boxed::solve_in_box;
 use parbake_solve::conjugate_gradient::{Effort, Outcome};
-use parbake_solve::stencil::{Block, Diagonal, Row, Stencil, Symmetric};
+use parbake_solve::stencil::{Diagonal, Row, Stencil, Symmetric};
 use rayon::prelude::*;
 
 /// The longest change of a normal in one step: beyond it the linear model of the
@@ -75,28 +76,39 @@ pub fn fit_step<P: Problem>(
             *rows = matrix.rows;
             (loss, outcome)
         }
-        Domain::Hemisphere => {
+        Domain::Hemisphere if problem.is_coupled(kind) => {
             if is_large {
                 workspace.diagonal = Vec::new();
             }
-            let rows = &mut workspace.symmetric;
-            let loss = backend.assemble(kind, problem, maps, rows);
-            let Some(map) = maps.get_mut(kind) else { return (loss, Outcome::default()) };
-            let extra = options.damping * mean_pull(rows);
-            add_membrane(rows, problem.atlas(), map, start, &options.membrane);
-            rows.par_iter_mut()
-                .filter(|r| r.centre.trace() > 0.0)
-                .for_each(|r| r.centre.add(&Symmetric::identity(extra)));
-            let matrix = Stencil { size, rows: std::mem::take(rows) };
-            let (step, outcome) = backend.solve(&matrix, &matrix.right(), None, &options.effort);
-            map.texels.par_iter_mut().zip(&step).for_each(|(m, step)| {
-                let limit = (LONGEST / step.length().max(1e-9)).min(1.0);
-                *m = Domain::Hemisphere.clamp(*m + *step * limit);
-            });
-            *rows = matrix.rows;
-            (loss, outcome)
+            turn(backend, kind, problem, options, maps, start, &mut workspace.symmetric)
         }
+        Domain::Hemisphere => turn(backend, kind, problem, options, maps, start, &mut workspace.diagonal),
     }
+}
+
+/// A step of unit normals.
+fn turn<P: Problem, B: SampleBlock>(
+    backend: &impl Backend,
+    kind: MapKind,
+    problem: &P,
+    options: &StepOptions,
+    maps: &mut MapSet,
+    start: &FloatImage<Vec4>,
+    rows: &mut Vec<Row<B>>,
+) -> (Loss, Outcome) {
+    let loss = backend.assemble(kind, problem, maps, rows);
+    let Some(map) = maps.get_mut(kind) else { return (loss, Outcome::default()) };
+    let extra = options.damping * mean_pull(rows);
+    add_membrane(rows, problem.atlas(), map, start, &options.membrane);
+    rows.par_iter_mut().filter(|r| r.centre.trace() > 0.0).for_each(|r| r.centre.add(&B::identity(extra)));
+    let matrix = Stencil { size: problem.samples().size, rows: std::mem::take(rows) };
+    let (step, outcome) = backend.solve(&matrix, &matrix.right(), None, &options.effort);
+    map.texels.par_iter_mut().zip(&step).for_each(|(m, step)| {
+        let limit = (LONGEST / step.length().max(1e-9)).min(1.0);
+        *m = Domain::Hemisphere.clamp(*m + *step * limit);
+    });
+    *rows = matrix.rows;
+    (loss, outcome)
 }
 
 #[cfg(test)]

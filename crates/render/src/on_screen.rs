@@ -8,7 +8,7 @@ use crate::raster::{
     ScreenTriangle, ScreenTriangles, Visibility, rasterise, rasterise_behind, triangle_on_screen,
 };
 use crate::raster_clusters::Clusters;
-use parbake_model::Mesh;
+use parbake_model::{AlphaMode, Mesh};
 
 /// What can be rasterised.
 pub trait Raster {
@@ -36,10 +36,48 @@ pub enum OnScreen<'a> {
 
 /// Trees of a mesh's triangles on the screen of one camera.
 pub struct ClustersOnScreen<'a> {
-    pub(crate) clusters: Vec<&'a Clusters>,
-    pub(crate) mesh: &'a Mesh,
-    pub(crate) camera: Camera,
-    pub(crate) size: usize,
+    clusters: Vec<&'a Clusters>,
+    mesh: &'a Mesh,
+    camera: Camera,
+    size: usize,
+}
+
+/// Meshes of at least as many triangles are rasterised by clusters.
+pub(crate) const MANY_TRIANGLES: usize = 100_000;
+
+/// Sides of pictures that clusters can number the samples of.
+const MOST_CLUSTERED: usize = u16::MAX as usize;
+
+/// The triangles of each alpha mode that a mesh uses.
+pub(crate) struct AlphaClusters(Vec<(AlphaMode, Clusters)>);
+
+impl AlphaClusters {
+    /// Where a mesh has many triangles; `mode` is that of a triangle.
+    pub fn of_many(mesh: &Mesh, mode: impl Fn(usize) -> AlphaMode) -> Option<Self> {
+        let count = mesh.triangles.len();
+        let of = |wanted: AlphaMode| {
+            let own: Vec<u32> = (0..count as u32).filter(|&t| mode(t as usize) == wanted).collect();
+            let clusters = || Clusters::new(&mesh.positions, &mesh.triangles, &own);
+            (!own.is_empty()).then(|| (wanted, clusters()))
+        };
+        let modes = [AlphaMode::Opaque, AlphaMode::Mask, AlphaMode::Blend];
+        (count >= MANY_TRIANGLES).then(|| Self(modes.into_iter().filter_map(of).collect()))
+    }
+
+    /// The triangles of some modes; none where the picture is too large for clusters. `mesh` is that
+    /// which they are of.
+    pub fn on_screen<'a>(
+        &'a self,
+        mesh: &'a Mesh,
+        camera: &Camera,
+        size: usize,
+        is_meant: impl Fn(AlphaMode) -> bool,
+    ) -> Option<OnScreen<'a>> {
+        let meant = self.0.iter().filter(|(mode, _)| is_meant(*mode));
+        let clusters = meant.map(|(_, clusters)| clusters).collect();
+        let own = ClustersOnScreen { clusters, mesh, camera: *camera, size };
+        (size <= MOST_CLUSTERED).then_some(OnScreen::Clustered(own))
+    }
 }
 
 impl OnScreen<'_> {

@@ -15,10 +15,9 @@ use crate::cutout::rasterise_cut;
 use crate::frame::{Orientation, orientation, tangent_light};
 use crate::interpolate::{barycentrics, interpolate};
 use crate::interpretation::Interpretation;
-use crate::on_screen::{ClustersOnScreen, OnScreen, Raster};
+use crate::on_screen::{AlphaClusters, OnScreen, Raster};
 use crate::parallax::ViewDirection;
 use crate::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility};
-use crate::raster_clusters::Clusters;
 pub use crate::scene_textures::unpack;
 use crate::scene_textures::{Builder, Map, Surface, Textures};
 use crate::shade::Brdf;
@@ -77,15 +76,9 @@ pub struct Scene {
     pub(crate) face_normals: Vec<Vec3>,
     /// Whether textures are read as they are stored; vertex colours, which are linear, are encoded then.
     as_stored: bool,
-    /// The triangles of each alpha mode in use, where there are many; else none.
-    clusters: Vec<(AlphaMode, Clusters)>,
+    /// Where there are many triangles.
+    clusters: Option<AlphaClusters>,
 }
-
-/// Meshes of at least as many triangles are rasterised by clusters.
-const MANY_TRIANGLES: usize = 100_000;
-
-/// Sides of pictures that clusters can number the samples of.
-const MOST_CLUSTERED: usize = u16::MAX as usize;
 
 impl Scene {
     /// Multiplies all emission, so that it fits into what maps can hold.
@@ -107,26 +100,10 @@ impl Scene {
         let surfaces = materials.iter().map(|m| builder.surface(m)).collect();
         let pyramids = builder.pyramids;
         let as_stored = !interpretation.decode_srgb;
-        let mut scene =
-            Self { mesh, surfaces, pyramids, face_normals: Vec::new(), as_stored, clusters: Vec::new() };
-        let mesh = &scene.mesh;
-        let count = mesh.triangles.len();
-        let face_normals = (0..count).into_par_iter().map(|t| mesh.area_normal(t)).collect();
-        if count >= MANY_TRIANGLES {
-            scene.clusters = scene.clustered();
-        }
-        scene.face_normals = face_normals;
+        let face_normals = (0..mesh.triangles.len()).into_par_iter().map(|t| mesh.area_normal(t)).collect();
+        let mut scene = Self { mesh, surfaces, pyramids, face_normals, as_stored, clusters: None };
+        scene.clusters = AlphaClusters::of_many(&scene.mesh, |t| scene.alpha(t).0);
         scene
-    }
-
-    fn clustered(&self) -> Vec<(AlphaMode, Clusters)> {
-        let of = |mode: AlphaMode| {
-            let all = 0..self.mesh.triangles.len() as u32;
-            let own: Vec<u32> = all.filter(|&t| self.alpha(t as usize).0 == mode).collect();
-            let clusters = || Clusters::new(&self.mesh.positions, &self.mesh.triangles, &own);
-            (!own.is_empty()).then(|| (mode, clusters()))
-        };
-        [AlphaMode::Opaque, AlphaMode::Mask, AlphaMode::Blend].into_iter().filter_map(of).collect()
     }
 
     /// The mesh being rendered.
@@ -144,7 +121,8 @@ impl Scene {
 
     /// All triangles on the screen of one camera.
     pub fn on_screen(&self, camera: &Camera, size: usize) -> OnScreen<'_> {
-        self.clusters_on_screen(camera, size, |_| true).unwrap_or_else(|| {
+        let clusters = self.clusters.as_ref().and_then(|c| c.on_screen(&self.mesh, camera, size, |_| true));
+        clusters.unwrap_or_else(|| {
             OnScreen::All(ScreenTriangles::new(&self.mesh.positions, &self.mesh.triangles, camera, size))
         })
     }
@@ -152,21 +130,7 @@ impl Scene {
     /// The triangles of one alpha mode on the screen, by their indices in the mesh; none where they are
     /// not kept apart, since there are few.
     pub fn layer_on_screen(&self, mode: AlphaMode, camera: &Camera, size: usize) -> Option<OnScreen<'_>> {
-        self.clusters_on_screen(camera, size, |own| own == mode)
-    }
-
-    fn clusters_on_screen(
-        &self,
-        camera: &Camera,
-        size: usize,
-        is_meant: impl Fn(AlphaMode) -> bool,
-    ) -> Option<OnScreen<'_>> {
-        let is_known = !self.clusters.is_empty() && size <= MOST_CLUSTERED;
-        is_known.then(|| {
-            let meant = self.clusters.iter().filter(|(mode, _)| is_meant(*mode));
-            let clusters = meant.map(|(_, clusters)| clusters).collect();
-            OnScreen::Clustered(ClustersOnScreen { clusters, mesh: &self.mesh, camera: *camera, size })
-        })
+        self.clusters.as_ref()?.on_screen(&self.mesh, camera, size, |own| own == mode)
     }
 
     /// The maps' values at a point of the surface, textures included; the normal is a unit vector of
@@ -437,3 +401,7 @@ mod parallax_tests;
 #[cfg(test)]
 #[path = "scene_cutout_tests.rs"]
 mod cutout_tests;
+
+#[cfg(test)]
+#[path = "scene_clusters_tests.rs"]
+mod clusters_tests;

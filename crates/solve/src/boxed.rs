@@ -27,11 +27,10 @@ pub fn solve_in_box(
     values: &mut [Vec4],
     solve: impl Fn(&[Vec4], &[Vec4]) -> (Vec<Vec4>, Outcome),
 ) -> Outcome {
-    let right = matrix.right();
-    let mut free = free_lanes(values, &right);
+    let mut residual = matrix.right();
+    let mut free = free_lanes(values, &residual);
     let begin = values.to_vec();
     let mut total = Outcome { steps: 0, reduction: 1.0 };
-    let mut residual = right.clone();
     for round in 0..ROUNDS {
         let (step, outcome) = solve(&residual, &free);
         total.steps += outcome.steps;
@@ -56,9 +55,10 @@ pub fn solve_in_box(
         if hits == 0 || round + 1 == ROUNDS {
             break;
         }
+        drop(step);
         let change: Vec<Vec4> = values.par_iter().zip(&begin).map(|(x, b)| *x - *b).collect();
         matrix.product(&change, &mut residual);
-        residual.par_iter_mut().zip(&right).for_each(|(r, b)| *r = *b - *r);
+        residual.par_iter_mut().zip(&matrix.rows).for_each(|(r, row)| *r = row.right - *r);
     }
     total
 }
