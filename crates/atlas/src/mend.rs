@@ -221,9 +221,9 @@ impl Work {
             return Some(());
         }
         let (mut drawn, mut space, mut all) = (0.0, 0.0, 0.0);
-        for i in 0..live.len() {
+        for (i, is_fresh) in is_fresh.iter().enumerate() {
             all += layout.rest_area(i);
-            if !is_fresh[i] {
+            if !is_fresh {
                 drawn += 0.5 * layout.doubled_area(i);
                 space += layout.rest_area(i);
             }

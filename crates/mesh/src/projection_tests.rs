@@ -54,6 +54,25 @@ fn thin_walls_keep_their_sides() {
     assert_eq!(inner.triangle / 2, 1);
 }
 
+/// Protects rims, where an interpolated normal looks along the wall and over it: the closest point is on the
+/// side that the triangle faces, though the other one is nearer, unless that side is far away.
+#[test]
+fn rims_keep_their_sides() {
+    let mut m = Mesh::default();
+    add_square(&mut m, 0.01, true);
+    add_square(&mut m, -0.01, false);
+    let s = HighSurface::new(&m);
+    let along = Vec3::new(1.0, 0.0, 0.2);
+    let found =
+        |side: Vec3| s.project_facing(Vec3::new(0.999, 0.0, -0.03), along, side, 0.1).unwrap().triangle / 2;
+    assert_eq!([found(Vec3::Z), found(Vec3::NEG_Z)], [0, 1]);
+    let mut m = Mesh::default();
+    add_square(&mut m, -0.01, false);
+    add_square(&mut m, 0.5, true);
+    let far = HighSurface::new(&m).project_facing(Vec3::new(0.999, 0.0, -0.03), along, Vec3::Z, 0.1).unwrap();
+    assert_eq!(far.triangle / 2, 0);
+}
+
 /// Protects against other parts of the model that reach into the cage.
 #[test]
 fn what_is_near_wins_over_what_is_outside() {
@@ -203,13 +222,16 @@ proptest! {
     }
 
     /// Protects the projection rule: its answer is never farther than the reach
-    /// unless it is the closest point, and there always is one.
+    /// unless it is the closest point, or the closest that faces as asked and hardly
+    /// farther; and there always is one.
     #[test]
     fn project_always_answers(m in soup(), p in (-1.5f32..1.5, -1.5f32..1.5, -1.5f32..1.5)) {
         let surface = HighSurface::new(&m);
         let found = surface.project(Vec3::from(p), Vec3::new(0.6, 0.0, 0.8), 0.1).unwrap();
         let closest = surface.closest(Vec3::from(p), f32::INFINITY).unwrap();
-        prop_assert!(found.distance <= 0.1 || found == closest);
+        let near = found.distance <= closest.distance + 0.1 + 1e-5;
+        let faces = m.area_normal(found.triangle as usize).dot(Vec3::new(0.6, 0.0, 0.8)) > 0.0;
+        prop_assert!(found.distance <= 0.1 || found == closest || (near && faces));
         prop_assert!(found.distance >= closest.distance - 1e-5);
     }
 }

@@ -67,15 +67,16 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> 
     if keeps_tiles || !model.materials.iter().all(is_plain) {
         return whole(model, options, watcher);
     }
-    if kept::may_be_kept(options) && !is_in_the_square(&delivered.mesh, slack) {
-        // Where no chart is longer than a tile, coordinates can be read in the square.
-        if in_one_tile(&delivered.mesh, slack).is_none() && !delivered.mesh.uvs.is_empty() {
-            let plain = |options: &BakeOptions, watcher: &dyn Watcher| match options.uv {
-                UvMode::Keep => bake_onto_itself(model, options, watcher),
-                _ => plain(model, options, watcher),
-            };
-            return kept::weighed(model, options, watcher, plain);
-        }
+    // Where no chart is longer than a tile, coordinates can be read in the square.
+    let repeats = !is_in_the_square(&delivered.mesh, slack)
+        && !delivered.mesh.uvs.is_empty()
+        && in_one_tile(&delivered.mesh, slack).is_none();
+    if repeats && kept::may_be_kept(options) {
+        let plain = |options: &BakeOptions, watcher: &dyn Watcher| match options.uv {
+            UvMode::Keep => bake_onto_itself(model, options, watcher),
+            _ => plain(model, options, watcher),
+        };
+        return kept::weighed(model, options, watcher, plain);
     }
     plain(model, options, watcher)
 }

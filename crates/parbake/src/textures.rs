@@ -25,7 +25,6 @@ use parbake_views::high_poly::{Conventions, ViewSet};
 use parbake_views::low_poly::LowPoly;
 use parbake_views::material_samples::MaterialSampler;
 use parbake_views::projection::ProjectedMaps;
-use parbake_views::sides::Walls;
 use parbake_views::view_sample::sample_views;
 use parbake_views::view_sampler::ViewSampler;
 
@@ -108,9 +107,6 @@ pub(crate) fn fit_views<W: Watcher>(
     let views = references.len();
     let (samples, maps, parallax_report) = match parallax {
         None => {
-            // What is its own high-poly shows no other side anywhere.
-            let walls = (work != Work::Compress).then(|| Walls::new(high, placed)).flatten();
-            let sampler = sampler.with_walls(walls);
             let samples = Cpu.view_samples(&sampler, &references, size, scope);
             drop(references);
             (samples, None, None)

@@ -304,7 +304,7 @@ impl Point {
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
     use crate::alpha_layers::{alpha_layers, layer_kinds};
     use crate::high_poly::Conventions;
@@ -338,7 +338,7 @@ pub(crate) mod tests {
         Model { name: "squares".into(), mesh, materials, images: Vec::new() }
     }
 
-    pub(crate) fn conventions() -> Conventions {
+    fn conventions() -> Conventions {
         Conventions {
             interpretation: Interpretation::default(),
             display: Display { gain: 1.0, curve: Curve::Srgb },
@@ -431,7 +431,7 @@ pub(crate) mod tests {
 
     /// An open tube around the y axis, of two shells of one segment in height: white outside, black inside,
     /// each with a half of the texture. Normals at the rims look along the wall, as smooth ones do.
-    pub(crate) fn tube(segments: u32) -> Model {
+    fn tube(segments: u32) -> Model {
         let mut mesh = Mesh::default();
         for (shell, radius) in [0.6f32, 0.59].into_iter().enumerate() {
             let first = mesh.positions.len() as u32;

@@ -7,7 +7,6 @@
 //! Contract: the low-poly has normals, tangents and texture coordinates.
 
 use crate::reference::Reference;
-use crate::sides::Walls;
 use parbake_image::display::Display;
 use parbake_model::Mesh;
 use parbake_model::glam::{Vec2, Vec3};
@@ -41,7 +40,6 @@ pub struct ViewSampler<'a> {
     display: &'a Display,
     beyond: UncoveredPixels,
     cutout: Option<&'a ShCutout>,
-    walls: Option<Walls<'a>>,
 }
 
 /// One pixel that shows the low-poly.
@@ -63,17 +61,12 @@ impl<'a> ViewSampler<'a> {
     /// For views of `size`² pixels.
     pub fn new(low: &'a Mesh, size: usize, display: &'a Display, beyond: UncoveredPixels) -> Self {
         let face_normals = (0..low.triangles.len()).map(|t| low.area_normal(t)).collect();
-        Self { low, face_normals, size, display, beyond, cutout: None, walls: None }
+        Self { low, face_normals, size, display, beyond, cutout: None }
     }
 
     /// The same with what this leaves out.
     pub fn with_cutout(self, cutout: Option<&'a ShCutout>) -> Self {
         Self { cutout, ..self }
-    }
-
-    /// The same without pixels in which thin walls show another side than the low-poly does.
-    pub fn with_walls(self, walls: Option<Walls<'a>>) -> Self {
-        Self { walls, ..self }
     }
 
     fn screen(&self, reference: &Reference) -> ScreenTriangles {
@@ -136,11 +129,6 @@ impl<'a> ViewSampler<'a> {
             let normal: Vec3 = interpolate(corners.map(|i| low.normals[i]), b);
             let tangent = interpolate(corners.map(|i| low.tangents[i].truncate()), b);
             let direction = camera.view_direction(point);
-            let place = [point, self.face_normals[triangle as usize]];
-            let is_other = |walls: &Walls| walls.shows_another_side(triangle as usize, place, direction);
-            if self.walls.as_ref().is_some_and(is_other) {
-                continue;
-            }
             let facing = if direction.dot(self.face_normals[triangle as usize]) < 0.0 { -1.0 } else { 1.0 };
             each(Fragment {
                 uv: interpolate(corners.map(|i| low.uvs[i]), b),
