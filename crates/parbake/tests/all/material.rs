@@ -58,10 +58,10 @@ fn error_of_normals(high: &Model, baked: &Model) -> f64 {
         rig: Rig { radius: 3.5, projection: Projection::Perspective(0.4) },
         max_distance: 0.1,
     };
-    let high = HighPoly::new(high, conventions).unwrap();
-    let slot = baked.materials[0].normal_texture.unwrap();
+    let high = HighPoly::new(high, conventions).expect("it has an extent");
+    let slot = baked.materials[0].normal_texture.expect("it has normals");
     let image = &baked.images[slot.image];
-    let low = LowPoly::new(baked, &high.frame, image.width).unwrap();
+    let low = LowPoly::new(baked, &high.frame, image.width).expect("it has coordinates");
     let layers = alpha_layers(&layer_kinds(&low.placed, baked, &high), &high);
     let sampling = Sampling { size: 64, filter: 0.5, samples: 1 };
     let set = ViewSet { count: 24, seed: 7, jitter: true, sampling };
