@@ -48,32 +48,36 @@ pub(crate) const MANY_TRIANGLES: usize = 100_000;
 /// Sides of pictures that clusters can number the samples of.
 const MOST_CLUSTERED: usize = u16::MAX as usize;
 
-/// The triangles of each alpha mode that a mesh uses.
-pub(crate) struct AlphaClusters(Vec<(AlphaMode, Clusters)>);
+/// What a triangle is drawn with: its alpha mode, and whether light passes it.
+pub(crate) type Kind = (AlphaMode, bool);
+
+/// The triangles of each kind that a mesh uses.
+pub(crate) struct AlphaClusters(Vec<(Kind, Clusters)>);
 
 impl AlphaClusters {
-    /// Where a mesh has many triangles; `mode` is that of a triangle.
-    pub fn of_many(mesh: &Mesh, mode: impl Fn(usize) -> AlphaMode) -> Option<Self> {
+    /// Where a mesh has many triangles; `kind` is that of a triangle.
+    pub fn of_many(mesh: &Mesh, kind: impl Fn(usize) -> Kind) -> Option<Self> {
         let count = mesh.triangles.len();
-        let of = |wanted: AlphaMode| {
-            let own: Vec<u32> = (0..count as u32).filter(|&t| mode(t as usize) == wanted).collect();
+        let of = |wanted: Kind| {
+            let own: Vec<u32> = (0..count as u32).filter(|&t| kind(t as usize) == wanted).collect();
             let clusters = || Clusters::new(&mesh.positions, &mesh.triangles, &own);
             (!own.is_empty()).then(|| (wanted, clusters()))
         };
         let modes = [AlphaMode::Opaque, AlphaMode::Mask, AlphaMode::Blend];
-        (count >= MANY_TRIANGLES).then(|| Self(modes.into_iter().filter_map(of).collect()))
+        let kinds = modes.into_iter().flat_map(|mode| [(mode, false), (mode, true)]);
+        (count >= MANY_TRIANGLES).then(|| Self(kinds.filter_map(of).collect()))
     }
 
-    /// The triangles of some modes; none where the picture is too large for clusters. `mesh` is that
+    /// The triangles of some kinds; none where the picture is too large for clusters. `mesh` is that
     /// which they are of.
     pub fn on_screen<'a>(
         &'a self,
         mesh: &'a Mesh,
         camera: &Camera,
         size: usize,
-        is_meant: impl Fn(AlphaMode) -> bool,
+        is_meant: impl Fn(Kind) -> bool,
     ) -> Option<OnScreen<'a>> {
-        let meant = self.0.iter().filter(|(mode, _)| is_meant(*mode));
+        let meant = self.0.iter().filter(|(kind, _)| is_meant(*kind));
         let clusters = meant.map(|(_, clusters)| clusters).collect();
         let own = ClustersOnScreen { clusters, mesh, camera: *camera, size };
         (size <= MOST_CLUSTERED).then_some(OnScreen::Clustered(own))

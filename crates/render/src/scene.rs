@@ -28,6 +28,7 @@ use parbake_image::{MapKind, MapValues};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{AlphaMode, Image, Material, Mesh};
 use rayon::prelude::*;
+use std::sync::OnceLock;
 
 /// A square picture in linear light: premultiplied RGB and coverage.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -76,8 +77,8 @@ pub struct Scene {
     pub(crate) face_normals: Vec<Vec3>,
     /// Whether textures are read as they are stored; vertex colours, which are linear, are encoded then.
     as_stored: bool,
-    /// Where there are many triangles.
-    clusters: Option<AlphaClusters>,
+    /// Where there are many triangles; made when they are first looked at.
+    clusters: OnceLock<Option<AlphaClusters>>,
 }
 
 impl Scene {
@@ -101,9 +102,12 @@ impl Scene {
         let pyramids = builder.pyramids;
         let as_stored = !interpretation.decode_srgb;
         let face_normals = (0..mesh.triangles.len()).into_par_iter().map(|t| mesh.area_normal(t)).collect();
-        let mut scene = Self { mesh, surfaces, pyramids, face_normals, as_stored, clusters: None };
-        scene.clusters = AlphaClusters::of_many(&scene.mesh, |t| scene.alpha(t).0);
-        scene
+        Self { mesh, surfaces, pyramids, face_normals, as_stored, clusters: OnceLock::new() }
+    }
+
+    fn clusters(&self) -> Option<&AlphaClusters> {
+        let kind = |triangle| (self.alpha(triangle).0, self.transmits(triangle));
+        self.clusters.get_or_init(|| AlphaClusters::of_many(&self.mesh, kind)).as_ref()
     }
 
     /// The mesh being rendered.
@@ -121,16 +125,21 @@ impl Scene {
 
     /// All triangles on the screen of one camera.
     pub fn on_screen(&self, camera: &Camera, size: usize) -> OnScreen<'_> {
-        let clusters = self.clusters.as_ref().and_then(|c| c.on_screen(&self.mesh, camera, size, |_| true));
+        let clusters = self.clusters().and_then(|c| c.on_screen(&self.mesh, camera, size, |_| true));
         clusters.unwrap_or_else(|| {
             OnScreen::All(ScreenTriangles::new(&self.mesh.positions, &self.mesh.triangles, camera, size))
         })
     }
 
-    /// The triangles of one alpha mode on the screen, by their indices in the mesh; none where they are
-    /// not kept apart, since there are few.
-    pub fn layer_on_screen(&self, mode: AlphaMode, camera: &Camera, size: usize) -> Option<OnScreen<'_>> {
-        self.clusters.as_ref()?.on_screen(&self.mesh, camera, size, |own| own == mode)
+    /// The triangles on the screen whose alpha mode, and whether light passes them, are meant, by their
+    /// indices in the mesh; none where they are not kept apart, since there are few.
+    pub fn layer_on_screen(
+        &self,
+        is_meant: impl Fn(AlphaMode, bool) -> bool,
+        camera: &Camera,
+        size: usize,
+    ) -> Option<OnScreen<'_>> {
+        self.clusters()?.on_screen(&self.mesh, camera, size, |(mode, transmits)| is_meant(mode, transmits))
     }
 
     /// The maps' values at a point of the surface, textures included; the normal is a unit vector of
@@ -238,6 +247,8 @@ impl Scene {
 
     /// From now on nothing stands in for the gloss of cloth and for light that passes a surface.
     pub fn leave_out_extensions(&mut self) {
+        // They are kept apart by what changes now.
+        self.clusters = OnceLock::new();
         for surface in &mut self.surfaces {
             let (mode, opacity) = surface.own_alpha;
             surface.sheen = None;

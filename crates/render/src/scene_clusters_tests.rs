@@ -47,13 +47,19 @@ fn layers_of_many_triangles_see_their_own() {
     let all = ScreenTriangles::new(&mesh.positions, &mesh.triangles, &camera, size);
     assert_eq!(look(&scene.on_screen(&camera, size)), look(&all));
     for (mode, own) in [(AlphaMode::Opaque, 0..count / 2), (AlphaMode::Blend, count / 2..count)] {
-        let layer = scene.layer_on_screen(mode, &camera, size).expect("it has many triangles");
+        let layer =
+            scene.layer_on_screen(|own, _| own == mode, &camera, size).expect("it has many triangles");
         let seen: Vec<usize> =
             look(&layer).into_iter().filter(|&t| t != NOTHING).map(|t| t as usize).collect();
         assert!(seen.len() > 100 && seen.iter().all(|t| own.contains(t)));
         let triangle = seen[0];
         assert_eq!(layer.triangle(triangle), all.triangles[triangle]);
     }
-    let none = scene.layer_on_screen(AlphaMode::Mask, &camera, size).expect("it has many triangles");
+    // Light that passes makes a layer of its own.
+    let passed =
+        scene.layer_on_screen(|_, transmits| transmits, &camera, size).expect("it has many triangles");
+    assert!(look(&passed).iter().all(|&t| t == NOTHING));
+    let none =
+        scene.layer_on_screen(|own, _| own == AlphaMode::Mask, &camera, size).expect("it has many triangles");
     assert!(look(&none).iter().all(|&t| t == NOTHING));
 }

@@ -172,7 +172,9 @@ impl MaterialSampler<'_> {
             (along(pixel % size, jitter.0), along(pixel / size, jitter.1))
         };
         let footprint = filter.max(1.0 / 16.0);
-        let high = match scene.layer_on_screen(layer.mode, camera, size) {
+        let is_whole = self.high.is_whole_material;
+        let is_own = |mode, transmits: bool| mode == layer.mode && (is_whole && transmits) == layer.transmits;
+        let high = match scene.layer_on_screen(is_own, camera, size) {
             Some(screen) => Part { screen, own: None },
             None => Part::of(scene.mesh(), &layer.high, camera, size),
         };
