@@ -18,7 +18,7 @@ use parbake_image::{MapKind, MapValues};
 use parbake_model::glam::Vec4;
 use parbake_render::shade::Jacobian;
 use parbake_views::chart_labels::Atlas;
-use parbake_views::material_samples::MaterialSample;
+use parbake_views::material_sample::MaterialSample;
 use parbake_views::samples::{Fetched, SampleSet};
 
 /// The samples' materials.

@@ -23,7 +23,7 @@ use parbake_render::shade::Lambert;
 use parbake_views::alpha_layers::{LayerKind, alpha_layers};
 use parbake_views::high_poly::{Conventions, ViewSet};
 use parbake_views::low_poly::LowPoly;
-use parbake_views::material_samples::MaterialSampler;
+use parbake_views::material_sampler::MaterialSampler;
 use parbake_views::projection::ProjectedMaps;
 use parbake_views::view_sample::sample_views;
 use parbake_views::view_sampler::ViewSampler;

@@ -13,7 +13,7 @@ use parbake_render::interpretation::Interpretation;
 use parbake_views::alpha_layers::{alpha_layers, layer_kinds};
 use parbake_views::high_poly::{Conventions, HighPoly, ViewSet};
 use parbake_views::low_poly::LowPoly;
-use parbake_views::material_samples::MaterialSampler;
+use parbake_views::material_sampler::MaterialSampler;
 use parbake_views::pool::Rig;
 use parbake_views::reference::Sampling;
 
