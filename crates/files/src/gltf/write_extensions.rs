@@ -61,6 +61,8 @@ pub(super) fn add(materials: &mut Materials, material: &Material, unit: f32, jso
         ior,
         dispersion,
     } = &material.extensions;
+    // Without tangents, and without a normal map to make them for, glTF has no frame for such normals.
+    let has_frame = materials.has_tangents || material.normal_texture.is_some();
     let mut extension = |name: &'static str, fill: &dyn Fn(&mut Object<'_>)| {
         let mut object = Object { materials, keys: Map::new() };
         fill(&mut object);
@@ -70,13 +72,14 @@ pub(super) fn add(materials: &mut Materials, material: &Material, unit: f32, jso
         }
     };
     if let Some(c) = clearcoat {
+        let normal_texture = c.normal_texture.filter(|_| has_frame);
         extension("KHR_materials_clearcoat", &|o| {
             o.share("clearcoatFactor", c.factor, 0.0);
             o.texture("clearcoatTexture", c.texture);
             o.share("clearcoatRoughnessFactor", c.roughness, 0.0);
             o.texture("clearcoatRoughnessTexture", c.roughness_texture);
-            o.texture("clearcoatNormalTexture", c.normal_texture);
-            if c.normal_texture.is_some() && c.normal_scale != 1.0 && c.normal_scale.is_finite() {
+            o.texture("clearcoatNormalTexture", normal_texture);
+            if normal_texture.is_some() && c.normal_scale != 1.0 && c.normal_scale.is_finite() {
                 o.keys["clearcoatNormalTexture"]["scale"] = f64::from(c.normal_scale).into();
             }
         });

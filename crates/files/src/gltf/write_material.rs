@@ -28,6 +28,8 @@ pub(super) struct Materials {
     pub uses_parallax: bool,
     pub uses_emissive_strength: bool,
     pub uses_unlit: bool,
+    /// Whether the mesh says which way its tangent frames look.
+    pub has_tangents: bool,
     /// The names of the other material extensions in use.
     pub extensions: Vec<&'static str>,
     texture_keys: Vec<(usize, [Wrap; 2], Filter)>,
@@ -46,7 +48,7 @@ pub(super) enum Filter {
 impl Materials {
     /// Those of a model, the unit of whose mesh is this long in the model when it is written.
     pub fn of(model: &Model, unit: f32) -> Self {
-        let mut out = Self::default();
+        let mut out = Self { has_tangents: !model.mesh.tangents.is_empty(), ..Self::default() };
         let mut is_used = vec![false; model.materials.len()];
         for &material in &model.mesh.triangle_materials {
             is_used[material as usize] = true;
