@@ -91,8 +91,9 @@ impl Look {
             if let Some(clearcoat) = material.extensions.clearcoat.as_mut().filter(|_| look.coats_normals) {
                 clearcoat.normal_texture = material.normal_texture;
             }
-            // Behind what is opaque or cut out a back is a hole; what is seen through has the backs it had.
-            if kind.transmits || kind.mode == AlphaMode::Blend {
+            // Of a closed surface a back is a hole of the low-poly; what is seen through, and open sheets, have
+            // the backs that they had.
+            if kind.transmits || kind.mode == AlphaMode::Blend || look.shows_backs {
                 material.double_sided = look.double_sided;
             }
         }

@@ -9,6 +9,7 @@
 //! kept is said in words.
 
 use crate::alpha_layers::{AlphaLayer, LayerKind, alpha_layers};
+use crate::backs::shows_backs;
 use crate::extension_values::Group;
 use crate::gutter;
 use crate::high_poly::HighPoly;
@@ -42,8 +43,10 @@ pub struct LayerLook {
     pub extensions: MaterialExtensions,
     /// Whether the clear layer has the normals of the surface below it, which are yet to be fitted.
     pub coats_normals: bool,
-    /// Whether most of its area shows its back.
+    /// Whether the materials of most of its area show their backs.
     pub double_sided: bool,
+    /// Whether it is an open sheet, of which views see backs.
+    pub shows_backs: bool,
 }
 
 /// Less than this share of the largest value makes no difference.
@@ -60,6 +63,7 @@ pub fn extension_maps(low: &LowPoly, kinds: &[LayerKind], high: &HighPoly) -> Ex
             kind,
             coats_normals: shares.coats_normals(high),
             double_sided: shares.double_sided(high),
+            shows_backs: shows_backs(high, kind),
             extensions: MaterialExtensions::default(),
         };
         shares.set_numbers(high, kind, &mut look.extensions, &mut out.lost);

@@ -77,6 +77,24 @@ fn one_value_is_a_factor() {
     assert!(layer.coats_normals && !layer.double_sided);
 }
 
+/// Protects open sheets from backs that they do not have, and closed surfaces from holes: views see backs of
+/// two squares, and none of the sides of a box.
+#[test]
+fn open_sheets_show_their_backs() {
+    let coat = |e: &mut MaterialExtensions| e.ior = Some(1.8);
+    let open = squares(vec![material(coat), material(coat)], Vec::new());
+    assert!(maps_of(&open).layers[0].shows_backs);
+    let mut closed = open;
+    let mesh = &mut closed.mesh;
+    // The lower square looks down, and four walls join both.
+    mesh.triangles = vec![[0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7]];
+    for [a, b] in [[0, 1], [1, 2], [2, 3], [3, 0]] {
+        mesh.triangles.extend([[a, b, b + 4], [a, b + 4, a + 4]]);
+    }
+    mesh.triangle_materials = vec![0; mesh.triangles.len()];
+    assert!(!maps_of(&closed).layers[0].shows_backs);
+}
+
 /// Protects what is seen through glass: the glass is a layer of its own, which has the volume, and the rest
 /// transmits nothing. Textures of the high-poly come out where they were.
 #[test]

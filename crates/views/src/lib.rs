@@ -10,6 +10,7 @@
 //! Everything here is made once and read by the fits of vertices, texture coordinates and maps.
 
 pub mod alpha_layers;
+mod backs;
 pub mod chart_labels;
 mod error;
 pub mod extension_maps;

@@ -1,0 +1,36 @@
+//! Whether views of the high-poly look at the backs of its triangles: open sheets show them, closed surfaces do
+//! not. What is closed may be shown from both sides, so that small holes of a low-poly do not show; an open
+//! sheet whose material is single-sided must not be, since viewers see through it from behind.
+
+use crate::alpha_layers::{LayerKind, high_kind};
+use crate::high_poly::{HighPoly, ViewSet};
+use crate::reference::Sampling;
+use parbake_render::on_screen::Raster;
+use parbake_render::raster::{NOTHING, Visibility};
+use rayon::prelude::*;
+
+/// Views that are asked, and their size in pixels.
+const VIEWS: usize = 16;
+const SIZE: usize = 96;
+/// A layer is an open sheet where more than this share of what is seen of it are backs. Where nearly all are, its
+/// triangles only wind the other way.
+const SHEET: std::ops::Range<f64> = 0.1..0.9;
+
+/// Whether backs of a layer are seen as of an open sheet.
+pub fn shows_backs(high: &HighPoly, kind: LayerKind) -> bool {
+    let sampling = Sampling { size: SIZE, filter: 1.0, samples: 1 };
+    let set = ViewSet { count: VIEWS, seed: 0, jitter: false, sampling };
+    let mesh = high.scene.mesh();
+    let seen = set.views(&high.conventions.rig).into_par_iter().map(|view| {
+        let mut seen = Visibility::default();
+        high.scene.on_screen(&view.camera, SIZE).rasterise(SIZE, (0.0, 0.0), None, &mut seen);
+        let own = seen.triangle.iter().filter(|&&t| t != NOTHING).map(|&t| t as usize);
+        own.filter(|&t| high_kind(high, t) == kind).fold([0usize; 2], |[backs, all], t| {
+            let corner = mesh.positions[mesh.triangles[t][0] as usize];
+            let is_back = view.camera.view_direction(corner).dot(mesh.area_normal(t)) < 0.0;
+            [backs + usize::from(is_back), all + 1]
+        })
+    });
+    let [backs, all] = seen.reduce(|| [0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+    SHEET.contains(&(backs as f64 / all.max(1) as f64))
+}
