@@ -329,8 +329,8 @@ pub struct EvalCommand {
 
 /// Arguments of `turntable`.
 #[derive(Args, Debug)]
-#[command(after_help = "All models are shown as they stand in the high-poly's frame, by a light at the \
-camera. The film plays again and again. Ctrl-C ends without a file.")]
+#[command(after_help = "All models are shown as they stand in the high-poly's frame, lit from the \
+camera, or by the built-in light where the high-poly's materials have more than colour, normals and emission. The film plays again and again. Ctrl-C ends without a file.")]
 pub struct TurntableCommand {
     /// The high-poly: .obj, .gltf or .glb
     pub high: PathBuf,

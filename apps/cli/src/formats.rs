@@ -103,6 +103,13 @@ pub fn write_model(
     console: &Console,
 ) -> Result<u64, Failure> {
     if is_obj(path) {
+        if model.materials.iter().any(|material| material.extensions.show()) {
+            console.say(&format!(
+                "warning: {}: OBJ has no place for glTF's material extensions (transmission, clearcoat, sheen, …); write a .glb \
+                 to keep them",
+                path.display()
+            ));
+        }
         return Ok(write_obj(path, model)?);
     }
     let options = formats.write_options();

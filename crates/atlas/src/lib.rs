@@ -15,9 +15,9 @@
 //! ```
 
 pub mod check;
+mod conflicts;
 pub mod error;
 pub mod layout;
-mod mend;
 pub mod model_check;
 pub mod pack;
 pub mod predicates;

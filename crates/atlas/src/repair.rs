@@ -3,7 +3,7 @@
 //! ```text
 //! nothing wrong                      left as it is
 //! only in other tiles                each chart moved by whole tiles
-//! faults of a few triangles or charts mended where they are (mend.rs)
+//! faults of a few triangles or charts mended where they are (repair/mend.rs)
 //! only outside the square            all brought in together, unless it would be nearly empty
 //! else, where too much is wrong or no place is left:
 //! mirrored charts                    mirrored back
@@ -12,9 +12,9 @@
 //! then                               those too long for the square cut across, all packed again, sizes kept
 //! ```
 
-pub(crate) mod faults;
+mod faults;
+mod mend;
 
-use crate::mend::{MendOptions, mended};
 use crate::sharing;
 use crate::tiles::in_one_tile;
 use crate::unwrap::corners::{Corners, Surface};
@@ -22,6 +22,7 @@ use crate::unwrap::long::{LEAST_COVER, cut_across};
 use crate::unwrap::sound::{at_fault, settled};
 use crate::{AtlasError, ChartScale, Layout, PackOptions, UnwrapOptions, UvCheck, check, unwrap};
 use faults::{Found, cut_along_folds, fresh_triangles};
+use mend::{MendOptions, mended};
 use parbake_model::Mesh;
 
 /// What [`repair()`] aims at.
@@ -95,7 +96,8 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> Result<(Mesh, Vec<String>
     }
     if delivered.orientations.outside.count > 0 {
         if let Some(mesh) = brought_in(&surface, &corners, options) {
-            return Ok((mesh, vec!["Texture coordinates outside the square were brought into it.".into()]));
+            sentences.push("Texture coordinates outside the square were brought into it.".into());
+            return Ok((mesh, sentences));
         }
         sentences.push("Texture coordinates outside the square were brought into it.".into());
     }
@@ -109,10 +111,11 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> Result<(Mesh, Vec<String>
         count => sentences.push(format!("{count} charts, too long for the square, were cut across.")),
     }
     let packed = settled(&surface, corners, &pack)?;
-    let close = delivered.gutter.as_ref().is_some_and(|g| g.texels < options.pack.gutter_texels);
+    let is_close = |least: f64| delivered.gutter.as_ref().is_some_and(|g| g.texels < least);
+    let close = options.gutter_required && is_close(options.pack.gutter_texels);
     sentences.push(match (delivered.overlaps.pairs > 0, close) {
         (true, _) => {
-            "Triangles lay on each other; all charts were packed again at their relative sizes, since mending would have left no room or moved most of them.".into()
+            "Triangles lay on each other; all charts were packed again at their relative sizes, since the faults could not be repaired in place.".into()
         }
         (false, true) => format!(
             "Charts lay closer to each other than {} texels; all were packed again at their relative sizes.",

@@ -10,7 +10,7 @@
 //! ```
 
 use crate::Layout;
-use crate::mend::conflicts::overlapping;
+use crate::conflicts::overlapping;
 use crate::predicates::{counter_clockwise, intersection, orientation};
 use glam::DVec2;
 use parbake_model::Mesh;
@@ -101,8 +101,17 @@ impl Sharing {
             _ => parts.push(format!("{count} {many}")),
         };
         say(self.mirrored, "part lies on its mirror image", "parts lie on their mirror images");
-        say(self.stacked, "part lies on a copy", "parts lie on copies of the same orientation");
+        say(
+            self.stacked,
+            "part lies on a copy of the same orientation",
+            "parts lie on copies of the same orientation",
+        );
         say(self.repeating, "chart repeats the texture", "charts repeat the texture");
-        (!parts.is_empty()).then(|| format!("Texels are shared on purpose: {}.", parts.join(", ")))
+        (!parts.is_empty()).then(|| {
+            format!(
+                "The delivered texture coordinates share texels, apparently on purpose: {}.",
+                parts.join(", ")
+            )
+        })
     }
 }

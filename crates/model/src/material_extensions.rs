@@ -11,7 +11,7 @@ use crate::TextureSlot;
 /// Contract: numbers are finite and in the extensions' ranges.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MaterialExtensions {
-    /// A clear layer on top (`KHR_materials_clearcoat`).
+    /// A clearcoat on top (`KHR_materials_clearcoat`).
     pub clearcoat: Option<Clearcoat>,
     /// The gloss of cloth at grazing angles (`KHR_materials_sheen`).
     pub sheen: Option<Sheen>,
@@ -158,7 +158,7 @@ pub struct Volume {
     /// Its green channel multiplies the thickness.
     pub texture: Option<TextureSlot>,
     /// Distance in world space after which white light has the attenuation colour; infinite where
-    /// nothing is absorbed.
+    /// no light is attenuated.
     pub attenuation_distance: f32,
     /// Linear RGB, each from 0 to 1.
     pub attenuation_color: [f32; 3],

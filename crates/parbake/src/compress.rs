@@ -20,6 +20,7 @@ use crate::bake::{Baked, bake_onto_itself};
 use crate::budget::check_budget;
 use crate::error::BakeError;
 use crate::kept;
+use crate::lost::lost;
 use crate::options::{BakeOptions, Convention, Parallax, Shading, UvMode};
 use crate::report::{BakeReport, LossStep, Work, layout_warning};
 use parbake_atlas::{check_mesh, in_one_tile};
@@ -142,9 +143,10 @@ fn plain(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<
     if let Some(kept) = &delivered
         && kept::may_be_kept(options)
         && kept.low.model.mesh.uvs != written.low.model.mesh.uvs
+        && !watcher.stopped()
     {
         let finished = |of: &Solved| textured(of.low.model.clone(), &of.solved);
-        if let Some(lost) = kept::lost(model, &finished(kept), &finished(&written), options.convention)? {
+        if let Some(lost) = kept::lost(model, &finished(kept), &finished(&written), options)? {
             written = kept.clone();
             written.low.report.repaired.extend(kept::sentences(model, lost));
         }
@@ -249,7 +251,9 @@ impl OwnSurface<'_> {
         let name = &self.model.name;
         let uv = check_mesh(&written.low.model.mesh, self.options.texture_size);
         let repaired = written.low.report.repaired.iter().map(|done| format!("{name}: {done}"));
-        let warnings: Vec<String> = repaired.chain(layout_warning(name, &uv)).collect();
+        // A texture of colours alone has no extensions.
+        let lost = lost(&self.model.materials).into_iter().map(|text| format!("{name}: {text}"));
+        let warnings: Vec<String> = repaired.chain(layout_warning(name, &uv)).chain(lost).collect();
         warnings.iter().for_each(|warning| watcher.message(Message::Warning(warning.clone())));
         let mut uv_stage = written.low.report.clone();
         let errors = written.solved.errors.iter().zip(&baseline.solved.errors);

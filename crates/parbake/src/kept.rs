@@ -5,11 +5,12 @@
 //! finished, photographed as `eval` does, and the one that was found has to keep up.
 
 use crate::bake::Baked;
-use crate::comparison::COMPARED_VIEWS;
+use crate::budget::check_budget;
+use crate::comparison::{COMPARED_VIEWS, compared_as};
 use crate::error::BakeError;
 use crate::evaluate::evaluate_each;
 use crate::evaluate::options::EvaluateOptions;
-use crate::options::{BakeOptions, Convention, UvMode};
+use crate::options::{BakeOptions, UvMode};
 use parbake_atlas::sharing;
 use parbake_model::Model;
 use parbake_progress::{Message, Watcher};
@@ -28,7 +29,8 @@ pub(crate) fn may_be_kept(options: &BakeOptions) -> bool {
     options.uv == UvMode::Optimize && options.gutter.is_none()
 }
 
-/// Decibels that `found` shows less of a model than `kept` does, where that is more than it may.
+/// Decibels that `found` shows less of a model than `kept` does, where that is more than it may; shaded as the
+/// summary of this bake is.
 ///
 /// # Errors
 /// A model without extent.
@@ -36,11 +38,11 @@ pub(crate) fn lost(
     model: &Model,
     kept: &Model,
     found: &Model,
-    convention: Convention,
+    bake: &BakeOptions,
 ) -> Result<Option<f64>, BakeError> {
     let mut lost = f64::NEG_INFINITY;
     for views in VIEWS {
-        let options = EvaluateOptions { views, no_flip: true, convention, ..EvaluateOptions::default() };
+        let options = EvaluateOptions { views, no_flip: true, ..compared_as(bake) };
         let compared = evaluate_each(model, &[kept, found], &options, &[&options.background], false, &())?;
         // Views that are equal in every pixel have no finite figure.
         let mean = |which: usize| {
@@ -55,8 +57,8 @@ pub(crate) fn lost(
 /// What the user is told of it.
 pub(crate) fn sentences(model: &Model, lost: f64) -> Vec<String> {
     let mut sentences = vec![format!(
-        "Coordinates were kept as they are, for the best ones with which no texel is shared show {lost:.1} dB less \
-         (--uv repair, or a --gutter, forces such)."
+        "Texture coordinates were kept as they are: the best layout without shared texels shows {lost:.1} dB less. \
+         --uv repair or --gutter TEXELS forces such a layout."
     )];
     sentences.extend(sharing(&model.mesh).sentence());
     sentences
@@ -80,6 +82,9 @@ pub(crate) fn weighed(
     let quiet = Quiet(watcher);
     // Of a budget the bake with the coordinates as they are needs the smaller part.
     let first = BakeOptions { time_budget: options.time_budget.map(|s| FIRST_SHARE * s), ..options.clone() };
+    if check_budget(&first).is_err() {
+        return bake(options, watcher);
+    }
     let mut found = bake(&first, &quiet)?;
     found.report.options = options.clone();
     let has_new = |baked: &Baked| {
@@ -89,8 +94,11 @@ pub(crate) fn weighed(
     if has_new(&found) && !watcher.stopped() {
         let time_budget = options.time_budget.map(|s| (s - begin.elapsed().as_secs_f64()).max(0.0));
         let own = BakeOptions { uv: UvMode::Keep, time_budget, ..options.clone() };
-        let mut kept = bake(&own, &quiet)?;
-        if let Some(lost) = lost(model, &kept.model, &found.model, options.convention)? {
+        // What is left may not be enough for another bake, and one that was stopped is no fair match.
+        let kept = check_budget(&own).is_ok().then(|| bake(&own, &quiet)).transpose()?;
+        let kept = kept.filter(|_| !watcher.stopped());
+        let lost = kept.as_ref().map(|kept| lost(model, &kept.model, &found.model, options)).transpose()?;
+        if let (Some(mut kept), Some(lost)) = (kept, lost.flatten()) {
             kept.report.options = options.clone();
             let told = sentences(model, lost).into_iter().map(|text| format!("{}: {text}", model.name));
             kept.report.warnings.splice(0..0, told);
@@ -121,5 +129,24 @@ impl Watcher for Quiet<'_> {
 
     fn seconds_left(&self) -> Option<f64> {
         self.0.seconds_left()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects time budgets that can hold: neither of two bakes is begun with a share that is refused.
+    #[test]
+    fn no_share_of_a_budget_is_refused() {
+        let (_, model) = crate::demo_pair();
+        for budget in [1.5, 2.0, 3.0] {
+            let options =
+                BakeOptions { texture_size: 1024, time_budget: Some(budget), ..BakeOptions::default() };
+            // It would fail on any other error as well.
+            let unwritable = || BakeError::OutOfView { low: String::new(), high: String::new() };
+            let found = weighed(&model, &options, &(), |own, _| check_budget(own).and(Err(unwritable())));
+            assert!(matches!(found, Err(BakeError::OutOfView { .. })), "{budget}: {:?}", found.err());
+        }
     }
 }

@@ -31,7 +31,7 @@ pub(crate) struct Look {
 impl Look {
     /// Of a low-poly whose triangles are in these layers.
     pub fn new(high: &HighPoly, low: &LowPoly, kinds: Vec<LayerKind>) -> Self {
-        let extensions = match high.is_whole_material && !high.scene.is_unlit() {
+        let extensions = match high.is_whole_material {
             true => extension_maps(low, &kinds, high),
             false => ExtensionMaps::default(),
         };

@@ -9,34 +9,34 @@ const MOST_NAMES: usize = 5;
 type Loss = (&'static str, &'static str, fn(&MaterialExtensions) -> bool);
 
 const LOSSES: [Loss; 10] = [
-    ("KHR_materials_clearcoat", "the gloss of the clear layer on top", |e| {
+    ("KHR_materials_clearcoat", "the reflections of the clearcoat", |e| {
         e.clearcoat.is_some_and(|c| c.factor > 0.0)
     }),
-    ("KHR_materials_sheen", "the soft light of cloth at grazing angles", |e| {
+    ("KHR_materials_sheen", "the sheen of cloth at grazing angles", |e| {
         e.sheen.is_some_and(|s| s.color != [0.0; 3])
     }),
-    ("KHR_materials_transmission", "refraction, blur and tint of what is seen through the surface", |e| {
+    ("KHR_materials_transmission", "the refraction, blur and tint of what is behind", |e| {
         e.transmission.is_some_and(|t| t.factor > 0.0)
     }),
-    ("KHR_materials_diffuse_transmission", "the light that shines through from behind", |e| {
+    ("KHR_materials_diffuse_transmission", "the scattered light that comes through from behind", |e| {
         e.diffuse_transmission.is_some_and(|d| d.factor > 0.0)
     }),
-    ("KHR_materials_volume", "refraction and the colour that thickness gives", |e| {
+    ("KHR_materials_volume", "refraction and attenuation inside the volume", |e| {
         e.volume.is_some_and(|v| v.thickness > 0.0)
     }),
-    ("KHR_materials_iridescence", "the colours of the thin film", |e| {
+    ("KHR_materials_iridescence", "the colours of iridescence", |e| {
         e.iridescence.is_some_and(|i| i.factor > 0.0)
     }),
-    ("KHR_materials_anisotropy", "the stretch of highlights", |e| {
+    ("KHR_materials_anisotropy", "the anisotropy of highlights", |e| {
         e.anisotropy.is_some_and(|a| a.strength > 0.0)
     }),
     ("KHR_materials_specular", "the strength and the colour of reflections", |e| {
         e.specular.is_some_and(|s| s != Specular::default())
     }),
-    ("KHR_materials_ior", "reflections that are stronger or weaker than those of an index of 1.5", |e| {
+    ("KHR_materials_ior", "the index of refraction, which becomes 1.5", |e| {
         e.ior.is_some_and(|ior| ior != 1.5)
     }),
-    ("KHR_materials_dispersion", "the rainbow that refraction makes", |e| {
+    ("KHR_materials_dispersion", "the dispersion of refracted light", |e| {
         e.dispersion.is_some_and(|d| d > 0.0)
     }),
 ];
@@ -53,7 +53,7 @@ pub(crate) fn lost(materials: &[Material]) -> Vec<String> {
         let noun = if having.len() == 1 { "material" } else { "materials" };
         (!having.is_empty()).then(|| {
             format!(
-                "{name} is not kept with this shading: {lost} is lost in {noun} {}{more}",
+                "{name} is not written with this --shading: {noun} {}{more} lose {lost}",
                 names.join(", ")
             )
         })

@@ -95,13 +95,13 @@ pub enum ShapeMode {
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Shading {
-    /// `pbr` where a material has more than colour, normals and emission; else as `lambert`, but with normals
-    /// that are right under any light.
+    /// `pbr` where a material of the high-poly has more than colour, normals and emission; else `lambert`, but
+    /// under glTF's convention with normals that are right under any light.
     #[default]
     Auto,
     /// Colours, normals and emission, as a headlight shows them on a matte surface (the paper's shading).
     Lambert,
-    /// The whole metallic-roughness material, right under any light; needs --convention gltf.
+    /// The whole metallic-roughness material; needs --convention gltf.
     Pbr,
 }
 
@@ -245,7 +245,7 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", help_heading = heading::QUALITY))]
     pub view_size: Option<usize>,
 
-    /// Alternations between the colour and the normal solve, 0 to 100; 0 writes the projected textures
+    /// Rounds of the texture solve, 0 to 100, in each of which every map that is fitted is solved for; 0 writes the projected textures
     /// [default: by preset 3, 5, 8]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::QUALITY))]
     pub rounds: Option<usize>,

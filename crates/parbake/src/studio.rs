@@ -74,7 +74,12 @@ impl Studio {
 
     /// Brings a model in.
     pub fn subject(&self, model: &Model) -> Subject {
-        Subject(scene(model, &self.frame, self.options.interpretation()))
+        let mut scene = scene(model, &self.frame, self.options.interpretation());
+        // As in the fit. What would stand in for an extension depends on how a file writes it.
+        if self.whole.is_some() {
+            scene.leave_out_extensions();
+        }
+        Subject(scene)
     }
 
     /// Photographs it from `direction`, of unit length: the camera stands there and looks at the

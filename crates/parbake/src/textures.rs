@@ -127,9 +127,8 @@ pub(crate) fn fit_views<W: Watcher>(
     if schedule.normal_steps > 0 && !options.fits_normals_to_headlight() {
         let (samples, _) = sampled(maps.as_ref());
         let problem = MaterialProblem::new(&samples, atlas, [MapKind::Normal].into_iter());
-        let fitted = fit_maps(&problem, &start, &Cpu, srgb, &plan.material_schedule(), scope);
-        for (kind, image) in &fitted.images {
-            start.insert(*kind, from_image(*kind, image, srgb));
+        for (kind, image) in fit_maps(&problem, &start, &Cpu, srgb, &plan.material_schedule(), scope).images {
+            start.insert(kind, from_image(kind, &image, srgb));
         }
         schedule.normal_steps = 0;
     }

@@ -92,7 +92,7 @@ impl OnScreen<'_> {
             Self::All(screen) => screen.triangles[index],
             Self::Clustered(own) => {
                 let corners = own.mesh.corners(index);
-                triangle_on_screen(&corners, &own.camera, own.size, None).unwrap_or_default()
+                triangle_on_screen(&corners, &own.camera, own.size, None).unwrap_or(ScreenTriangle::HIDDEN)
             }
         }
     }

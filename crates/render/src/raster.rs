@@ -53,15 +53,14 @@ impl ScreenTriangles {
         let points: Vec<_> = positions.iter().map(|&p| camera.project(p, size)).collect();
         let triangles = triangles
             .iter()
-            .map(|corners| set_up(corners.map(|i| points[i as usize]), camera, size, None).unwrap_or(HIDDEN))
+            .map(|corners| {
+                set_up(corners.map(|i| points[i as usize]), camera, size, None)
+                    .unwrap_or(ScreenTriangle::HIDDEN)
+            })
             .collect();
         Self { triangles }
     }
 }
-
-/// Covers nothing.
-const HIDDEN: ScreenTriangle =
-    ScreenTriangle { planes: [DVec3::ZERO; 3], nearness: DVec3::ZERO, bounds: [0.0, 0.0, -1.0, -1.0] };
 
 /// A triangle with these corners, as [`ScreenTriangles`] has it; none where it cannot be seen, or is
 /// known to cover none of the samples at `offset`.
@@ -128,7 +127,7 @@ fn samples_within(bounds: [f32; 4], size: usize, offset: (f32, f32)) -> Option<[
 }
 
 impl ScreenTriangle {
-    /// One that is not seen.
+    /// One that covers nothing.
     pub(crate) const HIDDEN: Self =
         Self { planes: [DVec3::ZERO; 3], nearness: DVec3::ZERO, bounds: [0.0, 0.0, -1.0, -1.0] };
 

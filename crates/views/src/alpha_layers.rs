@@ -101,7 +101,9 @@ pub fn layer_kinds(low: &Mesh, delivered: &Model, high: &HighPoly) -> Vec<LayerK
                 let point: Vec3 = interpolate(corners.map(|i| low.positions[i]), weights);
                 let normal: Vec3 = interpolate(corners.map(|i| low.normals[i]), weights);
                 let reach = high.conventions.max_distance;
-                if let Some(hit) = high.surface.project(point, normal.normalize_or_zero(), reach) {
+                let side = low.area_normal(triangle);
+                if let Some(hit) = high.surface.project_facing(point, normal.normalize_or_zero(), side, reach)
+                {
                     votes[place(high_kind(high, hit.triangle as usize))] += 1;
                 }
             }

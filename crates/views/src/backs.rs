@@ -16,7 +16,7 @@ const SIZE: usize = 96;
 /// triangles only wind the other way.
 const SHEET: std::ops::Range<f64> = 0.1..0.9;
 
-/// Whether backs of a layer are seen as of an open sheet.
+/// Whether a layer is an open sheet: a part of what views see of it, but not nearly all, are backs.
 pub fn shows_backs(high: &HighPoly, kind: LayerKind) -> bool {
     let sampling = Sampling { size: SIZE, filter: 1.0, samples: 1 };
     let set = ViewSet { count: VIEWS, seed: 0, jitter: false, sampling };

@@ -41,7 +41,7 @@ pub struct LayerLook {
     pub kind: LayerKind,
     /// Factors, and textures by their indices in [`ExtensionMaps::images`].
     pub extensions: MaterialExtensions,
-    /// Whether the clear layer has the normals of the surface below it, which are yet to be fitted.
+    /// Whether the clearcoat has the normals of the surface below it, which are yet to be fitted.
     pub coats_normals: bool,
     /// Whether the materials of most of its area show their backs.
     pub double_sided: bool,
@@ -66,8 +66,14 @@ pub fn extension_maps(low: &LowPoly, kinds: &[LayerKind], high: &HighPoly) -> Ex
             shows_backs: shows_backs(high, kind),
             extensions: MaterialExtensions::default(),
         };
-        shares.set_numbers(high, kind, &mut look.extensions, &mut out.lost);
+        if !high.scene.is_unlit() {
+            shares.set_numbers(high, kind, &mut look.extensions, &mut out.lost);
+        }
         out.layers.push(look);
+    }
+    // Of what is not lit no extension shows.
+    if high.scene.is_unlit() {
+        return out;
     }
     let asked = |group: Group, layer: usize| {
         (group != Group::Passing || layers[layer].transmits) && shares[layer].has(group, high)
@@ -104,7 +110,9 @@ pub fn extension_maps(low: &LowPoly, kinds: &[LayerKind], high: &HighPoly) -> Ex
         });
         let is_mapped = group == Group::Anisotropy || largest.iter().any(|&l| l > 0.0);
         let image = out.images.len();
-        for layer in (0..layers.len()).filter(|&layer| varying[layer]) {
+        // A layer that covers no texel keeps the extension's defaults.
+        let is_seen = |layer: usize| said[layer].iter().any(|s| s.is_there);
+        for layer in (0..layers.len()).filter(|&layer| varying[layer] && is_seen(layer)) {
             let said =
                 said[layer].map(|s| match group == Group::Anisotropy || s.spread > ALIKE * s.largest {
                     true => Said { value: Vec3::splat(largest[s.place]), is_textured: true, ..s },
@@ -154,7 +162,8 @@ fn project(low: &LowPoly, layers: &[AlphaLayer], high: &HighPoly) -> Vec<Option<
             Some(part) => (part, Some(&layers[place].high)),
             None => (&high.surface, None),
         };
-        let mut hit = surface.project(point, normal.normalize_or_zero(), reach)?;
+        let side = low.placed.area_normal(triangle);
+        let mut hit = surface.project_facing(point, normal.normalize_or_zero(), side, reach)?;
         if let Some(own) = own {
             hit.triangle = own[hit.triangle as usize];
         }
@@ -249,6 +258,7 @@ fn summed(
             spread: (sum.high - sum.low).max_element(),
             largest: sum.high.max_element(),
             is_textured: false,
+            is_there: true,
         },
     };
     sums.iter().map(|own| [0, 1].map(|k| said(parts[k], &own[k]))).collect()

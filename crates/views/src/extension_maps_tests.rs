@@ -84,6 +84,9 @@ fn open_sheets_show_their_backs() {
     let coat = |e: &mut MaterialExtensions| e.ior = Some(1.8);
     let open = squares(vec![material(coat), material(coat)], Vec::new());
     assert!(maps_of(&open).layers[0].shows_backs);
+    let mut unlit = open.clone();
+    unlit.materials.iter_mut().for_each(|m| m.unlit = true);
+    assert!(maps_of(&unlit).layers[0].shows_backs);
     let mut closed = open;
     let mesh = &mut closed.mesh;
     // The lower square looks down, and four walls join both.

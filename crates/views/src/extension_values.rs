@@ -17,15 +17,15 @@ use rayon::prelude::*;
 /// Values that share an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
-    /// x: strength of the clear layer; y: its roughness.
+    /// x: clearcoat factor; y: clearcoat roughness.
     Clearcoat,
     /// xyz: colour of the sheen; w: its roughness.
     Sheen,
-    /// x: share of the light that passes; y: thickness.
+    /// x: transmission factor; y: thickness.
     Passing,
-    /// xyz: colour of scattered light that passes; w: its share.
+    /// xyz: diffuse transmission colour; w: its factor.
     DiffuseTransmission,
-    /// x: strength of the thin film; y: its thickness in nanometres.
+    /// x: iridescence factor; y: thickness in nanometres.
     Iridescence,
     /// xyz: the direction in which highlights are stretched, a unit vector of the common frame; w: how much.
     Anisotropy,
@@ -195,7 +195,7 @@ impl ExtensionSource {
         (tangent * value.x + bitangent * value.y).normalize_or_zero().extend(value.w)
     }
 
-    /// Whether the clear layer of a material has the normals that the surface below it has.
+    /// Whether the clearcoat of a material has the normals that the surface below it has.
     pub fn coats_normals(&self, material: usize) -> bool {
         let material = &self.materials[material];
         material.extensions.clearcoat.is_some_and(|c| c.normal_texture == material.normal_texture)

@@ -16,7 +16,7 @@ pub fn common_frame(high: &Model) -> Result<Placement, PrepareError> {
 }
 
 /// A copy of the model's mesh in the common frame, with all that its materials need
-/// for shading: unit normals, and tangents where there is a normal map.
+/// for shading: unit normals, and tangents where something is said in a tangent frame.
 pub fn placed(model: &Model, frame: &Placement) -> Mesh {
     let mut mesh = model.mesh.clone();
     let repaired = ensure_normals(&mut mesh);
@@ -29,8 +29,11 @@ pub fn placed(model: &Model, frame: &Placement) -> Mesh {
 }
 
 /// Whether a material of the model is more than rough, opaque and not metallic, as
-/// [`Scene::needs_whole_material`] says; textures are not unpacked for it.
+/// [`Scene::needs_whole_material`] says, or has an extension with an effect; textures are not unpacked for it.
 pub fn needs_whole_material(model: &Model) -> bool {
+    if model.materials.iter().any(|m| m.extensions.show()) {
+        return true;
+    }
     let images: Vec<Image> = model.images.iter().map(|_| Image::solid("", 1, 1, [255; 4])).collect();
     Scene::new(Mesh::default(), &model.materials, &images, Interpretation::default()).needs_whole_material()
 }

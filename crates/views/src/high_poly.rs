@@ -11,7 +11,7 @@
 
 use crate::error::PrepareError;
 use crate::extension_values::ExtensionSource;
-use crate::frame::{common_frame, placed};
+use crate::frame::{common_frame, needs_whole_material, placed};
 use crate::pool::{Rig, View, view_pool};
 use crate::reference::{Reference, Sampling, render_references};
 use parbake_image::MapKind;
@@ -113,10 +113,8 @@ impl HighPoly {
             || HighSurface::new(&mesh),
         );
         let (name, triangles) = (model.name.clone(), model.mesh.triangles.len());
-        let has_extensions = model.materials.iter().any(|m| m.extensions.show());
-        let is_whole_material = conventions
-            .whole_material
-            .unwrap_or_else(|| conventions.srgb() && (scene.needs_whole_material() || has_extensions));
+        let is_whole_material =
+            conventions.whole_material.unwrap_or_else(|| conventions.srgb() && needs_whole_material(model));
         let images = if is_whole_material { &model.images[..] } else { &[] };
         let extensions = ExtensionSource::new(&model.materials, images);
         if is_whole_material {

@@ -33,7 +33,7 @@ impl Part {
     pub fn said(self, value: Vec4) -> Said {
         let value = self.of(value);
         let (place, largest) = (self.place, value.max_element());
-        Said { place, value, spread: 0.0, largest, is_textured: false }
+        Said { place, value, spread: 0.0, largest, is_textured: false, is_there: true }
     }
 }
 
@@ -49,6 +49,8 @@ pub(crate) struct Said {
     pub largest: f32,
     /// Whether an image says how much of the factor is where.
     pub is_textured: bool,
+    /// Whether any texel says it.
+    pub is_there: bool,
 }
 
 impl Group {
@@ -181,7 +183,7 @@ impl Shares {
         self.most(self.materials(high).map(|(m, area)| (m.double_sided, area))).unwrap_or(true)
     }
 
-    /// Whether the clear layer mostly has the normals of the surface below it.
+    /// Whether the clearcoat mostly has the normals of the surface below it.
     pub fn coats_normals(&self, high: &HighPoly) -> bool {
         let coated =
             self.0.iter().filter(|(m, _)| high.extensions.materials()[*m].extensions.clearcoat.is_some());
@@ -211,7 +213,7 @@ impl Shares {
         let mut choose = |name: &str, what: &str, values: Vec<([f32; 4], f32)>| {
             if values.iter().any(|(value, _)| *value != values[0].0) {
                 lost.push(format!(
-                    "{name}: parts differ in {what}, which no texture can hold; all have what most of the area has"
+                    "{name}: parts differ in {what}, for which glTF has no texture; all got the value that covers the largest area"
                 ));
             }
             self.most(values.into_iter())
@@ -221,18 +223,18 @@ impl Shares {
         let passing = move || self.materials(high).filter(move |_| transmits);
         if kind.transmits || !self.iors_differ(high) {
             let iors = self.materials(high).map(|(m, area)| (one(m.extensions.ior.unwrap_or(1.5)), area));
-            let ior = choose("KHR_materials_ior", "their index of refraction", iors.collect());
+            let ior = choose("KHR_materials_ior", "index of refraction", iors.collect());
             out.ior = ior.map(|ior| ior[0]).filter(|&ior| ior != 1.5);
         }
         let dispersions = passing().map(|(m, area)| (one(m.extensions.dispersion.unwrap_or(0.0)), area));
-        let dispersion = choose("KHR_materials_dispersion", "their dispersion", dispersions.collect());
+        let dispersion = choose("KHR_materials_dispersion", "dispersion", dispersions.collect());
         out.dispersion = dispersion.map(|d| d[0]).filter(|&d| d > 0.0);
         let volumes = passing().filter_map(|(m, area)| m.extensions.volume.map(|v| (v, area)));
         let volumes = volumes.filter(|(v, _)| v.thickness > 0.0).map(|(v, area)| {
             let [r, g, b] = v.attenuation_color;
             ([r, g, b, v.attenuation_distance], area)
         });
-        let inside = choose("KHR_materials_volume", "what they absorb", volumes.collect());
+        let inside = choose("KHR_materials_volume", "attenuation colour or distance", volumes.collect());
         out.volume = inside.map(|[r, g, b, attenuation_distance]| Volume {
             attenuation_distance,
             attenuation_color: [r, g, b],
@@ -240,7 +242,8 @@ impl Shares {
         });
         let films = self.materials(high).filter_map(|(m, area)| m.extensions.iridescence.map(|i| (i, area)));
         let films = films.filter(|(i, _)| i.factor > 0.0).map(|(i, area)| (one(i.ior), area));
-        let film = choose("KHR_materials_iridescence", "the index of their film", films.collect());
+        let film =
+            choose("KHR_materials_iridescence", "the index of refraction of iridescence", films.collect());
         out.iridescence = film.map(|ior| Iridescence { ior: ior[0], ..Iridescence::default() });
         let coats =
             self.materials(high).filter_map(|(m, _)| m.extensions.clearcoat.map(|c| (c, m.normal_texture)));
@@ -248,7 +251,7 @@ impl Shares {
             coat.factor > 0.0 && coat.normal_texture.is_some() && coat.normal_texture != normal
         };
         if coats.into_iter().any(has_own) {
-            lost.push("KHR_materials_clearcoat: the clear layer's own normals are lost".into());
+            lost.push("KHR_materials_clearcoat: the clearcoat's own normal map is lost".into());
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Whole materials in comparisons: when they are shown, and what each channel's figure says.
 
 use parbake::{Channel, EvaluateOptions, Evaluation, Model, Shading, demo_pair, evaluate};
+use parbake_model::{Clearcoat, TextureSlot, Transmission};
 
 fn options() -> EvaluateOptions {
     EvaluateOptions { views: 3, resolution: 64, ..EvaluateOptions::default() }
@@ -55,10 +56,26 @@ fn the_high_poly_decides_what_is_shown() {
     let (plain, metal) = (jar(1.0, 0.0, 1.0), jar(0.5, 1.0, 1.0));
     assert_eq!(shaded(&plain, Shading::Auto), (Shading::Lambert, 0));
     assert_eq!(shaded(&metal, Shading::Auto), (Shading::Pbr, 5));
+    // As a bake does, which writes the coat.
+    let mut coated = jar(1.0, 0.0, 1.0);
+    coated.materials[0].extensions.clearcoat = Some(Clearcoat { factor: 1.0, ..Clearcoat::default() });
+    assert_eq!(shaded(&coated, Shading::Auto), (Shading::Pbr, 5));
     assert_eq!(shaded(&metal, Shading::Lambert), (Shading::Lambert, 0));
     assert_eq!(shaded(&plain, Shading::Pbr), (Shading::Pbr, 5));
     let paper = EvaluateOptions { views: 1, ..EvaluateOptions::paper() };
     assert_eq!(evaluate(&metal, &metal, &paper, &()).unwrap().shading, Shading::Lambert);
     let both = EvaluateOptions { shading: Shading::Pbr, ..paper };
     assert!(evaluate(&metal, &metal, &both, &()).is_err());
+}
+
+/// Protects figures of glass: a model is shown alike whether a file says with a factor or with an image how much
+/// light passes.
+#[test]
+fn glass_is_shown_alike_however_it_is_written() {
+    let mut factor = jar(0.2, 0.0, 1.0);
+    factor.materials[0].extensions.transmission = Some(Transmission { factor: 0.5, texture: None });
+    let mut image = factor.clone();
+    let slot = Some(TextureSlot { image: 0, ..TextureSlot::default() });
+    image.materials[0].extensions.transmission = Some(Transmission { factor: 0.5, texture: slot });
+    assert_eq!(evaluate(&factor, &image, &options(), &()).unwrap().mean.psnr, 100.0);
 }

@@ -16,13 +16,13 @@
 //! Contract: what comes out has passed the exact check; what had no fault, and nothing on it that had to
 //! make way, keeps its coordinates to the bit. None where too much is wrong, or no place is left.
 
-pub(crate) mod conflicts;
 mod points;
 
+use super::corners_of;
+use super::faults::{MOST_FAULTS, MOST_PIECES};
+use crate::conflicts;
 use crate::pack::free_space::place;
 use crate::predicates::orientation;
-use crate::repair::corners_of;
-use crate::repair::faults::{MOST_FAULTS, MOST_PIECES};
 use crate::unwrap::corners::{Corners, NONE, Surface};
 use crate::unwrap::flatten::flatten;
 use crate::unwrap::sound::{at_fault, by_chart};
@@ -32,7 +32,7 @@ use parbake_model::Mesh;
 
 /// Rounds of finding faults and mending them.
 const ROUNDS: usize = 5;
-/// Where more than this share of the drawn area would move, all may as well be packed again.
+/// Where more than this share of the area that charts cover would move, all may as well be packed again.
 const MOST_MOVED: f64 = 0.5;
 /// Texels that a corner may lie outside the square to be drawn onto its border.
 const HAIR: f64 = 0.02;
@@ -65,7 +65,7 @@ struct Told {
 #[derive(Clone)]
 struct Work {
     corners: Corners,
-    /// F flags: triangles that are to be placed.
+    /// One flag for each triangle: whether it still needs a place.
     free: Vec<bool>,
     told: Told,
 }
@@ -200,7 +200,11 @@ impl Work {
             sums[0] += 0.5 * layout.doubled_area(i).abs();
             sums[1] += layout.rest_area(i);
         }
-        let scales: Vec<f64> = sums.iter().map(|[drawn, space, _]| (drawn / space).sqrt()).collect();
+        // A chart that is drawn without area would have been drawn as large as the others.
+        let (drawn, space) = sums.iter().fold((0.0, 0.0), |all, own| (all.0 + own[0], all.1 + own[1]));
+        let scale = |drawn: f64, space: f64| (drawn / space.max(f64::MIN_POSITIVE)).sqrt();
+        let whole = scale(drawn, space);
+        let scales: Vec<f64> = sums.iter().map(|own| scale(own[0], own[1]).max(whole)).collect();
         let opened = points::open_slivers(&mut layout, &faults, &scales, options.pack.texture_size);
         if !opened.is_empty() {
             self.told.slivers += opened.len();
@@ -369,8 +373,8 @@ impl Told {
         );
         say(
             self.slivers,
-            "sliver was given an area by less than a texel.",
-            "slivers were given an area by less than a texel.",
+            "sliver was given an area by moving a point by less than a texel.",
+            "slivers were given an area by moving points by less than a texel.",
         );
         say(
             self.fresh,
@@ -384,17 +388,17 @@ impl Told {
         );
         say(
             self.smaller,
-            "of the moved parts had to be drawn smaller.",
-            "of the moved parts had to be drawn smaller.",
+            "of the moved parts had to be made smaller.",
+            "of the moved parts had to be made smaller.",
         );
         if sentences.is_empty() && rounds == 0 {
             sentences.push("Texture coordinates outside the square were brought into it.".into());
         } else {
             sentences.push(
                 if self.whole_mirrored {
-                    "The layout was mirrored as a whole."
+                    "The layout, mirrored as a whole, was mirrored back."
                 } else {
-                    "All else stayed where it was."
+                    "All other texture coordinates are unchanged."
                 }
                 .into(),
             );

@@ -143,3 +143,23 @@ fn without_room_all_is_packed_again() {
     assert_eq!(changed.len(), mesh.triangles.len(), "{text}");
     assert!(text.contains("all charts were packed again"), "{text}");
 }
+
+/// Protects whole parts that are drawn as a line: they get texels as the rest has, and are not opened by a part
+/// of a texel as a sliver is.
+#[test]
+fn a_part_without_area_gets_its_texels() {
+    let mut mesh = planes(1, &[Vec2::splat(0.05), Vec2::splat(0.05)], 0.5);
+    let half = mesh.positions.len() / 2;
+    for (uv, x) in mesh.uvs[half..].iter_mut().zip([0.6, 0.9, 0.7, 0.8]) {
+        *uv = Vec2::new(x, 0.9);
+    }
+    // A quarter as large as the other.
+    let first = mesh.positions[half];
+    mesh.positions[half..].iter_mut().for_each(|p| *p = first + (*p - first) * 0.5);
+    let (after, _, text) = repaired(&mesh);
+    let layout = Layout::new(&after);
+    let area = |triangles: std::ops::Range<usize>| triangles.map(|t| layout.doubled_area(t)).sum::<f64>();
+    let count = mesh.triangles.len();
+    let share = area(count / 2..count) / area(0..count / 2);
+    assert!((share - 0.25).abs() < 0.02, "{share} {text}");
+}

@@ -42,7 +42,7 @@ pub(crate) fn overlapping(layout: &Layout) -> Option<Vec<[u32; 2]>> {
 }
 
 /// Pairs of triangles of different charts whose outlines are nearer than this, in parts of the square.
-pub(super) fn close(layout: &Layout, gutter: f64) -> Option<Vec<[u32; 2]>> {
+pub(crate) fn close(layout: &Layout, gutter: f64) -> Option<Vec<[u32; 2]>> {
     let edges: Vec<(Segment, u32)> =
         layout.boundary().iter().map(|e| (e.points.map(|p| layout.points[p as usize]), e.triangle)).collect();
     let tree =
