@@ -23,6 +23,7 @@ use parbake_model::glam::Vec4;
 use parbake_progress::Watcher;
 use parbake_render::parallax_variants::shift_map::ShiftMap;
 use parbake_render::shade::Brdf;
+use parbake_solve::boxed::FreeLanes;
 use parbake_solve::conjugate_gradient::{self, Effort, Outcome};
 use parbake_solve::stencil::{Block, Row, Stencil};
 use parbake_views::reference::Reference;
@@ -60,12 +61,12 @@ pub trait Backend: Sync {
         rows: &mut Vec<Row<S>>,
     ) -> Loss;
 
-    /// Solves `A x = right` from zero by conjugate gradients; lanes of `free` that are 0 stay.
+    /// Solves `A x = right` from zero by conjugate gradients; lanes that are not `free` stay.
     fn solve<S: Block>(
         &self,
         matrix: &Stencil<S>,
         right: &[Vec4],
-        free: Option<&[Vec4]>,
+        free: Option<&[FreeLanes]>,
         effort: &Effort,
     ) -> (Vec<Vec4>, Outcome);
 
@@ -120,7 +121,7 @@ impl Backend for Cpu {
         &self,
         matrix: &Stencil<S>,
         right: &[Vec4],
-        free: Option<&[Vec4]>,
+        free: Option<&[FreeLanes]>,
         effort: &Effort,
     ) -> (Vec<Vec4>, Outcome) {
         conjugate_gradient::solve(matrix, right, free, effort)

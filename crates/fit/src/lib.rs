@@ -7,6 +7,7 @@
 //! ```text
 //! samples ─ schedule ─ step ─ assemble ─ solve        the maps, in turns
 //!              │        └ membrane, outliers          unseen texels, robust loss
+//! material samples ─ separate_maps ┘                  maps that do not depend on each other
 //! layers ─ cutout                                     where the low-poly is left out
 //! view samples ─ parallax ─ view_gradient ─ texels    how coordinates shift
 //!              └ territory                            shifts stay within their chart
@@ -26,6 +27,7 @@ pub mod parallax;
 pub mod parallax_maps;
 pub mod problem;
 pub mod schedule;
+pub mod separate_maps;
 pub mod step;
 pub mod texels;
 pub mod view_gradient;

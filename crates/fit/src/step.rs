@@ -16,7 +16,7 @@ use crate::outliers::Loss;
 use crate::problem::Problem;
 use parbake_image::{Domain, FloatImage, MapKind, MapSet};
 use parbake_model::glam::Vec4;
-use parbake_solve::boxed::solve_in_box;
+use parbake_solve::boxed::{FreeLanes, solve_in_box};
 use parbake_solve::conjugate_gradient::{Effort, Outcome};
 use parbake_solve::stencil::{Diagonal, Row, Stencil, Symmetric};
 use rayon::prelude::*;
@@ -70,8 +70,9 @@ pub fn fit_step<P: Problem>(
             let Some(map) = maps.get_mut(kind) else { return (loss, Outcome::default()) };
             add_membrane(rows, problem.atlas(), map, start, &options.membrane);
             let matrix = Stencil { size, rows: std::mem::take(rows) };
-            let solve =
-                |right: &[Vec4], free: &[Vec4]| backend.solve(&matrix, right, Some(free), &options.effort);
+            let solve = |right: &[Vec4], free: &[FreeLanes]| {
+                backend.solve(&matrix, right, Some(free), &options.effort)
+            };
             let outcome = solve_in_box(&matrix, &mut map.texels, solve);
             *rows = matrix.rows;
             (loss, outcome)

@@ -193,6 +193,13 @@ impl MapSet {
         self.maps[kind as usize] = Some(Arc::new(map));
     }
 
+    /// This set's map of a kind alone, not copied before it changes; no map where there is none.
+    pub fn only(&self, kind: MapKind) -> Self {
+        let mut only = Self::new(self.size);
+        only.maps[kind as usize].clone_from(&self.maps[kind as usize]);
+        only
+    }
+
     /// The map of a kind.
     #[inline]
     pub fn get(&self, kind: MapKind) -> Option<&FloatImage<Vec4>> {

@@ -7,33 +7,22 @@ use parbake_fit::cutout::CutoutOptions;
 use parbake_fit::parallax::ParallaxOptions;
 use parbake_fit::parallax_maps::{ParallaxPass, ParallaxPlan};
 use parbake_fit::schedule::Schedule;
+use parbake_fit::separate_maps::SeparateSchedule;
 use parbake_shape::paper::PaperOptions as PaperJointOptions;
 use parbake_shape::paper_joint_fit::PaperJointPlan;
 use parbake_shape::stage::ShapePlan;
 use parbake_shape::{Motion, ShapeOptions};
-use parbake_solve::conjugate_gradient::Effort;
 use parbake_uv::paper::PaperOptions;
 use parbake_uv::surface::UvStageOptions;
 use parbake_views::reference::Sampling;
 use parbake_views::view_sampler::UncoveredPixels;
 
-/// Rounds after which materials no longer change: their least squares are linear but for sRGB's curve.
-const MATERIAL_ROUNDS: usize = 3;
-
 impl Plan {
-    /// The order of a fit to whole materials: no map depends on another, so few rounds of longer solves
-    /// find what many would.
-    pub(crate) fn material_schedule(&self) -> Schedule {
-        let own = self.schedule;
-        Schedule {
-            rounds: own.rounds.min(MATERIAL_ROUNDS),
-            normal_steps: own.normal_steps.min(1),
-            effort: Effort { steps: 12, tolerance: 1e-2 },
-            final_steps: own.final_steps.min(1),
-            normal_membrane: own.color_membrane,
-            damping: 0.0,
-            ..own
-        }
+    /// How much work the maps of whole materials get.
+    pub(crate) fn material_schedule(&self) -> SeparateSchedule {
+        let own = SeparateSchedule::default();
+        let normal_steps = if self.schedule.normal_steps > 0 { own.normal_steps } else { 0 };
+        SeparateSchedule { is_fitted: self.schedule.rounds > 0, normal_steps, ..own }
     }
 }
 

@@ -10,9 +10,9 @@ use crate::budget::shares;
 use crate::error::BakeError;
 use crate::report::Work;
 use parbake_fit::backend::{Backend, Cpu};
-use parbake_fit::material_problem::MaterialProblem;
 use parbake_fit::parallax_maps::{FittedMaps, ParallaxMaps, ParallaxReport, fit_parallax_maps};
-use parbake_fit::schedule::{Comparison, Fitted, fit_maps, fit_textures};
+use parbake_fit::schedule::{Comparison, Fitted, fit_textures};
+use parbake_fit::separate_maps::fit_separate_maps;
 use parbake_image::MapKind;
 use parbake_image::quantise::from_image;
 use parbake_model::Model;
@@ -98,8 +98,7 @@ pub(crate) fn fit_views<W: Watcher>(
             return Err(unseen());
         }
         clock.lap(Stage::Sampling);
-        let problem = MaterialProblem::new(&samples, atlas, start.kinds());
-        let fitted = fit_maps(&problem, start, &Cpu, srgb, &plan.material_schedule(), scope);
+        let fitted = fit_separate_maps(&samples, atlas, start, &Cpu, srgb, &plan.material_schedule(), scope);
         let (samples, parallax_report) = (samples.len(), parallax_report.flatten());
         return Ok(FittedTextures { fitted, views, samples, parallax: maps, parallax_report });
     }
@@ -126,8 +125,9 @@ pub(crate) fn fit_views<W: Watcher>(
     let (mut start, mut schedule) = (start.clone(), plan.schedule);
     if schedule.normal_steps > 0 && !options.fits_normals_to_headlight() {
         let (samples, _) = sampled(maps.as_ref());
-        let problem = MaterialProblem::new(&samples, atlas, [MapKind::Normal].into_iter());
-        for (kind, image) in fit_maps(&problem, &start, &Cpu, srgb, &plan.material_schedule(), scope).images {
+        let (normals, schedule_of_normals) = (start.only(MapKind::Normal), plan.material_schedule());
+        let fitted = fit_separate_maps(&samples, atlas, &normals, &Cpu, srgb, &schedule_of_normals, scope);
+        for (kind, image) in fitted.images {
             start.insert(kind, from_image(kind, &image, srgb));
         }
         schedule.normal_steps = 0;

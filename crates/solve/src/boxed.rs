@@ -10,42 +10,83 @@ use rayon::prelude::*;
 /// Rounds of the active set: more change nothing that eight bits would show.
 const ROUNDS: usize = 3;
 
-/// 1 in lanes that may move, 0 in those that are held: lanes on a face of the box, or beyond it, that the residual
-/// pushes outwards.
-pub fn free_lanes(values: &[Vec4], residual: &[Vec4]) -> Vec<Vec4> {
-    let is_free = |x: f32, r: f32| f32::from(!(x <= 0.0 && r < 0.0 || x >= 1.0 && r > 0.0));
+/// Which of a texel's four lanes may move: a bit each, the lowest for the first. A byte a texel, since solvers
+/// read it in every step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct FreeLanes(u8);
+
+impl FreeLanes {
+    /// All of them.
+    pub const ALL: Self = Self(0b1111);
+
+    /// 1 in lanes that may move, 0 in those that are held.
+    #[inline(always)]
+    pub fn mask(self) -> Vec4 {
+        MASKS[usize::from(self.0 & 0b1111)]
+    }
+
+    /// Holds a lane.
+    pub fn hold(&mut self, lane: usize) {
+        self.0 &= !(1 << lane);
+    }
+}
+
+/// [`FreeLanes::mask`] of every byte.
+const MASKS: [Vec4; 16] = {
+    let mut masks = [Vec4::ZERO; 16];
+    let mut bits = 0;
+    while bits < 16 {
+        masks[bits] = Vec4::new(
+            (bits & 1) as f32,
+            (bits >> 1 & 1) as f32,
+            (bits >> 2 & 1) as f32,
+            (bits >> 3 & 1) as f32,
+        );
+        bits += 1;
+    }
+    masks
+};
+
+/// Which lanes may move: not those on a face of the box, or beyond it, that the residual pushes outwards.
+pub fn free_lanes(values: &[Vec4], residual: &[Vec4]) -> Vec<FreeLanes> {
+    let is_held = |x: f32, r: f32| x <= 0.0 && r < 0.0 || x >= 1.0 && r > 0.0;
     (values.par_iter().zip(residual))
-        .map(|(x, r)| Vec4::from_array(std::array::from_fn(|k| is_free(x[k], r[k]))))
+        .map(|(x, r)| {
+            let mut free = FreeLanes::ALL;
+            (0..4).filter(|&k| is_held(x[k], r[k])).for_each(|k| free.hold(k));
+            free
+        })
         .collect()
 }
 
 /// Moves `values` towards the solution of `A d = b` for their change d, `b` being the matrix's own
 /// right-hand side; values end within [0, 1]. `solve` solves `A d = r` from zero, for a right-hand side r and
-/// lanes that are free (1) or held (0).
+/// the lanes that are free.
 pub fn solve_in_box(
     matrix: &Stencil<Diagonal>,
     values: &mut [Vec4],
-    solve: impl Fn(&[Vec4], &[Vec4]) -> (Vec<Vec4>, Outcome),
+    solve: impl Fn(&[Vec4], &[FreeLanes]) -> (Vec<Vec4>, Outcome),
 ) -> Outcome {
     let mut residual = matrix.right();
     let mut free = free_lanes(values, &residual);
-    let begin = values.to_vec();
     let mut total = Outcome { steps: 0, reduction: 1.0 };
     for round in 0..ROUNDS {
-        let (step, outcome) = solve(&residual, &free);
+        let (mut step, outcome) = solve(&residual, &free);
         total.steps += outcome.steps;
         total.reduction = outcome.reduction;
         let hits: usize = values
             .par_iter_mut()
-            .zip(&step)
+            .zip(&mut step)
             .zip(&mut free)
             .map(|((x, step), free)| {
-                let moved = *x + *step;
+                let (before, moved) = (*x, *x + *step);
                 *x = moved.clamp(Vec4::ZERO, Vec4::ONE);
+                *step = *x - before;
                 let mut hits = 0;
                 for k in 0..3 {
                     if moved[k] != x[k] {
-                        free[k] = 0.0;
+                        free.hold(k);
                         hits += 1;
                     }
                 }
@@ -55,10 +96,10 @@ pub fn solve_in_box(
         if hits == 0 || round + 1 == ROUNDS {
             break;
         }
+        let mut answer = vec![Vec4::ZERO; step.len()];
+        matrix.product(&step, &mut answer);
         drop(step);
-        let change: Vec<Vec4> = values.par_iter().zip(&begin).map(|(x, b)| *x - *b).collect();
-        matrix.product(&change, &mut residual);
-        residual.par_iter_mut().zip(&matrix.rows).for_each(|(r, row)| *r = row.right - *r);
+        residual.par_iter_mut().zip(&answer).for_each(|(r, answer)| *r -= *answer);
     }
     total
 }

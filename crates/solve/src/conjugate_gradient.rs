@@ -5,6 +5,7 @@
 //! inverse stay as they are. Inner products are summed row by row in order: the result does not depend on the
 //! number of threads.
 
+use crate::boxed::FreeLanes;
 use crate::operator::{Coupled, Inner, Operator};
 use crate::stencil::{Block, Stencil};
 use glam::Vec4;
@@ -55,18 +56,18 @@ pub fn squared_norm<O: Operator>(operator: &O, r: &[Vec4]) -> O::Inner {
 }
 
 /// Moves `x` towards the solution. `r` is the residual `b − A x`, zero in lanes that are held, and `rho` its
-/// [`squared_norm`]; `free` holds 1 in lanes that may move and 0 in those that must not, if any is held. Returns
+/// [`squared_norm`]; `free` says which lanes may move, if any is held. Returns
 /// the steps done and the squared norm that is left.
 pub fn descend<O: Operator>(
     operator: &mut O,
     x: &mut [Vec4],
     r: &mut [Vec4],
     mut rho: O::Inner,
-    free: Option<&[Vec4]>,
+    free: Option<&[FreeLanes]>,
     stop: &Stop<O::Inner>,
 ) -> (usize, O::Inner) {
     let width = operator.width();
-    let mask = |i: usize| free.map_or(Vec4::ONE, |f| f[i]);
+    let mask = |i: usize| free.map_or(Vec4::ONE, |f| f[i].mask());
     // Masked like r, the preconditioned residual keeps the direction p inside the mask, so that A p needs
     // no mask of its own before it meets p.
     let masked = |operator: &O, i: usize, r: Vec4| operator.precondition(i, r) * mask(i);
@@ -132,17 +133,17 @@ impl<B: Block> Operator for BlockJacobi<'_, B> {
 /// Squared norms up to this count as 0.
 const NOTHING: f64 = 1e-30;
 
-/// Solves `A x = b`, starting at zero. `free`, if given, holds 1 in lanes that may
-/// move and 0 in those that must not.
+/// Solves `A x = b`, starting at zero. `free`, if given, says which lanes may
+/// move.
 pub fn solve<B: Block>(
     matrix: &Stencil<B>,
     right: &[Vec4],
-    free: Option<&[Vec4]>,
+    free: Option<&[FreeLanes]>,
     effort: &Effort,
 ) -> (Vec<Vec4>, Outcome) {
     let inverse = matrix.rows.par_iter().map(|r| r.centre.inverse()).collect();
     let mut operator = BlockJacobi { matrix, inverse };
-    let mask = |i: usize| free.map_or(Vec4::ONE, |f| f[i]);
+    let mask = |i: usize| free.map_or(Vec4::ONE, |f| f[i].mask());
     let mut x = vec![Vec4::ZERO; right.len()];
     let mut r: Vec<Vec4> = right.par_iter().enumerate().map(|(i, b)| *b * mask(i)).collect();
     let first = squared_norm(&operator, &r);
@@ -187,8 +188,8 @@ mod tests {
     #[test]
     fn held_lanes_stay() {
         let a = chain();
-        let mut free = vec![Vec4::ONE; 16];
-        free[5] = Vec4::new(0.0, 1.0, 1.0, 1.0);
+        let mut free = vec![FreeLanes::ALL; 16];
+        free[5].hold(0);
         let (x, _) = solve(&a, &a.right(), Some(&free), &Effort { steps: 60, tolerance: 1e-7 });
         let mut y = vec![Vec4::ZERO; 16];
         a.product(&x, &mut y);

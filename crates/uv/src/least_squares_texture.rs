@@ -19,7 +19,7 @@ pub use crate::parameterized::ParameterizedSignal;
 use crate::rounding::rounded;
 use glam::Vec4;
 use parbake_image::FloatImage;
-use parbake_solve::boxed::free_lanes;
+use parbake_solve::boxed::{FreeLanes, free_lanes};
 use parbake_solve::conjugate_gradient::{Stop, descend, squared_norm};
 use parbake_solve::operator::{Inner, Lanes, Operator};
 use rayon::prelude::*;
@@ -115,13 +115,18 @@ impl NormalEquations {
         texture
     }
 
-    /// `free` holds 0 in lanes that must stay.
-    fn solve(&self, mut texture: FloatImage<Vec4>, solve: &Solve, free: Option<&[Vec4]>) -> FloatImage<Vec4> {
+    /// `free` says which lanes may move.
+    fn solve(
+        &self,
+        mut texture: FloatImage<Vec4>,
+        solve: &Solve,
+        free: Option<&[FreeLanes]>,
+    ) -> FloatImage<Vec4> {
         let x = &mut texture.texels;
         let mut operator = AllLevels { equations: self, room: self.room() };
         let mut r = self.residual(x, &mut operator.room);
         if let Some(free) = free {
-            r.par_iter_mut().zip(free).for_each(|(r, free)| *r *= *free);
+            r.par_iter_mut().zip(free).for_each(|(r, free)| *r *= free.mask());
         }
         let rho = squared_norm(&operator, &r);
         // Measured against the right-hand side, not the start: a good start needs fewer steps.
