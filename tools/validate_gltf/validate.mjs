@@ -29,11 +29,23 @@ async function validate(file) {
     externalResourceFunction: async (uri) =>
       new Uint8Array(await readFile(path.join(path.dirname(file), decodeURIComponent(uri)))),
   });
-  const shown = report.issues.messages.filter((message) => message.severity <= 1);
+  const known = unknownToIt(report.issues.messages);
+  const shown = report.issues.messages.filter((message) => message.severity <= 1 && !known.has(message));
   for (const { severity, pointer, code, message } of shown) {
     console.log(`${file}: ${SEVERITIES[severity]} at ${pointer ?? 'the file'}: ${message} (${code})`);
   }
-  return [report.issues.numErrors, report.issues.numWarnings];
+  return [report.issues.numErrors, report.issues.numWarnings - known.size];
+}
+
+/**
+ * Warnings that the validator has for every KTX2 picture, other people's too: it does not know
+ * KHR_texture_basisu. Of these pictures alone, what it says of their type and of their first bytes.
+ */
+function unknownToIt(messages) {
+  const isType = ({ code, message }) => code === 'VALUE_NOT_IN_LIST' && message.includes("'image/ktx2'");
+  const pictures = new Set(messages.filter(isType).map(({ pointer }) => pointer.replace('/mimeType', '')));
+  const isFormat = ({ code, pointer }) => code === 'IMAGE_UNRECOGNIZED_FORMAT' && pictures.has(pointer);
+  return new Set(messages.filter((message) => isType(message) || isFormat(message)));
 }
 
 const given = process.argv.slice(2);

@@ -1,9 +1,8 @@
 //! What can be typed.
 
-use crate::formats::FormatOptions;
 use crate::rules::{NOT_IN_COMPRESS, WITH_NORMAL_MAPS};
 use clap::{Args, Command as Clap, CommandFactory, Parser, Subcommand, ValueEnum};
-use parbake::{BakeOptions, EvaluateOptions, ImageOptions, parse_texels};
+use parbake::{BakeOptions, EvaluateOptions, ImageOptions, WriteOptions, parse_texels};
 use parbake_report::TurntableOptions;
 use parbake_reproduce::ReproduceOptions;
 use parbake_reproduce::variants::VariantsOptions;
@@ -143,10 +142,6 @@ pub struct BakeCommand {
     #[command(flatten, next_help_heading = IO)]
     pub reading: Reading,
 
-    /// How the file is written
-    #[command(flatten, next_help_heading = "Formats")]
-    pub formats: FormatOptions,
-
     /// What to tell
     #[command(flatten, next_help_heading = IO)]
     pub talk: Talk,
@@ -189,10 +184,6 @@ pub struct CompressCommand {
     /// What to read
     #[command(flatten, next_help_heading = IO)]
     pub reading: Reading,
-
-    /// How the file is written
-    #[command(flatten, next_help_heading = "Formats")]
-    pub formats: FormatOptions,
 
     /// What to tell
     #[command(flatten, next_help_heading = IO)]
@@ -449,8 +440,8 @@ pub struct SimplifyCommand {
     pub reading: Reading,
 
     /// How the file is written
-    #[command(flatten, next_help_heading = "Formats")]
-    pub formats: FormatOptions,
+    #[command(flatten)]
+    pub formats: WriteOptions,
 
     /// What to tell
     #[command(flatten, next_help_heading = IO)]

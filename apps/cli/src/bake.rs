@@ -3,7 +3,7 @@
 use crate::arguments::{BakeCommand, Talk};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
-use crate::formats::{FormatOptions, write_model};
+use crate::formats::{check_formats, write_model};
 use crate::options_file::merged;
 use crate::outputs::{check_beside, check_maps, check_not_input, check_output, is_stdout};
 use crate::progress::{Console, interrupted};
@@ -28,7 +28,7 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
     let (output, inputs) = (&command.output, [command.high.as_path(), command.low.as_path()]);
     check_maps(output, &options)?;
     check_output(output)?;
-    command.formats.check(output)?;
+    check_formats(output, &options.write)?;
     check_not_input(output, &inputs)?;
     check_beside(Some(output), command.json.as_ref(), command.report.as_ref(), &inputs)?;
     let console = Console::for_bake(command.talk, options.time_budget).confined(command.reading);
@@ -37,7 +37,7 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
         if command.strict {
             check_textures(&pair.warnings)?;
         }
-        let mut baked = bake_and_write(&pair, &options, (output, &command.formats), &console)?;
+        let mut baked = bake_and_write(&pair, &options, output, &console)?;
         if !command.talk.quiet || command.json.is_some() || command.report.is_some() {
             let (flip, channels) =
                 (command.report.is_some(), command.report.is_some() || command.json.is_some());
@@ -115,12 +115,13 @@ pub fn read_pair(high: &Path, low: &Path, console: &Console) -> Result<Pair, Fai
 pub fn bake_and_write(
     pair: &Pair,
     options: &BakeOptions,
-    (output, formats): (&Path, &FormatOptions),
+    output: &Path,
     console: &Console,
 ) -> Result<Baked, Failure> {
     let mut baked = bake(&pair.high, &pair.low, options, console)?;
     let begin = console.seconds();
-    write_model(output, &with_normal_y(&baked.model, options.normal_y), formats, console)?;
+    let model = with_normal_y(&baked.model, options.normal_y);
+    (_, baked.report.written) = write_model(output, &model, &options.write, console)?;
     let report = &mut baked.report;
     report.warnings.splice(0..0, pair.warnings.iter().map(|warning| warning.text.clone()));
     let reading = pair.seconds.map(|seconds| StageTime { stage: Stage::Read, seconds });

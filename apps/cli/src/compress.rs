@@ -4,7 +4,7 @@ use crate::arguments::CompressCommand;
 use crate::bake::{check_textures, compare, ending, gains, print, read, write_report};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
-use crate::formats::write_model;
+use crate::formats::{check_formats, write_model};
 use crate::options_file::merged;
 use crate::outputs::{check_beside, check_not_input, check_output, is_stdout};
 use crate::progress::Console;
@@ -24,7 +24,7 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
     check_budget(&options)?;
     let (output, inputs) = (&command.output, [command.model.as_path()]);
     check_output(output)?;
-    command.formats.check(output)?;
+    check_formats(output, &options.write)?;
     check_not_input(output, &inputs)?;
     check_beside(Some(output), command.json.as_ref(), command.report.as_ref(), &inputs)?;
     let console = Console::for_bake(command.talk, options.time_budget).confined(command.reading);
@@ -36,7 +36,9 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
         let mut baked = compress(&loaded.model, &options, &console)?;
         let begin = console.seconds();
         let model = with_normal_y(&baked.model, options.normal_y);
-        let bytes = [loaded.bytes, write_model(output, &model, &command.formats, &console)?];
+        let (after, written) = write_model(output, &model, &options.write, &console)?;
+        let bytes = [loaded.bytes, after];
+        baked.report.written = written;
         baked.report.warnings.splice(0..0, loaded.warnings.iter().map(|warning| warning.text.clone()));
         baked.report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
         if !command.talk.quiet || command.json.is_some() || command.report.is_some() {

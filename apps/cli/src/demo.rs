@@ -4,7 +4,6 @@ use crate::arguments::{DemoCommand, DemoScene};
 use crate::bake::{Pair, bake_and_write, compare, ending, tell, write_report};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
-use crate::formats::FormatOptions;
 use crate::outputs::check_place;
 use crate::pictures::write_pictures;
 use crate::progress::Console;
@@ -38,7 +37,7 @@ pub fn run(command: &DemoCommand, given: &ArgMatches) -> Result<Ending, Failure>
         write_glb(&folder.join("demo_low.glb"), &low)?;
         let output = folder.join("demo.glb");
         let pair = Pair { high, low, warnings: Vec::new(), seconds: None };
-        let mut baked = bake_and_write(&pair, &command.bake, (&output, &FormatOptions::default()), &console)?;
+        let mut baked = bake_and_write(&pair, &command.bake, &output, &console)?;
         compare(&pair.high, &mut baked, Detail { flip: true, channels: true }, &console)?;
         let report = folder.join("demo.html");
         write_report(&report, &pair.high, &baked, &console)?;

@@ -4,12 +4,14 @@ use crate::arguments::ImageCommand;
 use crate::bake::{check_input, print};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
-use crate::formats::{FormatOptions, write_model};
+use crate::formats::write_model;
 use crate::outputs::{check_animation, check_beside, check_not_input, check_output, is_stdout};
 use crate::progress::{Console, interrupted};
 use crate::rules;
 use clap::ArgMatches;
-use parbake::{BakedImage, ImageReport, Limits, bake_image, read_image, with_threads, write_file};
+use parbake::{
+    BakedImage, ImageReport, Limits, WriteOptions, bake_image, read_image, with_threads, write_file,
+};
 use parbake_report::{UvAnimationOptions, uv_animation};
 use std::path::Path;
 
@@ -31,8 +33,8 @@ pub fn run(command: &ImageCommand, given: &ArgMatches) -> Result<Ending, Failure
         let picture = read_image(&command.picture, &Limits::default())?;
         let baked = bake_image(&picture, &command.options, &console)?;
         let before = std::fs::metadata(&command.picture).map_or(0, |file| file.len());
-        let bytes =
-            [before, write_model(&command.output, &baked.model, &FormatOptions::default(), &console)?];
+        let (after, _) = write_model(&command.output, &baked.model, &WriteOptions::default(), &console)?;
+        let bytes = [before, after];
         if let Some(path) = &command.json {
             let about =
                 ("image", &[("picture", command.picture.as_path())][..], Some(command.output.as_path()));

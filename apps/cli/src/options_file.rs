@@ -123,6 +123,10 @@ mod tests {
             ("{\"texture_size\": \"big\"}", "expected a whole number of texels"),
             ("{\"parallax_order\": \"1k\"}", "expected a whole number that is not negative"),
             ("{\"keep_normals\": 1}", "expected true or false"),
+            (
+                "{\"texture_format\": \"bmp\"}",
+                "expected one of \"png\", \"jpeg\", \"webp\", \"webp-lossless\"",
+            ),
             ("{\"gutter\": []}", "line 1, column 2"),
         ] {
             let said = options_in(text).unwrap_err();

@@ -7,7 +7,7 @@
 use crate::failure::Failure;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
-use parbake::{BakeOptions, ImageOptions, Method, Parallax, PictureUv, UvMode, Work};
+use parbake::{BakeOptions, ImageOptions, Method, Parallax, PictureUv, TextureFormat, UvMode, Work};
 use serde_json::Value;
 use std::path::Path;
 
@@ -80,6 +80,12 @@ pub fn check(
         if options.uv != UvMode::Optimize {
             refuse(&["uv_steps"], "does nothing without --uv optimize; choose that or leave it out")?;
         }
+    }
+    if matches!(options.write.texture_format, TextureFormat::Png | TextureFormat::WebpLossless) {
+        refuse(
+            &["texture_quality"],
+            "does nothing with a lossless --texture-format; choose another or leave it out",
+        )?;
     }
     if options.silhouette_weight() == 0.0 {
         refuse(

@@ -3,7 +3,7 @@
 use crate::arguments::SimplifyCommand;
 use crate::bake::read;
 use crate::failure::{Ending, Failure};
-use crate::formats::write_model;
+use crate::formats::{check_formats, write_model};
 use crate::outputs::{check_not_input, check_output};
 use crate::progress::Console;
 use parbake::{simplified, subdivided};
@@ -11,7 +11,7 @@ use parbake::{simplified, subdivided};
 /// Runs the command.
 pub fn run(command: &SimplifyCommand) -> Result<Ending, Failure> {
     check_output(&command.output)?;
-    command.formats.check(&command.output)?;
+    check_formats(&command.output, &command.formats)?;
     check_not_input(&command.output, &[&command.model])?;
     if command.triangles < 4 {
         return Err(Failure::Usage(format!("--triangles {}: at least 4", command.triangles)));

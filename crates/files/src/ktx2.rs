@@ -12,20 +12,20 @@ use crate::image_in::ImageTrouble;
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
 
 /// The first bytes of a KTX2 file.
-const MAGIC: &[u8] = b"\xabKTX 20\xbb\r\n\x1a\n";
+pub(crate) const MAGIC: &[u8] = b"\xabKTX 20\xbb\r\n\x1a\n";
 
 /// Bytes of the header and the index, before the levels' own entries.
-const HEADER: usize = 80;
+pub(crate) const HEADER: usize = 80;
 
 /// Bytes of a level's entry.
-const LEVEL: usize = 24;
+pub(crate) const LEVEL: usize = 24;
 
 /// Bytes of a block of 4 × 4 texels in UASTC.
-const BLOCK: u64 = 16;
+pub(crate) const BLOCK: u64 = 16;
 
 /// Khronos Data Format models (KDF 1.3, table 4).
-const ETC1S: u32 = 163;
-const UASTC: u32 = 166;
+pub(crate) const ETC1S: u32 = 163;
+pub(crate) const UASTC: u32 = 166;
 
 /// What a texel's channels stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

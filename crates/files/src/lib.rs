@@ -14,6 +14,7 @@ mod guard;
 mod image_in;
 mod image_out;
 mod ktx2;
+mod ktx2_out;
 mod limits;
 mod model_in;
 mod model_out;
@@ -38,5 +39,5 @@ pub use resources::{Folder, NoResources, Resources};
 pub use warning::{Warning, WarningKind};
 pub use write_options::{
     DEFAULT_TEXTURE_QUALITY, LEAST_DATA_QUALITY, MeshCompression, TextureFormat, WriteOptions, Written,
-    WrittenTexture,
+    WrittenMesh, WrittenTexture,
 };

@@ -1,14 +1,16 @@
 //! Textures of a GLB file out, in the format that was asked for, with what that lost.
 //!
-//! Contract: what a format cannot hold (alpha in JPEG) is written as PNG, and the media type says so.
+//! Contract: what a format cannot hold (alpha in JPEG, sides of 30 texels in KTX2) is written as PNG, and the
+//! result says so and why.
 
 use crate::image_out::{Raw, pack_png, refuse};
+use crate::ktx2_out::{self, Codec, Content};
 use crate::write_options::{LEAST_DATA_QUALITY, TextureFormat, WriteOptions};
 use crate::{FileError, Limits, decode_image};
 use image::codecs::jpeg::JpegEncoder;
-use image::codecs::webp::WebPEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 use parbake_model::Image;
+use webp::{Encoder, WebPConfig};
 
 /// What a texture is used for, which bounds what it may lose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,115 +23,147 @@ pub(crate) enum Use {
     Exact,
 }
 
+/// What is known of a texture from the materials that have it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Purpose {
+    pub of: Use,
+    /// What its numbers are, for mip levels.
+    pub content: Content,
+    /// The alpha from which on a material shows anything, if one cuts out by this texture.
+    pub cutoff: Option<f32>,
+}
+
 /// An encoded texture.
 pub(crate) struct Encoded {
     pub bytes: Vec<u8>,
-    pub mime_type: &'static str,
+    pub format: TextureFormat,
     /// As in [`crate::WrittenTexture`].
     pub psnr: Option<f64>,
+    /// As in [`crate::WrittenTexture`].
+    pub reason: Option<String>,
 }
+
+/// The longest side of a WebP picture.
+const LONGEST_WEBP: usize = 16_383;
+
+/// Quality from which on UASTC's encoder takes its time: for 0.2 to 0.4 dB, twice as long.
+const CAREFUL: u8 = 96;
 
 /// Encodes a texture.
 ///
 /// # Errors
 /// As [`crate::encode_png`].
-pub(crate) fn encode_texture(image: &Image, of: Use, options: &WriteOptions) -> Result<Encoded, FileError> {
-    match (options.texture_format, of) {
-        (TextureFormat::Jpeg, Use::Color | Use::Data) => {
-            let raw = Raw::new(image)?;
-            if raw.opaque {
-                let least = if of == Use::Data { LEAST_DATA_QUALITY } else { 1 };
-                return jpeg(image, &raw, options.texture_quality.clamp(least, 100));
-            }
-            png(image)
+pub(crate) fn encode_texture(
+    image: &Image,
+    purpose: Purpose,
+    options: &WriteOptions,
+) -> Result<Encoded, FileError> {
+    let raw = Raw::new(image)?;
+    let format = options.texture_format;
+    if let Some(reason) = misfit(image, &raw, purpose.of, format) {
+        return Ok(Encoded { reason: Some(reason), ..png(image)? });
+    }
+    let least = if purpose.of == Use::Data { LEAST_DATA_QUALITY } else { 1 };
+    let quality = options.texture_quality.clamp(least, 100);
+    let with = |texture_format| WriteOptions { texture_format, ..*options };
+    let bytes = match format {
+        TextureFormat::Png => return png(image),
+        TextureFormat::Jpeg => jpeg(image, &raw, quality)?,
+        TextureFormat::Webp if purpose.of == Use::Data => {
+            // It has chroma at half the resolution: a baked normal map would be left with 27 dB.
+            return encode_texture(image, purpose, &with(TextureFormat::WebpLossless));
         }
-        (TextureFormat::Webp, _) => webp(image),
-        _ => png(image),
+        TextureFormat::Webp => webp(image, &raw, Some(quality))?,
+        TextureFormat::WebpLossless => webp(image, &raw, None)?,
+        TextureFormat::Ktx2 => ktx2(image, purpose, uastc(options))?,
+        TextureFormat::Ktx2Etc1s if purpose.of == Use::Data => {
+            // One hue a block is too little for normals: 12 dB less.
+            return encode_texture(image, purpose, &with(TextureFormat::Ktx2));
+        }
+        TextureFormat::Ktx2Etc1s => {
+            // 1 to 100 onto the codec's own 1 to 255.
+            let quality = 1 + (u32::from(quality) - 1) * 254 / 99;
+            ktx2(image, purpose, Codec::Etc1s(quality))?
+        }
+    };
+    let shown = decode_image(&image.name, &bytes, &Limits::default())?;
+    Ok(Encoded { bytes, format, psnr: psnr(image, &shown), reason: None })
+}
+
+/// Why a picture cannot be in a format.
+fn misfit(image: &Image, raw: &Raw, of: Use, format: TextureFormat) -> Option<String> {
+    let (width, height) = (image.width, image.height);
+    match format {
+        TextureFormat::Png => None,
+        TextureFormat::Webp | TextureFormat::WebpLossless if width.max(height) > LONGEST_WEBP => {
+            Some(format!("WebP has sides of up to {LONGEST_WEBP} texels"))
+        }
+        TextureFormat::WebpLossless => None,
+        _ if of == Use::Exact => Some("every bit of it counts".into()),
+        TextureFormat::Jpeg if !raw.opaque => Some("JPEG has no alpha".into()),
+        TextureFormat::Ktx2 | TextureFormat::Ktx2Etc1s if !ktx2_out::fits(image) => Some(format!(
+            "KTX2 in glTF has sides of 4, 8, 12 and so on up to {} texels, this one has {width} × {height}",
+            ktx2_out::LONGEST_SIDE
+        )),
+        _ => None,
     }
 }
 
 fn png(image: &Image) -> Result<Encoded, FileError> {
-    Ok(Encoded { bytes: pack_png(image)?, mime_type: "image/png", psnr: None })
+    Ok(Encoded { bytes: pack_png(image)?, format: TextureFormat::Png, psnr: None, reason: None })
 }
 
-fn jpeg(image: &Image, raw: &Raw, quality: u8) -> Result<Encoded, FileError> {
+fn jpeg(image: &Image, raw: &Raw, quality: u8) -> Result<Vec<u8>, FileError> {
     let mut bytes = Vec::new();
     JpegEncoder::new_with_quality(&mut bytes, quality)
         .write_image(&raw.samples, raw.width, raw.height, ExtendedColorType::Rgb8)
         .map_err(|e| refuse(image, format!("cannot be encoded as JPEG: {e}")))?;
-    let shown = decode_image(&image.name, &bytes, &Limits::default())?;
-    Ok(Encoded { bytes, mime_type: "image/jpeg", psnr: psnr(image, &shown) })
+    Ok(bytes)
 }
 
-fn webp(image: &Image) -> Result<Encoded, FileError> {
-    let Raw { width, height, samples, opaque } = Raw::new(image)?;
-    let kind = if opaque { ExtendedColorType::Rgb8 } else { ExtendedColorType::Rgba8 };
-    let mut bytes = Vec::new();
-    WebPEncoder::new_lossless(&mut bytes)
-        .write_image(&samples, width, height, kind)
-        .map_err(|e| refuse(image, format!("cannot be encoded as WebP: {e}")))?;
-    Ok(Encoded { bytes, mime_type: "image/webp", psnr: None })
+/// Without a quality, lossless.
+fn webp(image: &Image, raw: &Raw, quality: Option<u8>) -> Result<Vec<u8>, FileError> {
+    let failed = |reason: &str| refuse(image, format!("cannot be encoded as WebP: {reason}"));
+    let mut config = WebPConfig::new().map_err(|()| failed("the encoder has another version"))?;
+    match quality {
+        Some(quality) => config.quality = f32::from(quality),
+        None => {
+            config.lossless = 1;
+            // Effort: a second at 1024², for nearly all that ten seconds gain.
+            (config.quality, config.method) = (90.0, 5);
+        }
+    }
+    config.alpha_quality = 100;
+    // Colours beside and under what is transparent are seen where textures are filtered.
+    config.exact = 1;
+    // Chroma at half the resolution is the format's; this sharpens what is made of it.
+    config.use_sharp_yuv = 1;
+    let encoder = match raw.opaque {
+        true => Encoder::from_rgb(&raw.samples, raw.width, raw.height),
+        false => Encoder::from_rgba(&raw.samples, raw.width, raw.height),
+    };
+    Ok(encoder.encode_advanced(&config).map_err(|e| failed(&format!("{e:?}")))?.to_vec())
 }
 
-/// Over red, green and blue, since no alpha is lossy; none where both are alike.
+fn uastc(options: &WriteOptions) -> Codec {
+    Codec::Uastc { careful: options.texture_quality >= CAREFUL }
+}
+
+fn ktx2(image: &Image, purpose: Purpose, codec: Codec) -> Result<Vec<u8>, FileError> {
+    ktx2_out::encode(image, purpose.content, purpose.cutoff, codec)
+        .ok_or_else(|| refuse(image, "cannot be encoded as KTX2: the Basis Universal encoder failed".into()))
+}
+
+/// Over red, green and blue, and over alpha where there is any; none where both are alike.
 fn psnr(one: &Image, other: &Image) -> Option<f64> {
-    let channels = one.pixels.iter().zip(&other.pixels).flat_map(|(a, b)| (0..3).map(|c| (a[c], b[c])));
-    let sum: u64 = channels.map(|(a, b)| u64::from(a.abs_diff(b)).pow(2)).sum();
-    let mean = sum as f64 / (3 * one.pixels.len().max(1)) as f64;
+    let has_alpha = [one, other].iter().any(|image| image.pixels.iter().any(|p| p[3] != 255));
+    let channels = if has_alpha { 4 } else { 3 };
+    let pairs = one.pixels.iter().zip(&other.pixels).flat_map(|(a, b)| (0..channels).map(|c| (a[c], b[c])));
+    let sum: u64 = pairs.map(|(a, b)| u64::from(a.abs_diff(b)).pow(2)).sum();
+    let mean = sum as f64 / (channels * one.pixels.len().max(1)) as f64;
     (sum > 0).then(|| 20.0 * 255f64.log10() - 10.0 * mean.log10())
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::MeshCompression;
-
-    fn options(texture_format: TextureFormat, texture_quality: u8) -> WriteOptions {
-        WriteOptions { texture_format, texture_quality, mesh_compression: MeshCompression::None }
-    }
-
-    fn picture() -> Image {
-        let mut image = Image::solid("a", 64, 64, [0, 0, 0, 255]);
-        for (i, p) in image.pixels.iter_mut().enumerate() {
-            let (x, y) = ((i % 64) as f32, (i / 64) as f32);
-            let wave = |f: f32| (127.5 + 120.0 * (f * x).sin() * (0.5 * f * y).cos()) as u8;
-            *p = [wave(0.1), wave(0.2), wave(0.3), 255];
-        }
-        image
-    }
-
-    /// Protects the figure of loss, and the order of qualities.
-    #[test]
-    fn jpeg_says_what_it_lost() {
-        let image = picture();
-        let at =
-            |quality| encode_texture(&image, Use::Color, &options(TextureFormat::Jpeg, quality)).unwrap();
-        let (low, high) = (at(30), at(95));
-        assert!(low.bytes.len() < high.bytes.len());
-        assert!(low.psnr.unwrap() < high.psnr.unwrap() && high.psnr.unwrap() > 35.0);
-        assert_eq!(high.mime_type, "image/jpeg");
-    }
-
-    /// Protects data maps and coefficients from low qualities, and alpha from JPEG.
-    #[test]
-    fn what_must_not_be_lost_is_kept() {
-        let mut image = picture();
-        let write = |image: &Image, of| encode_texture(image, of, &options(TextureFormat::Jpeg, 10)).unwrap();
-        assert!(write(&image, Use::Data).psnr.unwrap() > write(&image, Use::Color).psnr.unwrap() + 3.0);
-        assert_eq!(write(&image, Use::Exact).mime_type, "image/png");
-        image.pixels[0][3] = 9;
-        assert_eq!(write(&image, Use::Color).mime_type, "image/png");
-    }
-
-    /// Protects the promise that WebP loses nothing, with and without alpha.
-    #[test]
-    fn webp_is_lossless() {
-        let mut image = picture();
-        for alpha in [255, 7] {
-            image.pixels[5][3] = alpha;
-            let out = encode_texture(&image, Use::Data, &options(TextureFormat::Webp, 1)).unwrap();
-            assert_eq!(decode_image("a", &out.bytes, &Limits::default()).unwrap(), image);
-            assert_eq!(out.psnr, None);
-        }
-    }
-}
+#[path = "texture_out_tests.rs"]
+mod tests;

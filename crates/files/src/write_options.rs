@@ -1,50 +1,108 @@
 //! How a GLB file is written, and what came of it: the image format of textures, the compression of
 //! the mesh, and for each of them bytes and loss.
+//!
+//! Names and ranges here are those of the command line, of options files and of JSON outputs.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The image format of textures in a GLB file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
 pub enum TextureFormat {
-    /// Lossless; every viewer reads it.
+    /// Lossless; every viewer reads it
     #[default]
     Png,
-    /// Lossy; every viewer reads it. Textures with alpha, and maps of spherical harmonics, stay PNG.
+    /// Lossy; every viewer reads it. Textures with alpha stay PNG
     Jpeg,
-    /// Lossless WebP (`EXT_texture_webp`), often larger than the packed PNG. No lossy encoder of a permissive licence is
-    /// in use here.
+    /// Lossy colours, two thirds of jpeg; alpha, normal maps and data maps are lossless; viewers need EXT_texture_webp
     Webp,
+    /// Lossless, a seventh smaller than png; viewers need EXT_texture_webp
+    WebpLossless,
+    /// Stays compressed on the GPU, mip levels inside: UASTC, the better one, 1.3 bytes a texel; viewers need
+    /// KHR_texture_basisu
+    Ktx2,
+    /// As ktx2, but colours in ETC1S: small downloads, visible loss; normal maps and data maps stay UASTC
+    Ktx2Etc1s,
+}
+
+impl TextureFormat {
+    /// Its media type.
+    pub fn media_type(self) -> &'static str {
+        match self {
+            Self::Png => "image/png",
+            Self::Jpeg => "image/jpeg",
+            Self::Webp | Self::WebpLossless => "image/webp",
+            Self::Ktx2 | Self::Ktx2Etc1s => "image/ktx2",
+        }
+    }
+
+    /// What to call it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Png => "PNG",
+            Self::Jpeg => "JPEG",
+            Self::Webp => "WebP",
+            Self::WebpLossless => "lossless WebP",
+            Self::Ktx2 => "KTX2 (UASTC)",
+            Self::Ktx2Etc1s => "KTX2 (ETC1S)",
+        }
+    }
 }
 
 /// How vertices and indices are stored.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
 pub enum MeshCompression {
-    /// Floats, without loss and without extensions.
+    /// Floats, without loss and without extensions
     #[default]
     None,
-    /// `KHR_mesh_quantization`: positions in 16 bits, normals, tangents and colours in 8, texture
-    /// coordinates of the unit square in 16.
+    /// 16-bit positions, 8-bit normals: KHR_mesh_quantization
     Quantized,
-    /// Quantised, then encoded losslessly with `EXT_meshopt_compression`.
+    /// Quantised, then encoded without loss: EXT_meshopt_compression
     Meshopt,
 }
 
-/// Quality of JPEG that is hard to tell from the original.
+impl MeshCompression {
+    /// What to call it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::None => "floats",
+            Self::Quantized => "quantized",
+            Self::Meshopt => "quantized, meshopt",
+        }
+    }
+}
+
+/// Quality of lossy formats that is hard to tell from the original.
 pub const DEFAULT_TEXTURE_QUALITY: u8 = 92;
 /// Least quality of JPEG for normal maps and for metal, roughness and occlusion, whose errors light
 /// makes visible. Such maps are written as if no lower quality had been asked for.
 pub const LEAST_DATA_QUALITY: u8 = 95;
 
 /// How a GLB file is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default)]
 pub struct WriteOptions {
-    /// Image format of textures.
+    /// Image format of the textures in a GLB file; parbake's parallax maps stay lossless
+    #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "FORMAT", default_value_t = TextureFormat::Png, help_heading = HEADING))]
     pub texture_format: TextureFormat,
-    /// Quality of JPEG, 1 to 100; values outside are clamped.
+
+    /// Quality of JPEG, WebP and ETC1S, 1 to 100; in JPEG, normal maps and data maps have at least 95. UASTC always
+    /// has the same size; from 96 on it is encoded with more care
+    #[cfg_attr(feature = "clap", arg(long, value_name = "QUALITY", default_value_t = DEFAULT_TEXTURE_QUALITY, value_parser = clap::value_parser!(u8).range(1..=100), help_heading = HEADING))]
     pub texture_quality: u8,
-    /// Compression of the mesh.
+
+    /// Compression of the mesh in a GLB file
+    #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "COMPRESSION", default_value_t = MeshCompression::None, help_heading = HEADING))]
     pub mesh_compression: MeshCompression,
 }
+
+/// Heading in `--help`.
+#[cfg(feature = "clap")]
+const HEADING: &str = "Formats";
 
 impl Default for WriteOptions {
     fn default() -> Self {
@@ -57,27 +115,38 @@ impl Default for WriteOptions {
 }
 
 /// What a written GLB file holds.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Written {
     /// Bytes of the file.
     pub bytes: u64,
-    /// Bytes of vertices and indices.
-    pub mesh_bytes: u64,
-    /// Largest distance of a written position from the model's, in the model's units.
-    pub position_error: f64,
+    /// The mesh.
+    pub mesh: WrittenMesh,
     /// The textures, in the order of the file.
     pub textures: Vec<WrittenTexture>,
 }
 
+/// The mesh of a written file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WrittenMesh {
+    /// How it is stored.
+    pub compression: MeshCompression,
+    /// Bytes of vertices and indices.
+    pub bytes: u64,
+    /// Largest distance of a written position from the model's, in the model's units.
+    pub position_error: f64,
+}
+
 /// A texture of a written file.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WrittenTexture {
     /// The image's name.
     pub name: String,
-    /// Its media type.
-    pub mime_type: &'static str,
-    /// Its bytes in the file.
+    /// What it was written as.
+    pub format: TextureFormat,
+    /// Its bytes in the file, mip levels included.
     pub bytes: u64,
     /// PSNR in dB of what readers decode, over all channels that it has; none where nothing is lost.
     pub psnr: Option<f64>,
+    /// Why it is not in the format that was asked for; none where it is.
+    pub reason: Option<String>,
 }

@@ -226,6 +226,7 @@ fn run(
         stages: clock.stages,
         stopped_early: fitted.stopped || views < plan.views || scope.stopped_a_stage(),
         warnings: warnings.told,
+        written: None,
         peak_memory: crate::memory::peak_memory(),
     };
     Ok(Baked {

@@ -278,6 +278,7 @@ impl OwnSurface<'_> {
             stages: Vec::new(),
             stopped_early: watcher.stopped_a_stage(),
             warnings,
+            written: None,
             peak_memory: crate::memory::peak_memory(),
         }
     }

@@ -75,7 +75,7 @@ pub use options::{
 pub use parbake_atlas::{LayoutCheck, ModelCheck, UvCheck, check_mesh, check_model};
 pub use parbake_files::{
     DEFAULT_TEXTURE_QUALITY, FileError, Limits, Loaded, MeshCompression, TextureFormat, Warning, WarningKind,
-    WriteOptions, Written, WrittenTexture, encode_png, read_image, read_model,
+    WriteOptions, Written, WrittenMesh, WrittenTexture, encode_png, read_image, read_model,
     write_atomically as write_file, write_glb, write_glb_with, write_obj,
 };
 pub use parbake_fit::parallax_maps::ParallaxReport;

@@ -7,6 +7,7 @@ use crate::normal_y::NormalY;
 #[cfg(feature = "clap")]
 use crate::texels::parse_texels;
 use crate::texels::texels;
+use parbake_files::WriteOptions;
 use parbake_image::display::{Curve, Display};
 use parbake_render::interpretation::Interpretation;
 pub use parbake_uv::mode::{Method, UvMode};
@@ -255,6 +256,11 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "SECONDS", help_heading = heading::QUALITY))]
     pub time_budget: Option<f64>,
 
+    /// How a file of the result is written; a bake itself does not depend on it
+    #[cfg_attr(feature = "clap", command(flatten))]
+    #[serde(flatten)]
+    pub write: WriteOptions,
+
     /// Shading convention of the pictures that are fitted
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Convention::Gltf, help_heading = heading::ADVANCED))]
     pub convention: Convention,
@@ -330,6 +336,7 @@ impl Default for BakeOptions {
             seed: 0,
             threads: 0,
             time_budget: None,
+            write: WriteOptions::default(),
         }
     }
 }
@@ -374,6 +381,7 @@ impl BakeOptions {
         within("cutout-size", self.cutout_size as f64, 4.0, 1024.0)?;
         within("threads", self.threads as f64, 0.0, crate::threads::MOST_THREADS as f64)?;
         within("time-budget", self.time_budget.unwrap_or(0.0), 0.0, 1e9)?;
+        within("texture-quality", f64::from(self.write.texture_quality), 1.0, 100.0)?;
         check_shading(self.shading, self.convention)?;
         if self.shape == ShapeMode::Laplacian && self.method == Method::Paper {
             let range = "keep or normal with --method paper".into();
@@ -395,6 +403,30 @@ mod tests {
         assert_eq!((options.method, options.no_content_aware), (Method::Fit, false));
         let options: crate::ImageOptions = serde_json::from_str(r#"{"grid": 20, "steps": 40}"#).unwrap();
         assert_eq!((options.method, options.steps), (Method::Fit, Some(40)));
+    }
+
+    /// Protects files of options: formats stand beside all others, under the names of the command line; a name that
+    /// nobody knows is refused, and so is a quality out of range.
+    #[test]
+    fn formats_are_options_like_others() {
+        let text = r#"{"texture_format": "ktx2-etc1s", "texture_quality": 60, "mesh_compression": "meshopt", "seed": 3}"#;
+        let options: BakeOptions = serde_json::from_str(text).unwrap();
+        let write = WriteOptions {
+            texture_format: parbake_files::TextureFormat::Ktx2Etc1s,
+            texture_quality: 60,
+            mesh_compression: parbake_files::MeshCompression::Meshopt,
+        };
+        assert_eq!((options.write, options.seed), (write, 3));
+        let json = serde_json::to_value(&options).unwrap();
+        assert_eq!(json["texture_format"], "ktx2-etc1s");
+        assert_eq!(serde_json::from_value::<BakeOptions>(json).unwrap(), options);
+        for wrong in
+            [r#"{"texture_fromat": "png"}"#, r#"{"texture_format": "bmp"}"#, r#"{"texture_quality": 300}"#]
+        {
+            assert!(serde_json::from_str::<BakeOptions>(wrong).is_err(), "{wrong}");
+        }
+        let none = WriteOptions { texture_quality: 0, ..WriteOptions::default() };
+        assert!(BakeOptions { write: none, ..BakeOptions::default() }.check().is_err());
     }
 
     /// Protects from a switch that does nothing: it belongs to the paper's method.

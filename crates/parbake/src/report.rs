@@ -3,6 +3,7 @@
 use crate::comparison::Comparison;
 use crate::options::BakeOptions;
 use parbake_atlas::UvCheck;
+use parbake_files::Written;
 use parbake_fit::parallax_maps::ParallaxReport;
 use parbake_fit::schedule::{LossPoint, Move};
 use parbake_image::MapKind;
@@ -105,6 +106,9 @@ pub struct BakeReport {
     /// [`compare_bake`](crate::compare_bake) was asked.
     #[serde(default)]
     pub comparison: Option<Comparison>,
+    /// What the written GLB file holds and what its formats lost; none until it was written.
+    #[serde(default)]
+    pub written: Option<Written>,
     /// Loss of the start and after each step.
     pub losses: Vec<LossStep>,
     /// Seconds by stage.

@@ -37,6 +37,50 @@ fn the_same_question_has_the_same_answer() {
     assert!(one != bake("seed.glb", &["--options", "1.json", "--seed", "7"]));
 }
 
+/// Protects downloads: formats come from options files and from reports as all options do; JSON and page list what
+/// each texture and the mesh lost; the same bytes for any number of threads.
+#[test]
+fn formats_are_options_and_are_reported() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    let formats = r#"{"texture_format": "ktx2-etc1s", "texture_quality": 80, "mesh_compression": "meshopt"}"#;
+    fs::write(folder.join("formats.json"), formats).unwrap();
+    let bake = |name: &str, more: &[&str]| {
+        let arguments = ["bake", "demo_high.glb", "demo_low.glb", "-o", name];
+        let output = run(folder, &[&arguments[..], more].concat());
+        (fs::read(folder.join(name)).unwrap(), text(&output.stderr))
+    };
+    let reports = [
+        "--options",
+        "formats.json",
+        "--preset",
+        "fast",
+        "--threads",
+        "1",
+        "--json",
+        "1.json",
+        "--report",
+        "1.html",
+    ];
+    let (one, said) = bake("1.glb", &[&SMALL[..], &reports].concat());
+    assert!(one == bake("2.glb", &["--options", "1.json", "--threads", "2"]).0);
+    assert!(said.contains("as KTX2 (ETC1S)") && said.contains("positions within"), "{said}");
+    let written = &json(&folder.join("1.json"))["written"];
+    assert_eq!((&written["mesh"]["compression"], &written["bytes"]), (&"meshopt".into(), &one.len().into()));
+    let textures = written["textures"].as_array().unwrap();
+    let of = |key: &str| textures.iter().map(|texture| texture[key].clone()).collect::<Vec<_>>();
+    assert_eq!(of("format"), ["ktx2-etc1s", "ktx2"], "normals stay UASTC");
+    assert!(of("psnr").iter().all(|psnr| psnr.as_f64().unwrap() > 15.0), "{textures:?}");
+    assert!(fs::read_to_string(folder.join("1.html")).unwrap().contains("KTX2 (ETC1S)"));
+    // The command line wins, and what cannot be KTX2 says why.
+    let odd = ["--options", "1.json", "--texture-size", "30", "--texture-format", "ktx2", "--json", "3.json"];
+    let (_, said) = bake("3.glb", &odd);
+    assert!(said.contains("as PNG, without loss: KTX2 in glTF has sides of 4, 8, 12"), "{said}");
+    let textures = &json(&folder.join("3.json"))["written"]["textures"];
+    assert!(textures[0]["reason"].as_str().unwrap().contains("30 × 30"), "{textures}");
+}
+
 /// Protects scripts: one sentence that names the culprit, the right exit code, and
 /// nothing left behind.
 #[test]
@@ -57,6 +101,7 @@ fn mistakes_are_named() {
         (pair("bad.obj", "demo_low.glb"), 1, "bad.obj, line 3"),
         ([&pair("demo_high.glb", "bare.obj")[..], &["--uv", "keep"]].concat(), 1, "no texture coordinates"),
         (with(&["--texture-size", "3"]), 2, "16 to 8192"),
+        (with(&["--texture-quality", "50"]), 2, "does nothing with a lossless --texture-format"),
         (with(&["--options", "typo.json"]), 2, "texture_sise"),
         (with(&["--no-such-option"]), 2, "--no-such-option"),
         (vec!["bake", "demo_high.glb", "demo_low.glb", "-o", "never.fbx"], 2, ".glb or .obj"),

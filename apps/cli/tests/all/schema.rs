@@ -100,9 +100,11 @@ fn outputs_keep_to_the_schema() {
     };
     std::fs::write(folder.join("checks.png"), parbake::encode_png(&picture).unwrap()).unwrap();
     let pair = ["demo_high.glb", "demo_low.glb"];
-    let runs: [(&str, Vec<&str>); 5] = [
+    let small_file = ["--preset", "fast", "--texture-format", "ktx2", "--mesh-compression", "meshopt"];
+    let runs: [(&str, Vec<&str>); 6] = [
         ("bake", [&pair[..], &SMALL].concat()),
         ("bake", [&pair[..], &SMALL, &["--parallax", "sh", "--preset", "fast"]].concat()),
+        ("bake", [&pair[..], &SMALL, &small_file].concat()),
         ("compress", [&pair[..1], &["--texture-size", "32", "--uv-steps", "2"]].concat()),
         ("image", vec!["checks.png", "--texture-size", "16", "--grid", "8"]),
         ("eval", [&pair[..], &["--views", "2", "--resolution", "64"]].concat()),

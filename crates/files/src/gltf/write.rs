@@ -7,10 +7,12 @@
 use super::binary::Binary;
 use super::meshopt_out;
 use super::quantise::Grid;
-use super::write_material::{EMISSIVE_STRENGTH, Materials, UNLIT, use_of};
+use super::write_material::{EMISSIVE_STRENGTH, Materials, UNLIT, purpose_of};
 use super::write_mesh::primitives;
 use crate::texture_out::{Encoded, encode_texture};
-use crate::write_options::{MeshCompression, WriteOptions, Written, WrittenTexture};
+use crate::write_options::{
+    MeshCompression, TextureFormat, WriteOptions, Written, WrittenMesh, WrittenTexture,
+};
 use crate::{FileError, Place, write_atomically};
 use parbake_model::Model;
 use rayon::prelude::*;
@@ -18,6 +20,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 const WEBP: &str = "EXT_texture_webp";
+const KTX2: &str = "KHR_texture_basisu";
 const QUANTIZATION: &str = "KHR_mesh_quantization";
 
 /// Writes `model` as a GLB file, and returns its bytes' number.
@@ -57,16 +60,18 @@ fn to_bytes(path: &Path, model: &Model, options: &WriteOptions) -> Result<(Vec<u
     let fallback =
         (options.mesh_compression == MeshCompression::Meshopt).then(|| meshopt_out::compress(&mut binary));
     let mesh_bytes = binary.bytes.len() as u64;
-    let encode = |&image: &usize| encode_texture(&model.images[image], use_of(model, image), options);
+    let encode = |&image: &usize| encode_texture(&model.images[image], purpose_of(model, image), options);
     let encoded: Vec<Encoded> = materials.images.par_iter().map(encode).collect::<Result<_, _>>()?;
     let (mut images, mut textures) = (Vec::new(), Vec::new());
-    for (&image, Encoded { bytes, mime_type, psnr }) in materials.images.iter().zip(&encoded) {
-        let view = binary.view(bytes, None);
+    for (&image, Encoded { bytes, format, psnr, reason }) in materials.images.iter().zip(encoded) {
+        let view = binary.view(&bytes, None);
         let name = model.images[image].name.clone();
-        images.push(json!({ "name": name, "mimeType": mime_type, "bufferView": view }));
-        textures.push(WrittenTexture { name, mime_type, bytes: bytes.len() as u64, psnr: *psnr });
+        images.push(json!({ "name": name, "mimeType": format.media_type(), "bufferView": view }));
+        textures.push(WrittenTexture { name, format, bytes: bytes.len() as u64, psnr, reason });
     }
-    let uses_webp = name_webp(&mut materials.textures, &textures);
+    name_sources(&mut materials.textures, &textures);
+    let uses = |extension| textures.iter().any(|texture| extension_of(texture.format) == Some(extension));
+    let (uses_webp, uses_ktx2) = (uses(WEBP), uses(KTX2));
     let mut node = json!({ "mesh": 0, "name": model.name });
     if let Some(grid) = &grid {
         grid.place(&mut node);
@@ -100,6 +105,7 @@ fn to_bytes(path: &Path, model: &Model, options: &WriteOptions) -> Result<(Vec<u
         ("KHR_texture_transform", materials.uses_transforms, false),
         (super::parallax::NAME, materials.uses_parallax, false),
         (WEBP, uses_webp, true),
+        (KTX2, uses_ktx2, true),
         (QUANTIZATION, grid.is_some(), true),
         (meshopt_out::NAME, uses_meshopt, true),
     ];
@@ -113,21 +119,28 @@ fn to_bytes(path: &Path, model: &Model, options: &WriteOptions) -> Result<(Vec<u
     }
     let bytes = assemble(path, &document.to_string(), binary.bytes)?;
     let position_error = grid.map_or(0.0, |grid| grid.error(positions));
-    let written = Written { bytes: bytes.len() as u64, mesh_bytes, position_error, textures };
+    let mesh = WrittenMesh { compression: options.mesh_compression, bytes: mesh_bytes, position_error };
+    let written = Written { bytes: bytes.len() as u64, mesh, textures };
     Ok((bytes, written))
 }
 
-/// Textures name a WebP image in their extension alone. Whether there are any.
-fn name_webp(textures: &mut [Value], images: &[WrittenTexture]) -> bool {
-    let mut any = false;
+/// The extension by which textures name an image that core glTF does not know.
+fn extension_of(format: TextureFormat) -> Option<&'static str> {
+    match format {
+        TextureFormat::Png | TextureFormat::Jpeg => None,
+        TextureFormat::Webp | TextureFormat::WebpLossless => Some(WEBP),
+        TextureFormat::Ktx2 | TextureFormat::Ktx2Etc1s => Some(KTX2),
+    }
+}
+
+/// Textures name such images in their extension alone: there is no other picture to fall back to.
+fn name_sources(textures: &mut [Value], images: &[WrittenTexture]) {
     for texture in textures {
         let Some(source) = texture["source"].as_u64() else { continue };
-        if images[source as usize].mime_type == "image/webp" {
-            any = true;
-            *texture = json!({ "sampler": texture["sampler"], "extensions": { WEBP: { "source": source } } });
+        if let Some(name) = extension_of(images[source as usize].format) {
+            *texture = json!({ "sampler": texture["sampler"], "extensions": { name: { "source": source } } });
         }
     }
-    any
 }
 
 /// Header, JSON chunk, binary chunk; each padded to four bytes.

@@ -6,7 +6,8 @@
 //! [`AlphaMode::Mask`], the strength of emission that is black or of an unlit material.
 
 use super::write_extensions;
-use crate::texture_out::Use;
+use crate::ktx2_out::Content;
+use crate::texture_out::{Purpose, Use};
 use parbake_model::{AlphaMode, Material, Model, ShParallaxMap, TextureSlot, UvTransform, Wrap};
 use serde_json::{Value, json};
 
@@ -177,27 +178,42 @@ impl Materials {
     }
 }
 
-/// What an image is used for, by the strictest of the materials' slots that have it.
-pub(super) fn use_of(model: &Model, image: usize) -> Use {
-    let any = |slots: [&Option<TextureSlot>; 3]| slots.into_iter().flatten().any(|s| s.image == image);
-    let is_data = |m: &Material| {
-        any([&m.normal_texture, &m.metallic_roughness_texture, &m.occlusion_texture])
-            || m.extensions.textures().any(|(slot, is_color)| slot.image == image && !is_color)
-    };
-    let maps = || model.materials.iter().filter_map(|m| m.parallax.as_ref());
+/// What an image is used for: by the strictest of the materials' slots that have it, and as colours if any slot
+/// reads them as such.
+pub(super) fn purpose_of(model: &Model, image: usize) -> Purpose {
+    let is = |slot: &Option<TextureSlot>| slot.is_some_and(|s| s.image == image);
+    let materials = || model.materials.iter();
+    let maps = || materials().filter_map(|m| m.parallax.as_ref());
     let is_exact = |map: &ShParallaxMap| {
         map.images.contains(&image)
             || map.depth.as_ref().is_some_and(|depth| depth.image == image)
             || map.cutout.as_ref().is_some_and(|cutout| cutout.images.contains(&image))
     };
-    if maps().any(is_exact) {
-        Use::Exact
-    } else if model.materials.iter().any(is_data)
-        || maps().any(|map| any([&map.normal_texture, &None, &None]))
-    {
-        Use::Data
-    } else {
-        Use::Color
+    let extensions = || materials().flat_map(|m| m.extensions.textures()).filter(|(s, _)| s.image == image);
+    let is_normal = materials().any(|m| {
+        is(&m.normal_texture) || m.extensions.clearcoat.is_some_and(|coat| is(&coat.normal_texture))
+    }) || maps().any(|map| is(&map.normal_texture));
+    let is_data = is_normal
+        || materials().any(|m| is(&m.metallic_roughness_texture) || is(&m.occlusion_texture))
+        || extensions().any(|(_, is_color)| !is_color);
+    let base_color = |m: &Material| {
+        is(&m.base_color_texture) || m.parallax.as_ref().is_some_and(|map| is(&map.base_color_texture))
+    };
+    let is_color = materials().any(|m| base_color(m) || is(&m.emissive_texture))
+        || extensions().any(|(_, is_color)| is_color);
+    let masked = |m: &&Material| m.alpha_mode == AlphaMode::Mask && base_color(m) && m.base_color[3] > 0.0;
+    Purpose {
+        of: match () {
+            () if maps().any(is_exact) => Use::Exact,
+            () if is_data => Use::Data,
+            () => Use::Color,
+        },
+        content: match () {
+            () if is_color => Content::Color,
+            () if is_normal => Content::Normal,
+            () => Content::Values,
+        },
+        cutoff: materials().find(masked).map(|m| m.alpha_cutoff / m.base_color[3]),
     }
 }
 

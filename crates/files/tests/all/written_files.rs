@@ -117,9 +117,15 @@ fn glb_comes_back_whole() {
 #[test]
 fn quantised_meshes_and_other_pictures_come_back() {
     let folder = tempfile::tempdir().unwrap();
-    for (format, name) in
-        [(TextureFormat::Png, "png"), (TextureFormat::Jpeg, "jpeg"), (TextureFormat::Webp, "webp")]
-    {
+    let formats = [
+        (TextureFormat::Png, "png"),
+        (TextureFormat::Jpeg, "jpeg"),
+        (TextureFormat::Webp, "webp"),
+        (TextureFormat::WebpLossless, "webp-lossless"),
+        (TextureFormat::Ktx2, "ktx2"),
+        (TextureFormat::Ktx2Etc1s, "ktx2-etc1s"),
+    ];
+    for (format, name) in formats {
         let model = rich(9);
         let path = folder.path().join(format!("{name}.glb"));
         let options = WriteOptions {
@@ -130,7 +136,7 @@ fn quantised_meshes_and_other_pictures_come_back() {
         let written = write_glb_with(&path, &model, &options).unwrap();
         keep(&path, &format!("quantised-{name}.glb")).unwrap();
         assert_eq!(written.bytes, std::fs::metadata(&path).unwrap().len());
-        assert!(written.position_error > 0.0 && written.position_error < 3e-5, "{written:?}");
+        assert!(written.mesh.position_error > 0.0 && written.mesh.position_error < 3e-5, "{written:?}");
         let loaded = read_model(&path, &Limits::default()).unwrap();
         assert_eq!(loaded.warnings, [""; 0]);
         let (back, mesh) = (&loaded.model.mesh, &model.mesh);
@@ -138,7 +144,7 @@ fn quantised_meshes_and_other_pictures_come_back() {
             for (&b, &t) in back_triangle.iter().zip(triangle) {
                 let (b, t) = (b as usize, t as usize);
                 let moved = (back.positions[b] - mesh.positions[t]).length();
-                assert!(f64::from(moved) < written.position_error + 1e-6);
+                assert!(f64::from(moved) < written.mesh.position_error + 1e-6);
                 assert!(back.normals[b].dot(mesh.normals[t]) > 0.999);
                 assert!(back.tangents[b].dot(mesh.tangents[t]) > 1.998);
                 assert!((back.uvs[b] - mesh.uvs[t]).length() < 2e-5);
@@ -146,8 +152,13 @@ fn quantised_meshes_and_other_pictures_come_back() {
                 assert!((back.colors[b] - mesh.colors[t]).length() < 8e-3);
             }
         }
-        if format != TextureFormat::Jpeg {
-            assert_eq!(loaded.model.images, model.images);
+        for ((image, own), texture) in loaded.model.images.iter().zip(&model.images).zip(&written.textures) {
+            assert_eq!(
+                (image.width, image.height, &image.name, &texture.name),
+                (own.width, own.height, &own.name, &own.name)
+            );
+            assert_eq!(image.pixels == own.pixels, texture.psnr.is_none(), "{name} {texture:?}");
+            assert!(texture.psnr.is_none_or(|psnr| psnr > 20.0), "{name} {texture:?}");
         }
     }
 }
@@ -163,7 +174,7 @@ fn meshopt_files_are_small_and_repeatable() {
         let options = WriteOptions { mesh_compression: compression, ..WriteOptions::default() };
         let written = write_glb_with(&path, &model, &options).unwrap();
         keep(&path, &format!("mesh-{compression:?}.glb")).unwrap();
-        (written.mesh_bytes, std::fs::read(&path).unwrap())
+        (written.mesh.bytes, std::fs::read(&path).unwrap())
     };
     let [none, quantised, meshopt] =
         [MeshCompression::None, MeshCompression::Quantized, MeshCompression::Meshopt].map(bytes);

@@ -81,6 +81,16 @@ pub fn page(
             uv_moves(baked.uv_moves.as_ref())?
         ),
     );
+    if let Some(written) = &report.written {
+        section(
+            &mut out,
+            "file",
+            "The file",
+            "What was written, and what each format lost of what was baked. PSNR is that of the texture as a reader decodes \
+             it, over all its channels. Figures and pictures above are of the bake before that.",
+            &tables::written(written),
+        );
+    }
     section(
         &mut out,
         "run",

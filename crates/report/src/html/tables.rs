@@ -1,10 +1,10 @@
 //! The tables of the page: figures, texels, and what each stage took.
 
 use super::settings::flags;
-use crate::page::text::{NOTHING, change, count, decimal, duration, share, verdict};
+use crate::page::text::{NOTHING, change, count, decimal, duration, escape, share, verdict};
 use parbake::evaluate::ViewFigures;
 use parbake::evaluate::options::EvaluateOptions;
-use parbake::{BakeReport, Comparison};
+use parbake::{BakeReport, Comparison, Written};
 use std::fmt::Write;
 
 /// A figure: its name, decimals, whether more is better, and where it stands.
@@ -97,6 +97,36 @@ pub fn texels(report: &BakeReport) -> String {
             share(number, whole)
         );
     }
+    out + "</tbody></table>"
+}
+
+/// What the written file holds, and what its formats lost.
+pub fn written(written: &Written) -> String {
+    let mut out = String::from(concat!(
+        r#"<table class="figures"><thead><tr><th scope="col">part</th><th scope="col">format</th>"#,
+        r#"<th scope="col">bytes</th><th scope="col">loss</th></tr></thead><tbody>"#
+    ));
+    let mut row = |name: &str, format: &str, size: u64, loss: &str| {
+        let _ = write!(
+            out,
+            r#"<tr><th scope="row">{}</th><td>{}</td><td>{}</td><td>{loss}</td></tr>"#,
+            escape(name),
+            escape(format),
+            count(usize::try_from(size).unwrap_or(usize::MAX))
+        );
+    };
+    for texture in &written.textures {
+        let reason = texture.reason.as_ref().map_or(String::new(), |reason| format!(": {reason}"));
+        let loss = texture.psnr.map_or("none".into(), |psnr| format!("PSNR {} dB", decimal(psnr, 1)));
+        row(&texture.name, &format!("{}{reason}", texture.format.label()), texture.bytes, &loss);
+    }
+    let mesh = &written.mesh;
+    let loss = match mesh.position_error {
+        0.0 => "none".into(),
+        error => format!("positions within {error:.2e} units"),
+    };
+    row("mesh", mesh.compression.label(), mesh.bytes, &loss);
+    row("all of it", "GLB", written.bytes, "");
     out + "</tbody></table>"
 }
 

@@ -1,7 +1,10 @@
 //! A test of the page as a whole, on two small tents.
 
 use super::html_report;
-use parbake::{BakeOptions, EvaluateOptions, Watcher, bake, evaluate};
+use parbake::{
+    BakeOptions, EvaluateOptions, MeshCompression, TextureFormat, Watcher, Written, WrittenMesh,
+    WrittenTexture, bake, evaluate,
+};
 use parbake_model::glam::{Vec2, Vec3};
 use parbake_model::{Material, Mesh, Model};
 
@@ -26,6 +29,25 @@ fn options() -> BakeOptions {
         view_size: Some(32),
         rounds: Some(1),
         ..BakeOptions::default()
+    }
+}
+
+/// A file with a texture that lost something, and one that stayed what it was.
+fn written() -> Written {
+    let texture = |name: &str, format, bytes, psnr, reason: Option<&str>| WrittenTexture {
+        name: name.into(),
+        format,
+        bytes,
+        psnr,
+        reason: reason.map(Into::into),
+    };
+    Written {
+        bytes: 5_000_000,
+        mesh: WrittenMesh { compression: MeshCompression::Quantized, bytes: 99, position_error: 2e-5 },
+        textures: vec![
+            texture("base color", TextureFormat::Ktx2, 123_456, Some(41.28), None),
+            texture("<b>", TextureFormat::Png, 77, None, Some("sides")),
+        ],
     }
 }
 
@@ -57,8 +79,17 @@ fn assert_elements_are_closed(page: &str) {
 #[test]
 fn the_page_is_whole() {
     let (high, low) = (tent("high <b>", 0.5), tent("low & <script>", 0.4));
-    let baked = bake(&high, &low, &options(), &Impatient).unwrap();
+    let mut baked = bake(&high, &low, &options(), &Impatient).unwrap();
+    assert!(!html_report(&high, &baked, &Impatient).unwrap().contains(r#"id="file""#), "nothing was written");
+    baked.report.written = Some(written());
     let page = html_report(&high, &baked, &Impatient).unwrap();
+    for row in [
+        "<td>KTX2 (UASTC)</td><td>123\u{202f}456</td><td>PSNR 41.3 dB</td>",
+        "<th scope=\"row\">&lt;b&gt;</th><td>PNG: sides</td><td>77</td><td>none</td>",
+        "<td>quantized</td><td>99</td><td>positions within 2.00e-5 units</td>",
+    ] {
+        assert!(page.contains(row), "{row}");
+    }
     for broken in ["<script", "<b>\"", "http:", "https:", "url(", "NaN", ">inf", "src=\"\""] {
         assert!(!page.contains(broken), "{broken}");
     }

@@ -83,3 +83,38 @@ fn many_vertices_take_long_indices() {
     assert_eq!(loaded.model.mesh.positions, large.mesh.positions);
     assert!(loaded.model.mesh.triangles.contains(&[65_533, 2, 65_535]));
 }
+
+/// Protects mip levels and quality: what a texture is, is read off all materials that have it.
+#[test]
+fn purposes_follow_from_slots() {
+    use super::super::write_material::purpose_of;
+    use crate::ktx2_out::Content;
+    use crate::texture_out::{Purpose, Use};
+    use parbake_model::{AlphaMode, Sheen};
+    let slot = |image| Some(TextureSlot { image, ..TextureSlot::default() });
+    let mut material = Material {
+        base_color_texture: slot(0),
+        base_color: [1.0, 1.0, 1.0, 0.5],
+        alpha_mode: AlphaMode::Mask,
+        alpha_cutoff: 0.3,
+        normal_texture: slot(1),
+        occlusion_texture: slot(2),
+        emissive_texture: slot(3),
+        ..Material::default()
+    };
+    // One image often has the colour and, in its alpha, the roughness.
+    let sheen = Sheen { color: [1.0; 3], color_texture: slot(4), roughness: 1.0, roughness_texture: slot(4) };
+    material.extensions.sheen = Some(sheen);
+    let mut model = Model { materials: vec![material], ..model() };
+    let purpose = |of, content, cutoff| Purpose { of, content, cutoff };
+    let expected = [
+        purpose(Use::Color, Content::Color, Some(0.6)),
+        purpose(Use::Data, Content::Normal, None),
+        purpose(Use::Data, Content::Values, None),
+        purpose(Use::Color, Content::Color, None),
+        purpose(Use::Data, Content::Color, None),
+    ];
+    assert_eq!([0, 1, 2, 3, 4].map(|image| purpose_of(&model, image)), expected);
+    model.materials[0].alpha_mode = AlphaMode::Blend;
+    assert_eq!(purpose_of(&model, 0).cutoff, None);
+}
