@@ -160,7 +160,7 @@ impl Scene {
             Vec3::from(pyramid.fetch(interpolate(uvs, weights), pyramid.lod(along, along)))
         };
         let normal = interpolate(corners.map(|i| mesh.normals[i]), weights);
-        let mut values = self.values(surface, &surface.plain, corners, weights, &fetch);
+        let mut values = self.values(surface, &surface.plain, corners, weights, &|_| true, &fetch);
         let mapped = match &surface.plain[MapKind::Normal as usize] {
             Some(map) if !mesh.tangents.is_empty() => {
                 let tangent = interpolate(corners.map(|i| mesh.tangents[i].truncate()), weights);
@@ -174,18 +174,20 @@ impl Scene {
         values
     }
 
-    /// Factor × texture of each map, and × vertex colour of the base colour; all but the normal,
-    /// which is left neutral.
+    /// Factor × texture of each map that is read, and × vertex colour of the base colour; all but the normal,
+    /// which is left neutral, as are maps that are not read.
     fn values(
         &self,
         surface: &Surface,
         textures: &Textures,
         corners: [usize; 3],
         weights: [f32; 3],
+        reads: &impl Fn(MapKind) -> bool,
         fetch: &impl Fn(&Map) -> Vec3,
     ) -> MapValues {
         let mut values = MapValues::NEUTRAL;
-        for (kind, map) in MapKind::ALL.into_iter().zip(textures).filter(|(k, _)| *k != MapKind::Normal) {
+        let is_wanted = |kind: MapKind| kind != MapKind::Normal && reads(kind);
+        for (kind, map) in MapKind::ALL.into_iter().zip(textures).filter(|(kind, _)| is_wanted(*kind)) {
             values[kind] = surface.factors[kind];
             if let Some(map) = map {
                 let texture = fetch(map).extend(1.0);
@@ -295,7 +297,8 @@ impl Scene {
         at: (f64, f64),
         footprint: f32,
     ) -> Vec3 {
-        self.seen(camera, &screen.triangle(triangle), triangle, at, footprint).light(brdf)
+        let reads = |kind| brdf.reads(kind);
+        self.seen(camera, &screen.triangle(triangle), triangle, at, footprint, &reads).light(brdf)
     }
 
     /// The maps' values at one sample, as of [`Scene::shade`]; the normal is a unit vector of the
@@ -309,12 +312,13 @@ impl Scene {
         at: (f64, f64),
         footprint: f32,
     ) -> MapValues {
-        let seen = self.seen(camera, on_screen, triangle, at, footprint);
+        let seen = self.seen(camera, on_screen, triangle, at, footprint, &|_| true);
         let mut values = seen.values;
         values[MapKind::Normal] = seen.world_normal().extend(0.0);
         values
     }
 
+    /// What is seen at one sample. Maps that are not read are neutral, since each costs a fetch.
     pub(crate) fn seen(
         &self,
         camera: &Camera,
@@ -322,6 +326,7 @@ impl Scene {
         triangle: usize,
         at: (f64, f64),
         footprint: f32,
+        reads: &impl Fn(MapKind) -> bool,
     ) -> Seen {
         let b = barycentrics(on_screen, at.0, at.1);
         let mesh = &self.mesh;
@@ -346,7 +351,7 @@ impl Scene {
             let lod = pyramid.lod(along(b.per_x) * footprint, along(b.per_y) * footprint);
             Vec3::from(pyramid.fetch(along(b.weights) + shift, lod))
         };
-        let mut values = self.values(surface, textures, corners, b.weights, &fetch);
+        let mut values = self.values(surface, textures, corners, b.weights, reads, &fetch);
         let (mut tangent, mut handedness) = (Vec3::ZERO, 1.0);
         if let Some(map) = textures[MapKind::Normal as usize].as_ref().filter(|_| !mesh.tangents.is_empty()) {
             tangent = interpolate(corners.map(|i| mesh.tangents[i].truncate()), b.weights);

@@ -204,7 +204,7 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
 
     /// The light of a triangle at a sample.
     fn shade(&self, triangle: usize, on_screen: &ScreenTriangle, at: (f64, f64)) -> (Seen, Vec3) {
-        let seen = self.scene.seen(self.camera, on_screen, triangle, at, 1.0);
+        let seen = self.scene.seen(self.camera, on_screen, triangle, at, 1.0, &|kind| self.brdf.reads(kind));
         let surface = &self.scene.surfaces[self.scene.mesh.triangle_materials[triangle] as usize];
         let light = match surface.is_unlit {
             true => seen.values[MapKind::BaseColor].truncate(),
