@@ -309,7 +309,7 @@ fn textured(mut model: Model, solved: &SurfaceTexture) -> Model {
 mod tests {
     use super::*;
     use parbake_model::Mesh;
-    use parbake_model::glam::{Vec3, Vec4, vec2};
+    use parbake_model::glam::{Vec2, Vec3, Vec4, vec2};
 
     /// A box's six sides in a row of the texture from `top` on, a square each.
     fn add_box(mesh: &mut Mesh, half: f32, top: f32) {
@@ -367,6 +367,28 @@ mod tests {
         let outer = area(|p| p.abs().max_element() > 0.95);
         assert!(inner > 0.0 && inner < 0.5 * outer, "{inner} of {outer}");
         assert!(baked.report.uv.is_bijective());
+    }
+
+    /// Protects models that are coloured from a palette, all of a triangle at one point of it: there are no
+    /// coordinates to keep, so they get new ones, whether or not their material has more than colour.
+    #[test]
+    fn palettes_get_a_layout() {
+        let mut mesh = Mesh::default();
+        add_box(&mut mesh, 1.0, 0.1);
+        mesh.uvs.iter_mut().enumerate().for_each(|(i, uv)| *uv = Vec2::splat(0.1 + 0.1 * (i / 4) as f32));
+        let mut model = noisy(mesh);
+        let options = BakeOptions {
+            texture_size: 64,
+            uv_steps: Some(1),
+            preset: crate::options::Preset::Fast,
+            views: Some(12),
+            ..BakeOptions::default()
+        };
+        for metallic in [0.0, 1.0] {
+            model.materials[0].metallic = metallic;
+            let baked = compress(&model, &options, &()).expect("a palette can be compressed");
+            assert!(baked.report.uv.is_bijective(), "metallic {metallic}");
+        }
     }
 
     /// Protects what textures that repeat show: charts in other tiles are read where they are at home, so

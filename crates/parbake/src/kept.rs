@@ -14,6 +14,7 @@ use crate::options::{BakeOptions, UvMode};
 use parbake_atlas::sharing;
 use parbake_model::Model;
 use parbake_progress::{Message, Watcher};
+use parbake_views::PrepareError;
 
 /// Decibels that coordinates which are sound may cost.
 const MOST_LOST: f64 = 0.05;
@@ -95,8 +96,11 @@ pub(crate) fn weighed(
         let time_budget = options.time_budget.map(|s| (s - begin.elapsed().as_secs_f64()).max(0.0));
         let own = BakeOptions { uv: UvMode::Keep, time_budget, ..options.clone() };
         // What is left may not be enough for another bake, and one that was stopped is no fair match.
-        let kept = check_budget(&own).is_ok().then(|| bake(&own, &quiet)).transpose()?;
-        let kept = kept.filter(|_| !watcher.stopped());
+        let kept = match check_budget(&own).is_ok().then(|| bake(&own, &quiet)) {
+            // All triangles of a palette's colour lie on one point: there is nothing that could be kept.
+            Some(Err(BakeError::Prepare(PrepareError::FlatTextureCoordinates { .. }))) => None,
+            other => other.transpose()?.filter(|_| !watcher.stopped()),
+        };
         let lost = kept.as_ref().map(|kept| lost(model, &kept.model, &found.model, options)).transpose()?;
         if let (Some(mut kept), Some(lost)) = (kept, lost.flatten()) {
             kept.report.options = options.clone();
