@@ -15,14 +15,15 @@ pub enum TextureFormat {
     Png,
     /// Lossy; every viewer reads it. Textures with alpha stay PNG
     Jpeg,
-    /// Lossy colours, two thirds of jpeg; alpha, normal maps and data maps are lossless; viewers need EXT_texture_webp
+    /// Lossy colours at two thirds of JPEG's size; alpha, normal maps and data maps are lossless; viewers need
+    /// EXT_texture_webp
     Webp,
-    /// Lossless, a seventh smaller than png; viewers need EXT_texture_webp
+    /// Lossless, a seventh smaller than PNG; viewers need EXT_texture_webp
     WebpLossless,
-    /// Stays compressed on the GPU, mip levels inside: UASTC, the better one, 1.3 bytes a texel; viewers need
+    /// Stays compressed on the GPU, with mip levels: UASTC, high quality, 1.3 bytes a texel; viewers need
     /// KHR_texture_basisu
     Ktx2,
-    /// As ktx2, but colours in ETC1S: small downloads, visible loss; normal maps and data maps stay UASTC
+    /// As ktx2, but colours in ETC1S: small files, visible loss; normal maps and data maps stay UASTC
     Ktx2Etc1s,
 }
 
@@ -141,7 +142,7 @@ pub struct WrittenMesh {
 pub struct WrittenTexture {
     /// The image's name.
     pub name: String,
-    /// What it was written as.
+    /// The format that it was written in.
     pub format: TextureFormat,
     /// Its bytes in the file, mip levels included.
     pub bytes: u64,

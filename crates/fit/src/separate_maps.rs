@@ -23,7 +23,7 @@ use parbake_views::samples::SampleSet;
 pub struct SeparateSchedule {
     /// Whether maps are fitted at all; else the projected ones are kept.
     pub is_fitted: bool,
-    /// Gauss–Newton steps of maps that are compared as sRGB.
+    /// Gauss–Newton steps of base colour and emission, which are compared as sRGB.
     pub color_steps: usize,
     /// Steps of the normals, each put back onto their hemisphere; 0 keeps the projected ones.
     pub normal_steps: usize,
@@ -68,8 +68,9 @@ impl SeparateSchedule {
     }
 }
 
-/// Fits all maps that the start has to what the samples saw of the high-poly's, beginning there. `srgb` tells
-/// whether files hold sRGB of colours.
+/// Fits all maps that the start has to what the samples saw of the high-poly's, beginning there; all are
+/// `samples.size`² texels. `srgb` tells whether files hold sRGB of colours. A watcher that stops it leaves the maps
+/// that were not reached as they are in the start.
 pub fn fit_separate_maps<K: Backend>(
     samples: &SampleSet<MaterialSample>,
     atlas: &Atlas,

@@ -246,7 +246,8 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", help_heading = heading::QUALITY))]
     pub view_size: Option<usize>,
 
-    /// Rounds of the texture solve, 0 to 100, in each of which every map that is fitted is solved for; 0 writes the projected textures
+    /// Rounds of the texture solve, 0 to 100: each solves for every fitted map in turn. 0 writes the projected
+    /// textures. Whole materials (--shading pbr) need one round, and more change nothing
     /// [default: by preset 3, 5, 8]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::QUALITY))]
     pub rounds: Option<usize>,

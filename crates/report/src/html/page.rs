@@ -86,8 +86,8 @@ pub fn page(
             &mut out,
             "file",
             "The file",
-            "What was written, and what each format lost of what was baked. PSNR is that of the texture as a reader decodes \
-             it, over all its channels. Figures and pictures above are of the bake before that.",
+            "Size of each part, and what its format lost. PSNR compares a texture as readers decode it with the baked one, \
+             over all channels. Figures and pictures above are of the bake before it was compressed.",
             &tables::written(written),
         );
     }

@@ -126,7 +126,7 @@ pub fn written(written: &Written) -> String {
         error => format!("positions within {error:.2e} units"),
     };
     row("mesh", mesh.compression.label(), mesh.bytes, &loss);
-    row("all of it", "GLB", written.bytes, "");
+    row("whole file", "GLB", written.bytes, "");
     out + "</tbody></table>"
 }
 
