@@ -75,6 +75,8 @@ pub enum Command {
     Eval(EvalCommand),
     /// Compare kinds of parallax maps on a pair of models
     Variants(VariantsCommand),
+    /// Show a model in the browser, beside its high-poly if one is given
+    View(ViewCommand),
     /// Film models side by side while they turn: an animated PNG or a GIF
     Turntable(TurntableCommand),
     /// Run the paper's experiments on a folder of data
@@ -337,6 +339,39 @@ pub struct TurntableCommand {
     /// How to film
     #[command(flatten, next_help_heading = "Film")]
     pub turntable: TurntableOptions,
+
+    /// What to read
+    #[command(flatten, next_help_heading = IO)]
+    pub reading: Reading,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = IO)]
+    pub talk: Talk,
+}
+
+/// Arguments of `view`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "The page is served to this machine alone, under an address that is drawn anew each time and \
+printed on standard output; it loads nothing from any network. Ctrl-C ends it. \
+Levels of detail are several files, the finest first, or one GLB file with MSFT_lod."
+)]
+pub struct ViewCommand {
+    /// The model: .glb, .gltf or .obj; several files are its levels of detail, the finest first
+    #[arg(required = true)]
+    pub models: Vec<PathBuf>,
+
+    /// Compare it with this model, usually the high-poly
+    #[arg(long, value_name = "FILE")]
+    pub compare: Option<PathBuf>,
+
+    /// Port to listen on, 0 to 65535; 0 is any that is free
+    #[arg(long, value_name = "PORT", default_value_t = 0)]
+    pub port: u16,
+
+    /// Print the page's address without opening a browser
+    #[arg(long)]
+    pub no_open: bool,
 
     /// What to read
     #[command(flatten, next_help_heading = IO)]

@@ -20,6 +20,7 @@ mod rules;
 mod simplify;
 mod turntable;
 mod variants;
+mod view;
 
 use arguments::{Arguments, Command};
 use clap::FromArgMatches;
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
         (Command::Image(command), Some(given)) => image::run(command, given),
         (Command::Variants(command), _) => variants::run(command),
         (Command::Turntable(command), _) => turntable::run(command),
+        (Command::View(command), _) => view::run(command),
         (Command::Reproduce(command), _) => reproduce::run(command),
         (Command::Check(command), _) => check::run(command),
         (Command::Simplify(command), _) => simplify::run(command),

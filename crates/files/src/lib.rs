@@ -21,6 +21,7 @@ mod model_out;
 mod obj;
 mod resources;
 mod search;
+mod self_contained;
 mod texture_out;
 mod unit;
 mod warning;
@@ -36,6 +37,7 @@ pub use limits::Limits;
 pub use model_in::{Loaded, read_geometry, read_model};
 pub use obj::{read_obj_bytes, write_obj};
 pub use resources::{Folder, NoResources, Resources};
+pub use self_contained::{SelfContained, read_self_contained};
 pub use warning::{Warning, WarningKind};
 pub use write_options::{
     DEFAULT_TEXTURE_QUALITY, LEAST_DATA_QUALITY, MeshCompression, TextureFormat, WriteOptions, Written,

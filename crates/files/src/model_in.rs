@@ -5,6 +5,7 @@ use crate::resources::{begins_with, read_file};
 use crate::words::shown;
 use crate::{FileError, Folder, Limits, Place, Warning, gltf, obj};
 use parbake_model::Model;
+use std::ffi::OsString;
 use std::path::Path;
 
 const SUPPORTED: &str = "OBJ (.obj) and glTF 2.0 (.gltf, .glb)";
@@ -41,8 +42,13 @@ pub fn read_geometry(path: &Path, limits: &Limits) -> Result<Loaded, FileError> 
 }
 
 fn read(path: &Path, limits: &Limits, textures: Textures) -> Result<Loaded, FileError> {
-    let extension = path.extension().map(|e| e.to_ascii_lowercase()).unwrap_or_default();
-    let known = ["obj", "gltf", "glb"].iter().any(|e| extension == *e);
+    let (resources, bytes) = opened(path, limits)?;
+    parsed(path, &bytes, &resources, limits, textures)
+}
+
+/// The bytes of a model's file, if it may be one, and the folder of all that it refers to.
+pub(crate) fn opened(path: &Path, limits: &Limits) -> Result<(Folder, Vec<u8>), FileError> {
+    let known = ["obj", "gltf", "glb"].iter().any(|e| extension(path) == *e);
     let unreadable = |source| FileError::Read { path: path.into(), place: Place::File, source };
     let resources = Folder::beside(path).confined(limits.confine);
     let file = resources.model(path).map_err(unreadable)?;
@@ -51,16 +57,37 @@ fn read(path: &Path, limits: &Limits, textures: Textures) -> Result<Loaded, File
         return Err(FileError::UnknownFormat { path: path.into(), supported: SUPPORTED });
     }
     let bytes = read_file(&file, limits.max_file_bytes).map_err(unreadable)?;
-    let context = Context::new(path, &resources, limits, textures);
-    let mut loaded = if bytes.starts_with(gltf::MAGIC) || extension != "obj" {
-        gltf::read(context, &bytes)
-    } else {
-        obj::read(context, &bytes)
-    }?;
-    // Two models are read for a bake: each warning names the one it is about.
-    let name = shown(&path.file_name().unwrap_or_default().to_string_lossy());
-    loaded.warnings.iter_mut().for_each(|warning| warning.text = format!("{name}: {}", warning.text));
+    Ok((resources, bytes))
+}
+
+/// Whether a file is glTF rather than OBJ.
+pub(crate) fn is_gltf(path: &Path, bytes: &[u8]) -> bool {
+    bytes.starts_with(gltf::MAGIC) || extension(path) != "obj"
+}
+
+fn extension(path: &Path) -> OsString {
+    path.extension().map(|e| e.to_ascii_lowercase()).unwrap_or_default()
+}
+
+/// The model in the bytes of a file.
+pub(crate) fn parsed(
+    path: &Path,
+    bytes: &[u8],
+    resources: &Folder,
+    limits: &Limits,
+    textures: Textures,
+) -> Result<Loaded, FileError> {
+    let context = Context::new(path, resources, limits, textures);
+    let mut loaded =
+        if is_gltf(path, bytes) { gltf::read(context, bytes) } else { obj::read(context, bytes) }?;
+    name_model(path, &mut loaded.warnings);
     Ok(loaded)
+}
+
+/// Two models are read for a bake: each warning names the one it is about.
+pub(crate) fn name_model(path: &Path, warnings: &mut [Warning]) {
+    let name = shown(&path.file_name().unwrap_or_default().to_string_lossy());
+    warnings.iter_mut().for_each(|warning| warning.text = format!("{name}: {}", warning.text));
 }
 
 #[cfg(test)]

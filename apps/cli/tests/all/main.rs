@@ -13,3 +13,4 @@ mod refusals;
 mod reproduce;
 mod schema;
 mod turntable;
+mod view;

@@ -144,7 +144,7 @@ fn name_sources(textures: &mut [Value], images: &[WrittenTexture]) {
 }
 
 /// Header, JSON chunk, binary chunk; each padded to four bytes.
-fn assemble(path: &Path, document: &str, mut binary: Vec<u8>) -> Result<Vec<u8>, FileError> {
+pub(super) fn assemble(path: &Path, document: &str, mut binary: Vec<u8>) -> Result<Vec<u8>, FileError> {
     let mut text = document.as_bytes().to_vec();
     text.resize(text.len().next_multiple_of(4), b' ');
     binary.resize(binary.len().next_multiple_of(4), 0);

@@ -37,6 +37,11 @@ pub fn json(path: &Path) -> Value {
 
 /// The built-in pair as files in this folder: `demo_high.glb` and `demo_low.glb`.
 pub fn demo_pair(folder: &Path) {
+    demo_files(folder, &["demo_high.glb", "demo_low.glb"]);
+}
+
+/// These files of what `demo` writes.
+pub fn demo_files(folder: &Path, names: &[&str]) {
     // Made once a program: its report takes longer than most of these tests.
     static MADE: OnceLock<TempDir> = OnceLock::new();
     let made = MADE.get_or_init(|| {
@@ -44,7 +49,7 @@ pub fn demo_pair(folder: &Path) {
         run(made.path(), &[&["demo", "-o", ".", "-q"][..], &SMALL].concat());
         made
     });
-    for name in ["demo_high.glb", "demo_low.glb"] {
+    for name in names {
         std::fs::copy(made.path().join(name), folder.join(name)).unwrap();
     }
 }

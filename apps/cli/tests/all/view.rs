@@ -1,0 +1,157 @@
+//! `parbake view` as scripts and people meet it, and its page in a real browser beside the CPU renderer.
+
+use crate::common::{demo_files, parbake, text};
+use parbake::{EvaluateOptions, Limits, Shading, Studio, read_model, write_glb};
+use parbake_model::glam::Vec3;
+use serde_json::json;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+
+/// The folder of the page's sources, and of its tests in the browser.
+fn page() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../viewer")
+}
+
+/// A viewer that ends with the test.
+struct Viewer {
+    process: Child,
+    url: String,
+}
+
+impl Viewer {
+    fn start(folder: &Path, arguments: &[&str]) -> Self {
+        let mut command = parbake(folder);
+        command.args(["view", "--no-open", "-q"]).args(arguments).stdout(Stdio::piped());
+        let mut process = command.spawn().unwrap();
+        let mut url = String::new();
+        BufReader::new(process.stdout.take().unwrap()).read_line(&mut url).unwrap();
+        Self { process, url: url.trim().into() }
+    }
+}
+
+impl Drop for Viewer {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// Protects scripts: the address alone on standard output, on this machine alone; and one sentence for mistakes.
+#[test]
+fn the_address_is_printed_and_mistakes_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    std::fs::write(folder.join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let viewer = Viewer::start(folder, &["a.obj"]);
+    let rest = viewer.url.strip_prefix("http://127.0.0.1:").unwrap();
+    let (port, token) = rest.trim_end_matches('/').split_once('/').unwrap();
+    assert!(port.parse::<u16>().is_ok() && token.len() == 32, "{}", viewer.url);
+
+    for (arguments, code, words) in [
+        (vec!["gone.glb"], 1, "gone.glb"),
+        (vec!["a.obj", "--compare", "gone.glb"], 1, "gone.glb"),
+        (vec!["."], 1, "folder"),
+        (vec!["-"], 2, "standard input"),
+        (vec![], 2, "<MODELS>"),
+        (vec!["a.obj", "--port", port], 1, "--port"),
+        (vec!["a.obj", "--port", "65536"], 2, "65536"),
+    ] {
+        let output = parbake(folder).args(["view", "--no-open"]).args(&arguments).output().unwrap();
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
+        assert!(said.contains(words), "{arguments:?}: {said}");
+    }
+}
+
+/// The command that runs a script of the page's tests; none, with a word about it, where the browser, Node or the
+/// packages are missing.
+fn script(name: &str) -> Option<Command> {
+    let places = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+    let set = std::env::var_os("CHROMIUM").map(PathBuf::from);
+    let has_browser = set.into_iter().chain(places.map(PathBuf::from)).any(|place| place.is_file());
+    let has_node = Command::new("node").arg("--version").output().is_ok_and(|output| output.status.success());
+    if !has_browser || !has_node || !page().join("node_modules/puppeteer-core").is_dir() {
+        eprintln!(
+            "skipped: this test needs Chromium (set CHROMIUM if it lies elsewhere), Node, and \"npm ci\" in apps/viewer"
+        );
+        return None;
+    }
+    let mut command = Command::new("node");
+    command.arg(page().join("test").join(name));
+    Some(command)
+}
+
+const SIZE: usize = 256;
+
+/// Protects what the page shows, and so what people judge a bake by: its pictures are those of the CPU renderer, from
+/// the same cameras under the same light. The headlight and the studio are `eval`'s; unlit is the base colour alone.
+/// Maps of the model: colour and normals; then metallic, roughness, occlusion and emission besides.
+#[test]
+fn the_page_shows_what_the_cpu_renders() {
+    let Some(mut stills) = script("stills.mjs") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_files(folder, &["demo_high.glb", "demo.glb"]);
+    let model = |name: &str| read_model(&folder.join(name), &Limits::default()).unwrap().model;
+    let mut whole = model("demo.glb");
+    let material = &mut whole.materials[0];
+    // Any picture will do: the baked colours.
+    let slot = material.base_color_texture;
+    assert!(slot.is_some() && material.normal_texture.is_some());
+    (material.metallic, material.roughness, material.metallic_roughness_texture) = (0.8, 0.7, slot);
+    (material.occlusion_texture, material.occlusion_strength) = (slot, 0.5);
+    (material.emissive_texture, material.emissive) = (slot, [0.1, 0.2, 0.3]);
+    write_glb(&folder.join("whole.glb"), &whole).unwrap();
+    let mut unlit = model("demo.glb");
+    unlit.materials[0].unlit = true;
+    write_glb(&folder.join("unlit.glb"), &unlit).unwrap();
+
+    let cases = [
+        ("demo_high.glb", "headlight", Shading::Lambert),
+        ("demo.glb", "headlight", Shading::Lambert),
+        ("demo.glb", "studio", Shading::Pbr),
+        ("whole.glb", "studio", Shading::Pbr),
+        ("unlit.glb", "studio", Shading::Pbr),
+    ];
+    let directions = [[0.3f32, 0.2, 1.0], [-1.0, 0.6, -0.4], [0.2, -0.5, 0.8]];
+    let file = |case: usize, view: usize| folder.join(format!("{case}_{view}.rgba"));
+    let (mut viewers, mut spec) = (Vec::new(), Vec::new());
+    for (case, (name, light, _)) in cases.iter().enumerate() {
+        viewers.push(Viewer::start(folder, &[name]));
+        let stills: Vec<_> = directions
+            .iter()
+            .enumerate()
+            .map(|(view, direction)| {
+                json!({ "file": file(case, view), "direction": direction, "size": SIZE, "supersample": 2, "light": light })
+            })
+            .collect();
+        spec.push(json!({ "url": viewers[case].url, "stills": stills }));
+    }
+    std::fs::write(folder.join("spec.json"), serde_json::to_vec(&spec).unwrap()).unwrap();
+    let output = stills.arg(folder.join("spec.json")).output().unwrap();
+    assert!(output.status.success(), "{}", text(&output.stderr));
+
+    for (case, (name, light, shading)) in cases.into_iter().enumerate() {
+        let model = model(name);
+        let options =
+            EvaluateOptions { shading, resolution: SIZE, supersample: 2, ..EvaluateOptions::default() };
+        let studio = Studio::new(&model, &options).unwrap();
+        let subject = studio.subject(&model);
+        for (view, direction) in directions.into_iter().enumerate() {
+            let shot = studio.shot(&subject, Vec3::from(direction).normalize());
+            let ours = studio.develop(&shot, [0.0; 3]).pixels;
+            let page = std::fs::read(file(case, view)).unwrap();
+            let error = |(ours, page): (&[f32; 3], &[u8])| -> f64 {
+                (0..3).map(|k| f64::from(ours[k] - f32::from(page[k]) / 255.0).powi(2)).sum()
+            };
+            let sum: f64 = ours.iter().zip(page.chunks_exact(4)).map(error).sum();
+            let psnr = -10.0 * (sum / (3 * SIZE * SIZE) as f64).log10();
+            // A black picture would agree with another one.
+            let lit = ours.iter().filter(|pixel| pixel[0] + pixel[1] + pixel[2] > 0.1).count();
+            eprintln!("{name}, {light}, view {view}: {psnr:.1} dB, {lit} pixels lit");
+            assert!(lit > SIZE * SIZE / 20, "{name}, {light}, view {view}: {lit} pixels are not black");
+            assert!(psnr > 40.0, "{name}, {light}, view {view}: {psnr:.1} dB");
+        }
+    }
+}

@@ -1,0 +1,68 @@
+// Builds dist/ from src/: the page's own scripts in app.js, three.js in three.js, its decoders as they come.
+//   node build.mjs           builds
+//   node build.mjs --check   builds elsewhere and compares with dist/, byte for byte
+import * as esbuild from 'esbuild';
+import fs from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+const here = path.dirname(fileURLToPath(import.meta.url));
+const at = (...parts) => path.join(here, ...parts);
+const three = (...parts) => at('node_modules', 'three', ...parts);
+const dist = at('dist');
+
+/** Decoders that run in workers, and read as files. */
+const DECODERS = {
+  'draco/draco_wasm_wrapper.js': three('examples/jsm/libs/draco/gltf/draco_wasm_wrapper.js'),
+  'draco/draco_decoder.wasm': three('examples/jsm/libs/draco/gltf/draco_decoder.wasm'),
+  'basis/basis_transcoder.js': three('examples/jsm/libs/basis/basis_transcoder.js'),
+  'basis/basis_transcoder.wasm': three('examples/jsm/libs/basis/basis_transcoder.wasm'),
+};
+
+async function build(out) {
+  fs.rmSync(out, { recursive: true, force: true });
+  const shared = {
+    bundle: true, format: 'esm', target: 'es2022', minify: true, legalComments: 'none', charset: 'utf8',
+    absWorkingDir: here, logLevel: 'warning',
+  };
+  await esbuild.build({ ...shared, entryPoints: ['src/vendor.js'], outfile: path.join(out, 'three.js') });
+  const apart = {
+    name: 'three.js stays a file of its own',
+    setup(build) {
+      build.onResolve({ filter: /\/vendor\.js$/ }, () => ({ path: './three.js', external: true }));
+    },
+  };
+  await esbuild.build({ ...shared, entryPoints: ['src/main.js'], outfile: path.join(out, 'app.js'), plugins: [apart] });
+  await esbuild.build({ ...shared, entryPoints: ['src/style.css'], outfile: path.join(out, 'style.css') });
+  fs.copyFileSync(at('src/index.html'), path.join(out, 'index.html'));
+  for (const [name, from] of Object.entries(DECODERS)) {
+    fs.mkdirSync(path.dirname(path.join(out, name)), { recursive: true });
+    fs.copyFileSync(from, path.join(out, name));
+  }
+  fs.copyFileSync(at('THIRD_PARTY_LICENSES.txt'), path.join(out, 'THIRD_PARTY_LICENSES.txt'));
+}
+
+function files(folder) {
+  return fs.readdirSync(folder, { recursive: true }).map(String).filter((name) => fs.statSync(path.join(folder, name)).isFile()).sort();
+}
+
+if (process.argv.includes('--check')) {
+  const fresh = fs.mkdtempSync(path.join(os.tmpdir(), 'parbake-page-'));
+  await build(fresh);
+  const names = [...new Set([...files(dist), ...files(fresh)])];
+  const read = (folder, name) => (fs.existsSync(path.join(folder, name)) ? fs.readFileSync(path.join(folder, name)) : null);
+  const differ = names.filter((name) => {
+    const [a, b] = [read(dist, name), read(fresh, name)];
+    return !a || !b || !a.equals(b);
+  });
+  fs.rmSync(fresh, { recursive: true });
+  if (differ.length) {
+    console.error(`apps/viewer/dist is not what its sources make: ${differ.join(', ')}. Run "npm run build" in apps/viewer and commit dist.`);
+    process.exit(1);
+  }
+  console.log(`apps/viewer/dist is what its sources make (${names.length} files)`);
+} else {
+  await build(dist);
+  for (const name of files(dist)) console.log(`${String(fs.statSync(path.join(dist, name)).size).padStart(8)}  ${name}`);
+}

@@ -1,0 +1,114 @@
+// What each material can show besides its light: single channels, the studio's light, a headlight. The materials
+// stay three.js's own; a few lines after their shading choose what is written.
+import { Matrix3 } from './vendor.js';
+import { STUDIO_GLSL, splitSum, studioUniforms } from './studio.js';
+
+/** Channels: key, label, and whether the values are colours (which the screen encodes) or numbers. */
+export const CHANNELS = [
+  { key: 'lit', label: 'Lit', code: 0, isColor: true },
+  { key: 'base', label: 'Base colour', code: 1, isColor: true },
+  { key: 'normal', label: 'Normal', code: 2 },
+  { key: 'roughness', label: 'Roughness', code: 3 },
+  { key: 'metallic', label: 'Metallic', code: 4 },
+  { key: 'occlusion', label: 'Occlusion', code: 5 },
+  { key: 'emission', label: 'Emission', code: 6, isColor: true },
+  { key: 'opacity', label: 'Opacity', code: 7 },
+  { key: 'checker', label: 'UV checker', code: 8 },
+];
+
+/** What is written instead of three.js's own light. */
+export const SHADED = { three: 0, studio: 10, headlight: 11 };
+
+const uniforms = { pbTurn: { value: new Matrix3() }, pbSplitSum: { value: null }, ...studioUniforms };
+const taught = new Set();
+let shown = 0;
+
+/** Chooses what all materials write. Each choice is a program of its own: branches would cost every pixel. */
+export function show(code) {
+  if (code === SHADED.studio) uniforms.pbSplitSum.value = splitSum();
+  if (code === shown) return;
+  shown = code;
+  for (const material of taught) material.needsUpdate = true;
+}
+
+/** Turns the studio about +Y, in radians. */
+export function turnStudio(angle) {
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  uniforms.pbTurn.value.set(c, 0, s, 0, 1, 0, -s, 0, c);
+}
+
+const CHECKER = /* glsl */ `
+varying vec2 pbUv;
+vec3 pbChecker(vec2 uv) {
+  vec2 at = floor(uv * 16.0), tile = fract(at / 16.0);
+  vec3 hue = vec3(0.30 + 0.55 * tile.x, 0.38 + 0.4 * tile.y, 0.85 - 0.45 * tile.x);
+  return mix(hue, hue * 0.55, mod(at.x + at.y, 2.0));
+}
+`;
+
+/** What is written for each choice, of a material that light falls on and of one without. */
+const WRITTEN = {
+  1: ['diffuseColor.rgb', 'diffuseColor.rgb'],
+  2: ['pbNormal * 0.5 + 0.5', 'vec3(0.5, 0.5, 1.0)'],
+  3: ['vec3(roughnessFactor)', 'vec3(1.0)'],
+  4: ['vec3(metalnessFactor)', 'vec3(0.0)'],
+  5: ['vec3(pbOcclusion)', 'vec3(1.0)'],
+  6: ['totalEmissiveRadiance', 'vec3(0.0)'],
+  7: ['vec3(diffuseColor.a)', 'vec3(diffuseColor.a)'],
+  8: ['pbChecker(pbUv)', 'pbChecker(pbUv)'],
+  10: [
+    'pbStudio(diffuseColor.rgb, metalnessFactor, roughnessFactor, pbOcclusion, totalEmissiveRadiance, pbNormal, pbViewer)',
+    'diffuseColor.rgb',
+  ],
+  11: ['max(dot(pbNormal, pbViewer), 0.0) * diffuseColor.rgb + totalEmissiveRadiance', 'diffuseColor.rgb'],
+};
+
+// Instead of the shading, once all that it needs is fetched.
+const chosen = (code, isLit) => /* glsl */ `
+{
+  #ifdef OPAQUE
+    diffuseColor.a = 1.0;
+  #endif
+  ${isLit ? `
+  vec3 pbNormal = inverseTransformDirection(normal, viewMatrix);
+  vec3 pbViewer = inverseTransformDirection(normalize(vViewPosition), viewMatrix);
+  float pbOcclusion = 1.0;
+  #ifdef USE_AOMAP
+    pbOcclusion = (texture2D(aoMap, vAoMapUv).r - 1.0) * aoMapIntensity + 1.0;
+  #endif` : ''}
+  gl_FragColor = vec4(${WRITTEN[code][isLit ? 0 : 1]}, ${code === 7 || code === 8 ? '1.0' : 'diffuseColor.a'});
+  return;
+}
+`;
+
+function patched(shader) {
+  if (shown === SHADED.three) return;
+  Object.assign(shader.uniforms, uniforms);
+  const place = ['#include <lights_physical_fragment>', '#include <opaque_fragment>'].find((p) => shader.fragmentShader.includes(p));
+  const isLit = place !== '#include <opaque_fragment>';
+  const declared = (shown === 8 ? CHECKER : '') + (shown === SHADED.studio ? STUDIO_GLSL : '');
+  if (shown === 8)
+    shader.vertexShader = shader.vertexShader.replace('void main() {', 'varying vec2 pbUv;\nvoid main() {\n  pbUv = uv;');
+  shader.fragmentShader = shader.fragmentShader
+    .replace('void main() {', `${declared}\nvoid main() {`)
+    .replace(place, `${chosen(shown, isLit)}\n${place}`);
+}
+
+/** Teaches a material to show its channels. */
+export function teach(material) {
+  if (taught.has(material) || (!material.isMeshStandardMaterial && !material.isMeshBasicMaterial)) return;
+  taught.add(material);
+  material.onBeforeCompile = patched;
+  material.customProgramCacheKey = () => `parbake ${shown}`;
+}
+
+/** Each texture of a material with the channel that it is for. */
+export const TEXTURE_SLOTS = [
+  ['map', 'Base colour'], ['normalMap', 'Normal'], ['roughnessMap', 'Roughness, metallic'],
+  ['metalnessMap', 'Roughness, metallic'], ['aoMap', 'Occlusion'], ['emissiveMap', 'Emission'],
+  ['clearcoatMap', 'Clearcoat'], ['clearcoatRoughnessMap', 'Clearcoat roughness'],
+  ['clearcoatNormalMap', 'Clearcoat normal'], ['sheenColorMap', 'Sheen'], ['sheenRoughnessMap', 'Sheen roughness'],
+  ['transmissionMap', 'Transmission'], ['thicknessMap', 'Thickness'], ['specularColorMap', 'Specular colour'],
+  ['specularIntensityMap', 'Specular'], ['iridescenceMap', 'Iridescence'],
+  ['iridescenceThicknessMap', 'Iridescence thickness'], ['anisotropyMap', 'Anisotropy'],
+];
