@@ -16,9 +16,18 @@ const dist = at('dist');
 const DECODERS = {
   'draco/draco_wasm_wrapper.js': three('examples/jsm/libs/draco/gltf/draco_wasm_wrapper.js'),
   'draco/draco_decoder.wasm': three('examples/jsm/libs/draco/gltf/draco_decoder.wasm'),
-  'basis/basis_transcoder.js': three('examples/jsm/libs/basis/basis_transcoder.js'),
   'basis/basis_transcoder.wasm': three('examples/jsm/libs/basis/basis_transcoder.wasm'),
 };
+
+/** The worker that KTX2Loader would make from text (its `init`). */
+async function basisWorker() {
+  const { KTX2Loader } = await import(three('examples/jsm/loaders/KTX2Loader.js'));
+  const body = KTX2Loader.BasisWorker.toString();
+  const constants = ['EngineFormat', 'EngineType', 'TranscoderFormat', 'BasisFormat']
+    .map((name) => `let _${name} = ${JSON.stringify(KTX2Loader[name])};`);
+  const transcoder = fs.readFileSync(three('examples/jsm/libs/basis/basis_transcoder.js'), 'utf8');
+  return [...constants, transcoder, body.slice(body.indexOf('{') + 1, body.lastIndexOf('}'))].join('\n');
+}
 
 async function build(out) {
   fs.rmSync(out, { recursive: true, force: true });
@@ -40,6 +49,7 @@ async function build(out) {
     fs.mkdirSync(path.dirname(path.join(out, name)), { recursive: true });
     fs.copyFileSync(from, path.join(out, name));
   }
+  fs.writeFileSync(path.join(out, 'basis', 'worker.js'), await basisWorker());
   fs.copyFileSync(at('THIRD_PARTY_LICENSES.txt'), path.join(out, 'THIRD_PARTY_LICENSES.txt'));
 }
 

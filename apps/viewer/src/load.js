@@ -1,41 +1,41 @@
 // Models: fetched, parsed, taught to show their channels, and counted.
-import { AnimationMixer, Box3, DRACOLoader, GLTFLoader, Group, KTX2Loader, LoadingManager, MeshoptDecoder } from './vendor.js';
+import { AnimationMixer, Box3, DRACOLoader, GLTFLoader, Group, LoadingManager, MeshoptDecoder } from './vendor.js';
+import { Ktx2 } from './ktx2.js';
 import { TEXTURE_SLOTS, teach } from './materials.js';
 
 const PARALLAX = /^PARBAKE_materials_parallax/;
 
-/** A function that loads one model of the session: `{ name, url, notes }`. Errors have one sentence for people. */
+/** Asks for a model of the session, `{ name, url, notes }`: its bytes and what there is to say about it. */
+export async function fetchModel(entry) {
+  const told = fetch(entry.notes).then((r) => r.json()).catch(() => ({}));
+  const response = await fetch(entry.url).catch(() => {
+    throw new Error('parbake view no longer answers: it was ended, or its address has changed. Start it again.');
+  });
+  if (!response.ok) throw new Error((await told).error ?? `${entry.name}: the viewer answered ${response.status}.`);
+  const bytes = await response.arrayBuffer(), { warnings = [], bytes: size = bytes.byteLength } = await told;
+  return { entry, bytes, size, notes: [...warnings] };
+}
+
+/** A function that makes a `Model` of what `fetchModel` gave. Errors have one sentence for people. */
 export function createLoader(renderer) {
-  return async (entry) => {
-    const told = fetch(entry.notes).then((r) => r.json()).catch(() => ({}));
-    const response = await fetch(entry.url).catch(() => {
-      throw new Error('parbake view no longer answers: it was ended, or its address has changed. Start it again.');
-    });
-    if (!response.ok) {
-      throw new Error((await told).error ?? `${entry.name}: the viewer answered ${response.status}.`);
-    }
-    const bytes = await response.arrayBuffer();
-    const facts = await told;
-    const notes = [...(facts.warnings ?? [])];
+  let broken;
+  const workerFails = new Promise((_, reject) => { broken = reject; });
+  workerFails.catch(() => {});
+  const draco = new DRACOLoader().setDecoderPath('draco/');
+  const ktx2 = new Ktx2(undefined, broken).detectSupport(renderer);
+  return async ({ entry, bytes, size, notes }) => {
     const manager = new LoadingManager();
     manager.onError = () => {
       const sentence = `${entry.name}: a texture could not be decoded; its material is shown without it.`;
       if (!notes.includes(sentence)) notes.push(sentence);
     };
-    const draco = new DRACOLoader(manager).setDecoderPath('draco/');
-    const ktx2 = new KTX2Loader(manager).setTranscoderPath('basis/').detectSupport(renderer);
     const loader = new GLTFLoader(manager).setDRACOLoader(draco).setKTX2Loader(ktx2).setMeshoptDecoder(MeshoptDecoder);
-    let gltf, levels;
     try {
-      gltf = await loader.parseAsync(bytes, '');
-      levels = await levelsOf(gltf);
+      const gltf = await Promise.race([loader.parseAsync(bytes, ''), workerFails]);
+      return new Model(entry, gltf, await levelsOf(gltf), size, notes);
     } catch (error) {
       throw new Error(`${entry.name}: three.js cannot show this file (${error?.message ?? error}).`);
-    } finally {
-      draco.dispose();
-      ktx2.dispose();
     }
-    return new Model(entry, gltf, levels, facts.bytes ?? bytes.byteLength, notes);
   };
 }
 

@@ -2,7 +2,7 @@
 import { LAYOUTS, HEAT, HEAT_MOST, TONES } from './compose.js';
 import { CHANNELS } from './materials.js';
 import { LIGHTS } from './lights.js';
-import { createLoader } from './load.js';
+import { createLoader, fetchModel } from './load.js';
 import { createStore } from './store.js';
 import { Levels } from './levels.js';
 import { showLoupe } from './loupe.js';
@@ -15,7 +15,10 @@ import { wireKeys } from './keys.js';
 import { wireSplitter } from './splitter.js';
 import { wireTheme } from './theme.js';
 
+/** A picture that has not changed for so many milliseconds is measured. */
 const RESTING = 250;
+/** What a picture depends on. */
+const DRAWN = ['mode', 'channel', 'wireframe', 'light', 'turn', 'exposure', 'tone', 'background', 'split', 'level', 'theme', 'uvLines'];
 const store = createStore({
   mode: 'model', channel: 'lit', wireframe: false, light: 'studio', turn: 0, exposure: 0, tone: 'none',
   background: 'page', split: 0.5, level: 'auto', turntable: false, uvLines: true, theme: 'light', isReady: false, hasCompare: false,
@@ -258,20 +261,9 @@ function wireLevels() {
   store.on(['level'], ({ level }) => check(fieldset, level));
 }
 
-async function start() {
-  wirePanel(store);
-  wireTheme(store);
-  byId('legend-ramp').style.background = `linear-gradient(90deg, ${HEAT.join(', ')})`;
-  byId('legend-most').textContent = `${Math.round(HEAT_MOST * 255)} of 255 and more`;
-  byId('banner-close').addEventListener('click', () => { byId('banner').hidden = true; });
-  let session;
-  try {
-    stage = new Stage(byId('canvas'));
-  } catch {
-    throw new Error('This browser has no WebGL 2, or it is switched off. Turn on hardware acceleration, or use another browser.');
-  }
-  byId('canvas').addEventListener('webglcontextlost', () => fail(new Error('The graphics processor has dropped this page, most likely for want of memory. Reload the page.')));
-  session = await fetch('session.json').then((r) => r.json()).catch(() => {
+/** What is being viewed; fills in the names as soon as they are known. */
+async function readSession() {
+  const session = await fetch('session.json').then((r) => r.json()).catch(() => {
     throw new Error('parbake view no longer answers: it was ended. Start it again.');
   });
   const files = session.models.filter((model) => model.role === 'level');
@@ -281,17 +273,33 @@ async function start() {
   byId('subtitle').textContent = other ? `compared with ${other.name}` : '';
   document.title = `${files[0].name} – Parbake`;
   byId('message-text').textContent = `Reading ${files.map((file) => file.name).join(', ')}`;
+  return { files, other };
+}
 
+/** Loads everything onto the stage. Gives the models' notes, and why the second one is missing, if it is. */
+async function loadModels({ files, other }) {
+  // While they are on their way, WebGL is started.
+  const coming = files.map(fetchModel), otherComing = other && fetchModel(other);
+  for (const model of [...coming, otherComing]) model?.catch(() => {});
+  try {
+    stage = new Stage(byId('canvas'));
+  } catch {
+    throw new Error('This browser has no WebGL 2, or it is switched off. Turn on hardware acceleration, or use another browser.');
+  }
   const load = createLoader(stage.renderer);
-  const second = other ? load(other).catch((error) => error) : Promise.resolve(null);
-  const firsts = await Promise.all(files.map(load));
-  const found = await second;
-  compare = found instanceof Error ? null : found;
+  const second = otherComing ? otherComing.then(load).catch((error) => error) : null;
+  const firsts = await Promise.all(coming.map((model) => model.then(load)));
+  const found = await second, problem = found instanceof Error ? found.message : null;
+  compare = problem ? null : found;
   levels = new Levels(firsts);
   if (compare) compare.known = compare.figures();
   stage.setModels(levels, compare);
-  animation = wireAnimation([...firsts, compare].filter(Boolean), redraw);
+  return { models: [...firsts, compare].filter(Boolean), problem };
+}
 
+/** Wires what depends on the models. */
+function wireModels(models) {
+  animation = wireAnimation(models, redraw);
   const modes = MODES.filter(([key]) => compare || !needsCompare(key));
   radios(byId('modes'), 'mode', modes, (mode) => store.set({ mode }));
   byId('modes').disabled = false;
@@ -299,26 +307,37 @@ async function start() {
   wireLevels();
   wireView();
   wireTurntable();
-  const isPlain = [...firsts, compare].filter(Boolean).every((model) => !model.hasExtensions);
-  store.set({ isReady: true, hasCompare: compare !== null, mode: compare ? 'split' : 'model', light: isPlain ? 'studio' : 'room' });
-  listTextures();
   wireShortcuts(modes.map(([key]) => key));
+  store.set({ isReady: true, hasCompare: compare !== null, mode: compare ? 'split' : 'model' });
   store.on(['mode', 'hasCompare'], ({ mode, hasCompare }) => {
     byId('legend').hidden = mode !== 'difference';
     if (!hasCompare || mode === 'uv') byId('reading').hidden = true;
+    if (mode === 'uv' && !textures.length) listTextures();
     check(byId('modes'), mode);
   });
-  store.on(['mode', 'channel', 'wireframe', 'light', 'turn', 'exposure', 'tone', 'background', 'split', 'level', 'theme', 'uvLines'], redraw);
-  const notes = [...firsts, compare].filter(Boolean).flatMap((model) => model.notes);
-  if (found instanceof Error) {
-    warn(`The model is shown by itself: ${found.message}`);
-    notes.push(found.message);
-  }
-  showNotes(notes);
+  store.on(DRAWN, redraw);
+}
+
+async function start() {
+  wirePanel(store);
+  wireTheme(store);
+  byId('legend-ramp').style.background = `linear-gradient(90deg, ${HEAT.join(', ')})`;
+  byId('legend-most').textContent = `${Math.round(HEAT_MOST * 255)} of 255 and more`;
+  byId('banner-close').addEventListener('click', () => { byId('banner').hidden = true; });
+  byId('canvas').addEventListener('webglcontextlost', () => {
+    fail(new Error('The graphics processor has dropped this page, most likely for want of memory. Reload the page.'));
+  });
+  const { models, problem } = await loadModels(await readSession());
+  wireModels(models);
+  const notes = () => showNotes([...new Set([...models.flatMap((model) => model.notes), ...(problem ? [problem] : [])])]);
+  if (problem) warn(`The model is shown by itself: ${problem}`);
+  notes();
   draw();
   byId('message').hidden = true;
-  // Textures that fail are told after the others are there.
-  setTimeout(() => showNotes([...new Set([...notes, ...[...firsts, compare].filter(Boolean).flatMap((m) => m.notes)])]), 1000);
+  // The studio has no extensions, but is there at once; the room takes a moment.
+  if (models.some((model) => model.hasExtensions)) requestAnimationFrame(() => setTimeout(() => store.set({ light: 'room' })));
+  // Textures that cannot be decoded are told late.
+  setTimeout(notes, 1000);
   // For tests and for the console.
   window.parbake = { store, stage, redraw, settled, snapshot: () => { draw(); return byId('canvas').toDataURL(); } };
 }

@@ -20,7 +20,7 @@ export const CHANNELS = [
 export const SHADED = { three: 0, studio: 10, headlight: 11 };
 
 const uniforms = { pbTurn: { value: new Matrix3() }, pbSplitSum: { value: null }, ...studioUniforms };
-const taught = new Set();
+const taught = new Map();
 let shown = 0;
 
 /** Chooses what all materials write. Each choice is a program of its own: branches would cost every pixel. */
@@ -28,7 +28,11 @@ export function show(code) {
   if (code === SHADED.studio) uniforms.pbSplitSum.value = splitSum();
   if (code === shown) return;
   shown = code;
-  for (const material of taught) material.needsUpdate = true;
+  for (const [material, transmission] of taught) {
+    // Glass is drawn by drawing all that is behind it first: for nothing, where it is shown opaque.
+    if (transmission > 0) material.transmission = code === SHADED.three ? transmission : 0;
+    material.needsUpdate = true;
+  }
 }
 
 /** Turns the studio about +Y, in radians. */
@@ -97,7 +101,7 @@ function patched(shader) {
 /** Teaches a material to show its channels. */
 export function teach(material) {
   if (taught.has(material) || (!material.isMeshStandardMaterial && !material.isMeshBasicMaterial)) return;
-  taught.add(material);
+  taught.set(material, material.transmission ?? 0);
   material.onBeforeCompile = patched;
   material.customProgramCacheKey = () => `parbake ${shown}`;
 }

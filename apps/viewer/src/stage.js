@@ -5,14 +5,15 @@ import {
 import { Composer, LAYOUTS } from './compose.js';
 import { GpuTimer } from './gpu_timer.js';
 import { Lights, LIGHTS } from './lights.js';
-import { CHANNELS, show, turnStudio } from './materials.js';
+import { CHANNELS, SHADED, show, turnStudio } from './materials.js';
 import { UvLayout } from './uv_layout.js';
 import { View } from './view.js';
 import { psnr } from './psnr.js';
 
 /** Pixels of a picture, at most: what is more is scaled up by the browser. */
-const MOST_PIXELS = 5e6;
-const SAMPLES = 4;
+const MOST_PIXELS = 9e6;
+/** Up to so many pixels have four samples, more of them two: they are small. */
+const FINE_PIXELS = 4e6;
 
 export class Stage {
   constructor(canvas) {
@@ -72,9 +73,11 @@ export class Stage {
   }
 
   target(which, width, height) {
+    const samples = width * height > FINE_PIXELS ? 2 : 4;
     let target = this.targets[which];
-    if (!target) {
-      target = new WebGLRenderTarget(width, height, { type: HalfFloatType, samples: SAMPLES });
+    if (target?.samples !== samples) {
+      target?.dispose();
+      target = new WebGLRenderTarget(width, height, { type: HalfFloatType, samples });
       this.targets[which] = target;
     }
     target.setSize(width, height);
@@ -85,7 +88,9 @@ export class Stage {
     const chosen = CHANNELS.find((c) => c.key === channel), lamp = LIGHTS.find((l) => l.key === light);
     this.lights.choose(light, turn);
     turnStudio(turn);
-    show(chosen.key === 'lit' ? lamp.shaded : chosen.code);
+    const code = chosen.key === 'lit' ? lamp.shaded : chosen.code;
+    this.isShaded = code === SHADED.three;
+    show(code);
     return chosen.isColor ?? false;
   }
 
@@ -94,7 +99,7 @@ export class Stage {
     const scene = this.scenes[which], { renderer } = this;
     const owners = which === 0 ? this.levels.models : [this.compare];
     // What is seen through glass needs something behind it.
-    scene.background = owners.some((model) => model.hasTransmission) ? new Color().setRGB(...background, 'srgb') : null;
+    scene.background = this.isShaded && owners.some((model) => model.hasTransmission) ? new Color().setRGB(...background, 'srgb') : null;
     renderer.setRenderTarget(target);
     renderer.setClearColor(0x000000, 0);
     renderer.autoClear = true;

@@ -3,6 +3,7 @@
 // Loads models with and without a second one, goes through everything by mouse and keyboard, and fails on: a message
 // in the console, a request to anywhere else, a picture that does not change when it should, a finding of axe-core that
 // is serious, a broken file without a message. Pictures of all of it are left in FOLDER.
+import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
@@ -71,10 +72,11 @@ async function session(what, models, more, options, steps) {
   console.log(`${what}: ${((performance.now() - began) / 1000).toFixed(1)} s`);
 }
 
+const SMALL = { width: 800, height: 480 };
 const choose = (page, name, value) => page.click(`input[name="${name}"][value="${value}"]`);
 
 // Small, since every picture is drawn by the processor.
-await session('compared', [values.low], ['--compare', values.high], { width: 900, height: 560 }, async (page) => {
+await session('compared', [values.low], ['--compare', values.high], SMALL, async (page) => {
   verify(/^\d+\.\d\d dB$/.test(await page.$eval('#psnr', (e) => e.textContent)), 'PSNR of the view is told');
   const rows = await page.$$eval('#figures tbody tr', (all) => all.map((row) => [...row.cells].map((cell) => cell.textContent)));
   verify(rows.length >= 8 && rows.every((row) => row.length >= 2 && row[1] !== ''), `figures: ${JSON.stringify(rows)}`);
@@ -155,9 +157,9 @@ await session('compared', [values.low], ['--compare', values.high], { width: 900
   await drawn(page);
   await shot(page, 'dark');
   await accessible(page, 'dark');
-  await page.mouse.move(300, 300);
+  await page.mouse.move(200, 200);
   await page.mouse.down();
-  await page.mouse.move(380, 320, { steps: 4 });
+  await page.mouse.move(260, 220, { steps: 4 });
   await page.mouse.up();
   await page.mouse.wheel({ deltaY: -200 });
   await differs('turned by mouse');
@@ -171,7 +173,7 @@ await session('by itself, dark', [values.high], [], { scheme: 'dark' }, async (p
   await shot(page, 'single_dark');
 });
 
-await session('levels', [values.high, values.low], [], { width: 900, height: 560 }, async (page) => {
+await session('levels', [values.high, values.low], [], SMALL, async (page) => {
   const label = () => page.$eval('#label-first', (e) => e.textContent);
   verify(/level 0/.test(await label()), 'large models show the finest level');
   await page.$eval('#size', (e) => { e.value = 60; e.dispatchEvent(new Event('input')); });
@@ -201,6 +203,15 @@ await session('phone', [values.low], ['--compare', values.high], { width: 390, h
   verify(!wide, 'nothing is wider than the phone');
   await shot(page, 'phone_panel');
   await accessible(page, 'phone');
+});
+
+// Decoders of textures and meshes run in workers, which the page's policy must let be.
+const packed = path.join(out, 'packed.glb');
+execFileSync(values.parbake, ['simplify', values.low, '-t', '1000000', '-o', packed, '-q', '--texture-format', 'ktx2', '--mesh-compression', 'meshopt']);
+await session('KTX2 and meshopt', [packed], ['--compare', values.low], SMALL, async (page) => {
+  const decibels = parseFloat(await page.$eval('#psnr', (e) => e.textContent));
+  verify(decibels > 32, `compressed, the model looks the same: ${decibels} dB`);
+  await shot(page, 'packed');
 });
 
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'parbake-broken-'));

@@ -2,7 +2,7 @@
 
 use crate::context::{Context, Textures};
 use crate::model_in::{is_gltf, name_model, opened, parsed};
-use crate::{FileError, Limits, Warning, glb_bytes, gltf};
+use crate::{FileError, Limits, Warning, gltf};
 use std::path::Path;
 
 /// A model as one GLB file.
@@ -27,19 +27,19 @@ pub fn read_self_contained(path: &Path, limits: &Limits) -> Result<SelfContained
     if !is_gltf(path, &file) {
         let loaded = parsed(path, &file, &resources, limits, Textures::Decode)?;
         return Ok(SelfContained {
-            glb: glb_bytes(&loaded.model)?,
+            glb: gltf::quick_glb_bytes(&loaded.model)?,
             bytes: loaded.bytes,
             warnings: loaded.warnings,
         });
     }
-    let geometry = parsed(path, &file, &resources, limits, Textures::Skip)?;
+    // What the readers warn of is what they leave out; here nothing is.
+    parsed(path, &file, &resources, limits, Textures::Skip)?;
     let context = Context::new(path, &resources, limits, Textures::Skip);
     context.count_own(&file);
     let glb = gltf::pack(&context, &file)?;
-    let (bytes, mut packing) = (context.bytes(), context.into_warnings());
-    name_model(path, &mut packing);
-    packing.retain(|warning| !geometry.warnings.contains(warning));
-    Ok(SelfContained { glb, bytes, warnings: [geometry.warnings, packing].concat() })
+    let (bytes, mut warnings) = (context.bytes(), context.into_warnings());
+    name_model(path, &mut warnings);
+    Ok(SelfContained { glb, bytes, warnings })
 }
 
 #[cfg(test)]

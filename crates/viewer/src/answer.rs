@@ -17,8 +17,11 @@ use serde_json::{Value, json};
 /// Scripts and styles are the page's own files. Decoders of meshes and textures are WebAssembly, run in workers made
 /// from text, one of which holds its own bytes as data; textures inside models become blobs.
 const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; \
-img-src 'self' blob: data:; connect-src 'self' blob: data:; worker-src blob:; frame-ancestors 'none'; base-uri 'none'; \
+img-src 'self' blob: data:; connect-src 'self' blob: data:; worker-src 'self' blob:; frame-ancestors 'none'; base-uri 'none'; \
 form-action 'none'";
+
+/// The same for the worker that decodes KTX2: it alone may make functions from text, and may load nothing at all.
+const WORKER_POLICY: &str = "default-src 'none'; script-src 'unsafe-eval' 'wasm-unsafe-eval'";
 
 /// What a server serves.
 #[derive(Debug)]
@@ -52,7 +55,13 @@ pub(crate) async fn answer(shown: &Shown, method: &Method, path: &str, headers: 
         );
     };
     match route {
-        Route::Page(file) => reply(StatusCode::OK, file.media_type, Bytes::from_static(file.bytes)),
+        Route::Page(file) => {
+            let mut answer = reply(StatusCode::OK, file.media_type, Bytes::from_static(file.bytes));
+            if file.evaluates_text() {
+                answer.headers_mut().insert(CONTENT_SECURITY_POLICY, HeaderValue::from_static(WORKER_POLICY));
+            }
+            answer
+        }
         Route::Session => document(StatusCode::OK, &session(shown)),
         Route::Model(index) => match shown.models[index].ready().await {
             Ok(model) => reply(StatusCode::OK, "model/gltf-binary", model.glb.clone()),

@@ -9,6 +9,13 @@ pub(crate) struct File {
     pub bytes: &'static [u8],
 }
 
+impl File {
+    /// Whether it makes functions from text, as the compiled transcoder of textures does.
+    pub fn evaluates_text(&self) -> bool {
+        self.name == "basis/worker.js"
+    }
+}
+
 macro_rules! file {
     ($name:literal, $media_type:literal) => {
         File {
@@ -27,7 +34,7 @@ pub(crate) static FILES: [File; 9] = [
     file!("three.js", "text/javascript; charset=utf-8"),
     file!("draco/draco_wasm_wrapper.js", "text/javascript; charset=utf-8"),
     file!("draco/draco_decoder.wasm", "application/wasm"),
-    file!("basis/basis_transcoder.js", "text/javascript; charset=utf-8"),
+    file!("basis/worker.js", "text/javascript; charset=utf-8"),
     file!("basis/basis_transcoder.wasm", "application/wasm"),
     file!("THIRD_PARTY_LICENSES.txt", "text/plain; charset=utf-8"),
 ];

@@ -70,7 +70,13 @@ fn the_page_and_its_models_are_served() {
         }
         assert!(!body.is_empty(), "{name}");
     }
+    let worker = get(&host, &format!("/{token}/basis/worker.js")).0;
+    assert!(
+        worker.contains("content-security-policy: default-src 'none'; script-src 'unsafe-eval'"),
+        "{worker}"
+    );
     let policy = get(&host, &format!("/{token}/")).0;
+    assert!(!policy.contains("'unsafe-eval'"), "{policy}");
     assert!(!policy.contains("http:") && !policy.contains("https:") && !policy.contains(" *"), "{policy}");
     assert_eq!(get(&host, &format!("/{token}/model/0")).1[..4], *b"glTF");
     let session = String::from_utf8(get(&host, &format!("/{token}/session.json")).1).unwrap();

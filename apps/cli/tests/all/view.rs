@@ -2,6 +2,7 @@
 
 use crate::common::{demo_files, parbake, text};
 use parbake::{EvaluateOptions, Limits, Shading, Studio, read_model, write_glb};
+use parbake_model::TextureSlot;
 use parbake_model::glam::Vec3;
 use serde_json::json;
 use std::io::{BufRead, BufReader};
@@ -95,13 +96,15 @@ fn the_page_shows_what_the_cpu_renders() {
     demo_files(folder, &["demo_high.glb", "demo.glb"]);
     let model = |name: &str| read_model(&folder.join(name), &Limits::default()).unwrap().model;
     let mut whole = model("demo.glb");
+    // Any pictures will do: the baked colours as light, and the same numbers as data.
+    let colors = whole.materials[0].base_color_texture.unwrap();
+    whole.images.push(whole.images[colors.image].clone());
+    let data = Some(TextureSlot { image: whole.images.len() - 1, ..colors });
     let material = &mut whole.materials[0];
-    // Any picture will do: the baked colours.
-    let slot = material.base_color_texture;
-    assert!(slot.is_some() && material.normal_texture.is_some());
-    (material.metallic, material.roughness, material.metallic_roughness_texture) = (0.8, 0.7, slot);
-    (material.occlusion_texture, material.occlusion_strength) = (slot, 0.5);
-    (material.emissive_texture, material.emissive) = (slot, [0.1, 0.2, 0.3]);
+    assert!(material.normal_texture.is_some());
+    (material.metallic, material.roughness, material.metallic_roughness_texture) = (0.8, 0.7, data);
+    (material.occlusion_texture, material.occlusion_strength) = (data, 0.5);
+    (material.emissive_texture, material.emissive) = (Some(colors), [0.1, 0.2, 0.3]);
     write_glb(&folder.join("whole.glb"), &whole).unwrap();
     let mut unlit = model("demo.glb");
     unlit.materials[0].unlit = true;

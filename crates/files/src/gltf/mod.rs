@@ -43,6 +43,7 @@ mod write_mesh;
 mod write_parallax;
 
 pub(crate) use pack::pack;
+pub(crate) use write::quick_glb_bytes;
 pub use write::{glb_bytes, write_glb, write_glb_with};
 
 use crate::context::{Context, Textures};

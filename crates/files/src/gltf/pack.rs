@@ -41,9 +41,8 @@ pub(crate) fn pack(context: &Context<'_>, bytes: &[u8]) -> Result<Vec<u8>, FileE
     for (index, buffer) in document.buffers.iter().enumerate() {
         aligned(&mut all);
         starts.push(all.len());
-        let is_fallback = json.pointer(&format!("/buffers/{index}/extensions")).is_some();
-        // What a compressed view falls back to need not be there.
-        if buffer.uri.is_some() || (index == 0 && binary.is_some()) || !is_fallback {
+        // What compressed views fall back to need not be there.
+        if buffer.uri.is_some() || (index == 0 && binary.is_some()) {
             all.extend_from_slice(buffers.part(
                 index,
                 0,

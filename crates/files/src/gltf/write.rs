@@ -9,12 +9,12 @@ use super::meshopt_out;
 use super::quantise::Grid;
 use super::write_material::{EMISSIVE_STRENGTH, Materials, UNLIT, purpose_of};
 use super::write_mesh::primitives;
-use crate::texture_out::{Encoded, encode_texture};
+use crate::texture_out::{Encoded, Purpose, encode_texture};
 use crate::write_options::{
     MeshCompression, TextureFormat, WriteOptions, Written, WrittenMesh, WrittenTexture,
 };
-use crate::{FileError, Place, write_atomically};
-use parbake_model::Model;
+use crate::{FileError, Place, encode_png, write_atomically};
+use parbake_model::{Image, Model};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -37,7 +37,7 @@ pub fn write_glb(path: &Path, model: &Model) -> Result<u64, FileError> {
 /// # Errors
 /// As [`write_glb`].
 pub fn write_glb_with(path: &Path, model: &Model, options: &WriteOptions) -> Result<Written, FileError> {
-    let (bytes, written) = to_bytes(path, model, options)?;
+    let (bytes, written) = to_bytes(path, model, options, encode_texture)?;
     write_atomically(path, &bytes)?;
     Ok(written)
 }
@@ -47,10 +47,24 @@ pub fn write_glb_with(path: &Path, model: &Model, options: &WriteOptions) -> Res
 /// # Errors
 /// When the model breaks its contract.
 pub fn glb_bytes(model: &Model) -> Result<Vec<u8>, FileError> {
-    Ok(to_bytes(Path::new(&model.name), model, &WriteOptions::default())?.0)
+    Ok(to_bytes(Path::new(&model.name), model, &WriteOptions::default(), encode_texture)?.0)
 }
 
-fn to_bytes(path: &Path, model: &Model, options: &WriteOptions) -> Result<(Vec<u8>, Written), FileError> {
+/// The same for one look at it: textures are encoded fast instead of small.
+pub(crate) fn quick_glb_bytes(model: &Model) -> Result<Vec<u8>, FileError> {
+    let encode = |image: &Image, _: Purpose, _: &WriteOptions| {
+        let bytes = encode_png(image)?;
+        Ok(Encoded { bytes, format: TextureFormat::Png, psnr: None, reason: None })
+    };
+    Ok(to_bytes(Path::new(&model.name), model, &WriteOptions::default(), encode)?.0)
+}
+
+fn to_bytes(
+    path: &Path,
+    model: &Model,
+    options: &WriteOptions,
+    encode_texture: impl Fn(&Image, Purpose, &WriteOptions) -> Result<Encoded, FileError> + Sync,
+) -> Result<(Vec<u8>, Written), FileError> {
     crate::model_out::check(path, model)?;
     let mut binary = Binary::default();
     let positions = &model.mesh.positions;
