@@ -1,5 +1,6 @@
 // Models: fetched, parsed, taught to show their channels, and counted.
 import { AnimationMixer, Box3, DRACOLoader, GLTFLoader, Group, LoadingManager, MeshoptDecoder } from './vendor.js';
+import { guard } from './guard.js';
 import { Ktx2 } from './ktx2.js';
 import { TEXTURE_SLOTS, teach } from './materials.js';
 
@@ -31,10 +32,11 @@ export function createLoader(renderer) {
     };
     const loader = new GLTFLoader(manager).setDRACOLoader(draco).setKTX2Loader(ktx2).setMeshoptDecoder(MeshoptDecoder);
     try {
+      guard(bytes);
       const gltf = await Promise.race([loader.parseAsync(bytes, ''), workerFails]);
       return new Model(entry, gltf, await levelsOf(gltf), size, notes);
     } catch (error) {
-      throw new Error(`${entry.name}: three.js cannot show this file (${error?.message ?? error}).`);
+      throw new Error(`${entry.name}: this file cannot be shown: ${error?.message ?? error}.`);
     }
   };
 }

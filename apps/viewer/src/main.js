@@ -17,6 +17,8 @@ import { wireTheme } from './theme.js';
 
 /** A picture that has not changed for so many milliseconds is measured. */
 const RESTING = 250;
+/** After so many milliseconds it is said that loading takes a while. */
+const SLOW = 8000;
 /** What a picture depends on. */
 const DRAWN = ['mode', 'channel', 'wireframe', 'light', 'turn', 'exposure', 'tone', 'background', 'split', 'level', 'theme', 'uvLines'];
 const store = createStore({
@@ -327,7 +329,9 @@ async function start() {
   byId('canvas').addEventListener('webglcontextlost', () => {
     fail(new Error('The graphics processor has dropped this page, most likely for want of memory. Reload the page.'));
   });
+  const slow = setTimeout(() => { byId('message-text').textContent += '. Large models take a while.'; }, SLOW);
   const { models, problem } = await loadModels(await readSession());
+  clearTimeout(slow);
   wireModels(models);
   const notes = () => showNotes([...new Set([...models.flatMap((model) => model.notes), ...(problem ? [problem] : [])])]);
   if (problem) warn(`The model is shown by itself: ${problem}`);

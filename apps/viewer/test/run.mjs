@@ -237,6 +237,35 @@ await session('compared with a broken one', [values.low], ['--compare', broken],
   verify(state === 'shown' && !(await page.$eval('#banner', (e) => e.hidden)), 'the other model is still shown');
   await shot(page, 'half_broken');
 });
+
+// Parts of files that only three.js looks at: each would hang it.
+const hostile = {
+  'a scene that lies below itself': (json) => {
+    json.nodes.push({ children: [json.nodes.length] });
+    json.scenes.push({ nodes: [json.nodes.length - 1] });
+  },
+  'a level that is its own node': (json) => { json.nodes[0].extensions = { MSFT_lod: { ids: [0] } }; },
+  'an animation without end': (json) => {
+    json.accessors.push({ componentType: 5126, count: 2 ** 31, type: 'SCALAR' });
+    const input = json.accessors.length - 1;
+    json.animations = [{ samplers: [{ input, output: input }], channels: [{ sampler: 0, target: { node: 0, path: 'scale' } }] }];
+  },
+};
+for (const [what, change] of Object.entries(hostile)) {
+  const file = path.join(folder, 'hostile.glb'), bytes = fs.readFileSync(values.low), length = bytes.readUInt32LE(12);
+  const json = JSON.parse(bytes.subarray(20, 20 + length));
+  change(json);
+  let text = Buffer.from(JSON.stringify(json));
+  text = Buffer.concat([text, Buffer.alloc((4 - (text.length % 4)) % 4, ' ')]);
+  const head = Buffer.from(bytes.subarray(0, 20));
+  head.writeUInt32LE(text.length, 12);
+  head.writeUInt32LE(bytes.length - length + text.length, 8);
+  fs.writeFileSync(file, Buffer.concat([head, text, bytes.subarray(20 + length)]));
+  await session(what, [file], [], SMALL, async (page, { state }) => {
+    verify(state === 'refused', `${what} is refused`);
+    console.log(`  ${await page.$eval('#failure-text', (e) => e.textContent)}`);
+  });
+}
 fs.rmSync(folder, { recursive: true });
 
 await browser.close();
