@@ -1,10 +1,10 @@
 // All of three.js that the page uses, built into a file of its own: it changes only with three.js's version.
 export {
-  AmbientLight, AnimationMixer, BackSide, Box3, BufferAttribute, BufferGeometry, Clock, Color, DataTexture,
-  DirectionalLight, FloatType, Group, HalfFloatType, LinearSRGBColorSpace, LineSegments, LoadingManager, Matrix3,
-  Matrix4, Mesh, MeshBasicMaterial, NearestFilter, NoToneMapping, OrthographicCamera, PerspectiveCamera,
-  PMREMGenerator, PlaneGeometry, RGFormat, RGBAFormat, Scene, ShaderMaterial, SphereGeometry, SRGBColorSpace,
-  UnsignedByteType, Vector2, Vector3, WebGLRenderer, WebGLRenderTarget,
+  AnimationMixer, BackSide, Box3, BufferAttribute, BufferGeometry, Color, DataTexture, DirectionalLight, FloatType,
+  Group, HalfFloatType, LinearSRGBColorSpace, LineSegments, LoadingManager, Matrix3, Mesh, MeshBasicMaterial,
+  NearestFilter, OrthographicCamera, PerspectiveCamera, PlaneGeometry, PMREMGenerator, RGFormat, Scene,
+  ShaderMaterial, SphereGeometry, SRGBColorSpace, UnsignedByteType, Vector2, Vector3, WebGLRenderer,
+  WebGLRenderTarget,
 } from 'three';
 export { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 export { DRACOLoader } from 'three/examples/jsm/loaders/DRACOLoader.js';
