@@ -2,7 +2,8 @@
 
 use crate::rules::{NOT_IN_COMPRESS, WITH_NORMAL_MAPS};
 use clap::{Args, Command as Clap, CommandFactory, Parser, Subcommand, ValueEnum};
-use parbake::{BakeOptions, EvaluateOptions, ImageOptions, WriteOptions, parse_texels};
+use parbake::lod::layout::Layout;
+use parbake::{BakeOptions, EvaluateOptions, ImageOptions, LodOptions, WriteOptions, parse_texels};
 use parbake_report::TurntableOptions;
 use parbake_reproduce::ReproduceOptions;
 use parbake_reproduce::variants::VariantsOptions;
@@ -65,6 +66,8 @@ pub struct Arguments {
 pub enum Command {
     /// Bake a high-poly's appearance onto a low-poly
     Bake(BakeCommand),
+    /// Make levels of detail of a single model
+    Lod(LodCommand),
     /// Shrink a model's texture
     Compress(CompressCommand),
     /// Make a plane that shows a picture with a smaller texture
@@ -137,6 +140,38 @@ pub struct BakeCommand {
     /// How to bake
     #[command(flatten)]
     pub bake: BakeOptions,
+
+    /// What to read
+    #[command(flatten, next_help_heading = IO)]
+    pub reading: Reading,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = IO)]
+    pub talk: Talk,
+}
+
+/// Arguments of `lod`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Each level is written as soon as it is finished. Ctrl-C keeps those that are. lods.json says for each level \
+how many triangles, texels and bytes it has, what it looks like at its size, and below which size on screen it cannot \
+be told from the one before."
+)]
+pub struct LodCommand {
+    /// The model: .obj, .gltf or .glb
+    pub model: PathBuf,
+
+    /// Folder to write the levels, a file with all of them, and lods.json to
+    #[arg(short, long, value_name = "FOLDER", default_value = "lods", help_heading = IO)]
+    pub output: PathBuf,
+
+    /// Engine whose names and helper files are written
+    #[arg(long, value_enum, default_value_t = Layout::Files, help_heading = IO)]
+    pub layout: Layout,
+
+    /// How to make them
+    #[command(flatten)]
+    pub lod: LodOptions,
 
     /// What to read
     #[command(flatten, next_help_heading = IO)]
@@ -430,6 +465,10 @@ pub struct SimplifyCommand {
     /// Number of triangles to aim at, 4 or more
     #[arg(short, long, value_name = "COUNT", default_value_t = 500)]
     pub triangles: usize,
+
+    /// Subdivide instead: split each triangle into four, 1 to 6 times
+    #[arg(long)]
+    pub picture: bool,
 
     /// Subdivide instead: split each triangle into four, 1 to 6 times
     #[arg(long, value_name = "TIMES", conflicts_with = "triangles")]

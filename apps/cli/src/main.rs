@@ -11,6 +11,7 @@ mod evaluate;
 mod failure;
 mod formats;
 mod image;
+mod lod;
 mod options_file;
 mod outputs;
 mod pictures;
@@ -37,6 +38,7 @@ fn main() -> ExitCode {
         (Command::Demo(command), Some(given)) => demo::run(command, given),
         (Command::Eval(command), _) => evaluate::run(command),
         (Command::Compress(command), Some(given)) => compress::run(command, given),
+        (Command::Lod(command), _) => lod::run(command),
         (Command::Image(command), Some(given)) => image::run(command, given),
         (Command::Variants(command), _) => variants::run(command),
         (Command::Turntable(command), _) => turntable::run(command),

@@ -67,6 +67,12 @@ impl Console {
         Self::with_deadline(talk, time_budget)
     }
 
+    /// For levels of detail, which Ctrl-C ends with those that are finished.
+    pub fn for_levels(talk: Talk) -> Self {
+        catch_interrupts("the level in hand is finished quickly, no further one begins");
+        Self::with_deadline(talk, None)
+    }
+
     /// For a film, of which a part is no use: Ctrl-C ends without a file, not even a temporary one.
     pub fn for_film(talk: Talk) -> Self {
         catch_interrupts("no film is written");

@@ -29,7 +29,7 @@ mod write_options;
 
 pub use atomic::{write_atomically, write_streamed};
 pub use error::{FileError, Place};
-pub use gltf::{glb_bytes, read_gltf_bytes, write_glb, write_glb_with};
+pub use gltf::{glb_bytes, read_gltf_bytes, write_glb, write_glb_with, write_lod_glb};
 pub use image_in::{decode_image, read_image};
 pub use image_out::encode_png;
 pub use limits::Limits;

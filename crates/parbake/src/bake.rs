@@ -93,11 +93,22 @@ pub fn bake_prepared(
     options: &BakeOptions,
     watcher: &dyn Watcher,
 ) -> Result<Baked, BakeError> {
+    bake_as(Work::Bake, high, low, options, watcher)
+}
+
+/// The same as a work of this kind.
+pub(crate) fn bake_as(
+    work: Work,
+    high: &HighPoly,
+    low: &Model,
+    options: &BakeOptions,
+    watcher: &dyn Watcher,
+) -> Result<Baked, BakeError> {
     options.check()?;
     if high.conventions != conventions(options) {
         return Err(BakeError::OtherConventions { model: high.name.clone() });
     }
-    run(high, low, Work::Bake, options, watcher, Instant::now())
+    run(high, low, work, options, watcher, Instant::now())
 }
 
 /// Bakes a model onto itself, triangle by triangle.
@@ -159,7 +170,7 @@ fn run(
     watcher.message(Message::Plan(stage_weights(options)));
     let mut clock = Clock::new(begin);
     let mut warnings = Warnings::new(watcher);
-    warnings.tell((!same).then(|| swapped(high, low)).flatten());
+    warnings.tell((work == Work::Bake).then(|| swapped(high, low)).flatten());
     // One model twice keeps its vertices, whatever their normals are like.
     let turned = (!same).then(|| lit(low));
     let low = turned.as_ref().map_or(low, |(model, _)| model);

@@ -38,8 +38,10 @@ mod geometry;
 mod image;
 mod image_options;
 mod kept;
+pub mod lod;
 mod look;
 mod lost;
+mod low_poly;
 mod memory;
 mod models;
 mod normal_y;
@@ -64,6 +66,9 @@ pub use evaluate::channels::{Channel, ChannelFigures};
 pub use evaluate::options::EvaluateOptions;
 pub use evaluate::{Evaluation, ViewFigures, evaluate, evaluate_on};
 pub use image::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
+pub use lod::options::LodOptions;
+pub use lod::{Level, LevelReport, make_levels};
+pub use low_poly::{LowPolyReport, low_poly};
 pub use memory::peak_memory;
 pub use models::{demo_pair, laid_out, simplified, subdivided, wall_pair, with_tangents};
 pub use normal_y::{NormalY, with_normal_y};
@@ -76,7 +81,7 @@ pub use parbake_atlas::{LayoutCheck, ModelCheck, UvCheck, check_mesh, check_mode
 pub use parbake_files::{
     DEFAULT_TEXTURE_QUALITY, FileError, Limits, Loaded, MeshCompression, TextureFormat, Warning, WarningKind,
     WriteOptions, Written, WrittenMesh, WrittenTexture, encode_png, read_image, read_model,
-    write_atomically as write_file, write_glb, write_glb_with, write_obj,
+    write_atomically as write_file, write_glb, write_glb_with, write_lod_glb, write_obj,
 };
 pub use parbake_fit::parallax_maps::ParallaxReport;
 pub use parbake_model::{Image as Picture, Model};

@@ -18,6 +18,7 @@ mod json;
 mod json_extensions;
 mod json_material;
 mod json_texture;
+mod levels_out;
 mod locate;
 mod material_extensions;
 mod materials;
@@ -41,7 +42,7 @@ mod write_material;
 mod write_mesh;
 mod write_parallax;
 
-pub use write::{glb_bytes, write_glb, write_glb_with};
+pub use write::{glb_bytes, write_glb, write_glb_with, write_lod_glb};
 
 use crate::context::{Context, Textures};
 use crate::finish::finish;

@@ -1,0 +1,80 @@
+//! A low-poly for a high-poly: triangles chosen by its pictures (`parbake-simplify`).
+
+use crate::options::Preset;
+use parbake_model::{AlphaMode, Material, MaterialExtensions, Model};
+use parbake_progress::Watcher;
+use parbake_simplify::polish::PolishOptions;
+use parbake_simplify::{ChooseOptions, StartReport, choose_triangles};
+use parbake_views::high_poly::HighPoly;
+use serde::{Deserialize, Serialize};
+
+/// How the triangles of a low-poly were found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LowPolyReport {
+    /// Triangles.
+    pub triangles: usize,
+    /// The surfaces that were tried; the first was taken.
+    pub starts: Vec<StartReport>,
+    /// Mean squared display error of the shape alone, before and after its triangles were improved.
+    pub error: [f64; 2],
+}
+
+/// A low-poly of at most so many triangles, without texture coordinates, in the high-poly's own space. `model` is
+/// what the high-poly was prepared from; `before` is a finer low-poly that it may start from.
+pub fn low_poly(
+    high: &HighPoly,
+    model: &Model,
+    before: Option<&Model>,
+    triangles: usize,
+    preset: Preset,
+    watcher: &dyn Watcher,
+) -> (Model, LowPolyReport) {
+    let before = before.map(|low| {
+        let mut mesh = low.mesh.clone();
+        high.frame.apply(&mut mesh);
+        mesh
+    });
+    let options = choose_options(triangles, preset);
+    let chosen = choose_triangles(high, before.as_ref(), &options, &watcher);
+    let mut mesh = chosen.mesh;
+    for point in &mut mesh.positions {
+        *point = *point / high.frame.scale + high.frame.centre;
+    }
+    let first = chosen.starts.first().map_or(0.0, |start| start.error);
+    let report = LowPolyReport {
+        triangles: mesh.triangles.len(),
+        starts: chosen.starts,
+        error: [first, chosen.error],
+    };
+    let materials = model.materials.iter().map(layer_only).collect();
+    (Model { name: model.name.clone(), mesh, materials, images: Vec::new() }, report)
+}
+
+/// Of a material what says in which layer it is drawn.
+fn layer_only(material: &Material) -> Material {
+    let transmission = material.extensions.transmission.map(|t| parbake_model::Transmission { texture: None, ..t });
+    Material {
+        name: material.name.clone(),
+        alpha_mode: material.alpha_mode,
+        alpha_cutoff: if material.alpha_mode == AlphaMode::Mask { material.alpha_cutoff } else { 0.5 },
+        double_sided: material.double_sided,
+        extensions: MaterialExtensions { transmission, ..MaterialExtensions::default() },
+        ..Material::default()
+    }
+}
+
+/// Views follow the number of triangles: few large ones need many directions, many small ones need pixels.
+fn choose_options(triangles: usize, preset: Preset) -> ChooseOptions {
+    let (views, view_size) = match triangles {
+        0..=600 => (64, 128),
+        601..=2500 => (40, 192),
+        _ => (24, 256),
+    };
+    let own = PolishOptions::default();
+    let rounds = match preset {
+        Preset::Fast => own.rounds / 2,
+        Preset::Balanced => own.rounds,
+        Preset::Best => 2 * own.rounds,
+    };
+    ChooseOptions { triangles, views, view_size, polish: PolishOptions { rounds, ..own }, seed: 0 }
+}
