@@ -114,8 +114,13 @@ pub struct BakeCommand {
     /// The high-poly: .obj, .gltf or .glb
     pub high: PathBuf,
 
-    /// The low-poly: .obj, .gltf or .glb; missing UVs are made
-    pub low: PathBuf,
+    /// The low-poly: .obj, .gltf or .glb; missing UVs are made. Left out with --triangles
+    #[arg(required_unless_present = "triangles")]
+    pub low: Option<PathBuf>,
+
+    /// Make the low-poly, of at most so many triangles, 4 or more
+    #[arg(short, long, value_name = "COUNT", conflicts_with = "low", value_parser = clap::value_parser!(u32).range(4..))]
+    pub triangles: Option<u32>,
 
     /// File to write: .glb, or .obj with .mtl and .png beside it
     #[arg(short, long, value_name = "FILE", default_value = "baked.glb", help_heading = IO)]
@@ -465,10 +470,6 @@ pub struct SimplifyCommand {
     /// Number of triangles to aim at, 4 or more
     #[arg(short, long, value_name = "COUNT", default_value_t = 500)]
     pub triangles: usize,
-
-    /// Subdivide instead: split each triangle into four, 1 to 6 times
-    #[arg(long)]
-    pub picture: bool,
 
     /// Subdivide instead: split each triangle into four, 1 to 6 times
     #[arg(long, value_name = "TIMES", conflicts_with = "triangles")]

@@ -7,7 +7,8 @@ use crate::outputs::check_not_input;
 use crate::progress::{Console, interrupted};
 use parbake::lod::document::{LodDocument, coverages};
 use parbake::{
-    Level, LevelReport, Model, make_levels, with_normal_y, with_threads, write_file, write_glb_with, write_lod_glb,
+    Level, LevelReport, Model, make_levels, with_normal_y, with_threads, write_file, write_glb_with,
+    write_lod_glb,
 };
 use std::fs::create_dir_all;
 use std::path::Path;
@@ -19,7 +20,8 @@ const DOCUMENT: &str = "lods.json";
 pub fn run(command: &LodCommand) -> Result<Ending, Failure> {
     let options = &command.lod;
     options.check()?;
-    let name = command.model.file_stem().map_or_else(|| "model".into(), |stem| stem.to_string_lossy().into_owned());
+    let name =
+        command.model.file_stem().map_or_else(|| "model".into(), |stem| stem.to_string_lossy().into_owned());
     make_folder(&command.output)?;
     let all_file = command.layout.all_levels_file(&name);
     let files = (0..options.screen_size.len()).map(|level| command.layout.level_file(&name, level));
@@ -50,7 +52,8 @@ pub fn run(command: &LodCommand) -> Result<Ending, Failure> {
         let all: Vec<&Model> = levels.iter().collect();
         write_lod_glb(&command.output.join(&all_file), &all, &coverages(&reports), &options.write)?;
         let document = LodDocument::new(&model, options, all_file.clone(), written);
-        let json = serde_json::to_string_pretty(&document).map_err(|e| Failure::Output(format!("no JSON: {e}")))?;
+        let json =
+            serde_json::to_string_pretty(&document).map_err(|e| Failure::Output(format!("no JSON: {e}")))?;
         write_file(&command.output.join(DOCUMENT), json.as_bytes())?;
         for (file, text) in command.layout.helpers(&name) {
             let path = command.output.join(file);
@@ -71,7 +74,10 @@ pub fn run(command: &LodCommand) -> Result<Ending, Failure> {
 
 fn make_folder(path: &Path) -> Result<(), Failure> {
     create_dir_all(path).map_err(|error| {
-        Failure::Output(format!("{}: the folder cannot be made ({error}); choose another one", path.display()))
+        Failure::Output(format!(
+            "{}: the folder cannot be made ({error}); choose another one",
+            path.display()
+        ))
     })
 }
 

@@ -21,15 +21,6 @@ pub fn run(command: &SimplifyCommand) -> Result<Ending, Failure> {
     let result = match command.subdivide {
         Some(times @ 1..=6) => (0..times).fold(model.clone(), |m, _| subdivided(&m)),
         Some(times) => return Err(Failure::Usage(format!("--subdivide {times}: 1 to 6"))),
-        None if command.picture => {
-            let options = parbake::BakeOptions::default();
-            let begin = std::time::Instant::now();
-            let high = parbake::prepare_high_poly(&model, &options)?;
-            let (low, report) =
-                parbake::low_poly(&high, &model, None, command.triangles, parbake::Preset::Balanced, &console);
-            console.say(&format!("{report:?} {:.2} s", begin.elapsed().as_secs_f64()));
-            low
-        }
         None => simplified(&model, command.triangles),
     };
     write_model(&command.output, &result, &command.formats, &console)?;

@@ -14,6 +14,7 @@ use crate::error::BakeError;
 use crate::geometry::{Geometry, move_geometry};
 use crate::look::Look;
 use crate::lost::lost;
+use crate::low_poly::low_poly;
 use crate::options::{BakeOptions, Shading, UvMode};
 use crate::plan::Plan;
 use crate::report::{BakeReport, Work, layout_warning};
@@ -81,6 +82,24 @@ pub fn bake(
 pub fn prepare_high_poly(high: &Model, options: &BakeOptions) -> Result<HighPoly, BakeError> {
     options.check()?;
     Ok(prepare(high, options)?.keeping_views())
+}
+
+/// Makes a low-poly of at most `triangles` triangles, chosen by its pictures, and bakes the high-poly's look onto
+/// it. [`Baked::ray_cast`] has the same triangles.
+///
+/// # Errors
+/// An option out of range; a model without extent; charts that do not fit into the texture.
+pub fn bake_to_triangles(
+    high: &Model,
+    triangles: usize,
+    options: &BakeOptions,
+    watcher: &dyn Watcher,
+) -> Result<Baked, BakeError> {
+    options.check()?;
+    let begin = Instant::now();
+    let prepared = prepare(high, options)?;
+    let (low, _) = low_poly(&prepared, high, None, triangles, options.preset, watcher);
+    run(&prepared, &low, Work::Level, options, watcher, begin)
 }
 
 /// Bakes a prepared high-poly's look onto a low-poly; the result is that of [`bake`].

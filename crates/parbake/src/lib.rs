@@ -54,7 +54,7 @@ mod textures;
 mod threads;
 mod warnings;
 
-pub use bake::{Baked, bake, bake_prepared, prepare_high_poly};
+pub use bake::{Baked, bake, bake_prepared, bake_to_triangles, prepare_high_poly};
 pub use budget::check_budget;
 pub use comparison::{
     BACKGROUNDS, BeforeAndAfter, COMPARED_VIEWS, Comparison, Detail, OnBackground, OnChannel, compare_bake,

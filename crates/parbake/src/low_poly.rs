@@ -52,7 +52,8 @@ pub fn low_poly(
 
 /// Of a material what says in which layer it is drawn.
 fn layer_only(material: &Material) -> Material {
-    let transmission = material.extensions.transmission.map(|t| parbake_model::Transmission { texture: None, ..t });
+    let transmission =
+        material.extensions.transmission.map(|t| parbake_model::Transmission { texture: None, ..t });
     Material {
         name: material.name.clone(),
         alpha_mode: material.alpha_mode,
@@ -63,18 +64,21 @@ fn layer_only(material: &Material) -> Material {
     }
 }
 
-/// Views follow the number of triangles: few large ones need many directions, many small ones need pixels.
+/// Views follow the number of triangles: few large ones need many directions, many small ones need pixels. What one
+/// triangle is worth falls with their number, what it costs does not: many are chosen by quadrics alone.
 fn choose_options(triangles: usize, preset: Preset) -> ChooseOptions {
-    let (views, view_size) = match triangles {
-        0..=600 => (64, 128),
-        601..=2500 => (40, 192),
-        _ => (24, 256),
-    };
     let own = PolishOptions::default();
-    let rounds = match preset {
-        Preset::Fast => own.rounds / 2,
-        Preset::Balanced => own.rounds,
-        Preset::Best => 2 * own.rounds,
+    let (room, views, view_size, rounds, sweeps) = match triangles {
+        0..=150 => (3, 48, 128, own.rounds, own.sweeps),
+        151..=400 => (3, 40, 128, own.rounds / 2, own.sweeps),
+        401..=1000 => (2, 24, 160, 1, 1),
+        _ => (1, 16, 160, 0, 0),
     };
-    ChooseOptions { triangles, views, view_size, polish: PolishOptions { rounds, ..own }, seed: 0 }
+    let rounds = match preset {
+        Preset::Fast => rounds / 2,
+        Preset::Balanced => rounds,
+        Preset::Best => 2 * rounds,
+    };
+    let polish = PolishOptions { rounds, sweeps, ..own };
+    ChooseOptions { triangles, room, views, view_size, polish, seed: 0 }
 }

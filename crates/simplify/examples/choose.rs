@@ -32,14 +32,34 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         sweeps: var("SWEEPS", own.sweeps as f64) as usize,
         exchanged: var("EXCHANGED", own.exchanged),
     };
-        let options = ChooseOptions { triangles: a[2].parse()?, views, view_size, polish, seed: 0 };
+    let options = ChooseOptions { triangles: a[2].parse()?, room: 3, views, view_size, polish, seed: 0 };
     let begin = std::time::Instant::now();
     let chosen = choose_triangles(&prepared, None, &options, &());
     let seconds = begin.elapsed().as_secs_f64();
-    let test = |b: [f32; 3]| -> Vec<Target> { view_pool(96, &rig, 77).iter().map(|v| Target::new(&prepared, None, v.camera, 192)).map(|mut t| { t.weigh(b); t }).collect() };
+    let test = |b: [f32; 3]| -> Vec<Target> {
+        view_pool(96, &rig, 77)
+            .iter()
+            .map(|v| Target::new(&prepared, None, v.camera, 192))
+            .map(|mut t| {
+                t.weigh(b);
+                t
+            })
+            .collect()
+    };
     let tests = [[0.33; 3], [0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(test);
-    let score = |mesh: &parbake_model::Mesh| tests.iter().map(|t| format!("{:.6} ", Pictures::new(t, Surface::new(mesh)).error())).collect::<String>();
-    println!("{:?} error {:.6} test {} triangles {} {seconds:.2} s", chosen.starts, chosen.error, score(&chosen.mesh), chosen.mesh.triangles.len());
+    let score = |mesh: &parbake_model::Mesh| {
+        tests
+            .iter()
+            .map(|t| format!("{:.6} ", Pictures::new(t, Surface::new(mesh)).error()))
+            .collect::<String>()
+    };
+    println!(
+        "{:?} error {:.6} test {} triangles {} {seconds:.2} s",
+        chosen.starts,
+        chosen.error,
+        score(&chosen.mesh),
+        chosen.mesh.triangles.len()
+    );
     for low in &a[4..] {
         let mut mesh = read_model(low.as_ref(), &Limits::default())?.model.mesh;
         prepared.frame.apply(&mut mesh);

@@ -93,7 +93,8 @@ impl Change {
         let old = normal(surface.corners(first.corners)) + normal(surface.corners(second.corners));
         let is_sound = |t: &Triangle| {
             let corners = surface.corners(t.corners);
-            shape(corners) > LEAST_SHAPE && normal(corners).normalize_or_zero().dot(old.normalize_or_zero()) > 0.3
+            shape(corners) > LEAST_SHAPE
+                && normal(corners).normalize_or_zero().dot(old.normalize_or_zero()) > 0.3
         };
         added.iter().all(is_sound).then_some(Self { removed, added, moved: None })
     }
@@ -161,10 +162,66 @@ fn shape(corners: [Vec3; 3]) -> f32 {
 
 /// The corners from `a` or `b` on, so that the edge between them is the first one.
 fn rotated([x, y, z]: [u32; 3], a: u32, b: u32) -> Option<[u32; 3]> {
-    [[x, y, z], [y, z, x], [z, x, y]].into_iter().find(|t| (t[0] == a && t[1] == b) || (t[0] == b && t[1] == a))
+    [[x, y, z], [y, z, x], [z, x, y]]
+        .into_iter()
+        .find(|t| (t[0] == a && t[1] == b) || (t[0] == b && t[1] == a))
 }
 
 /// Whether a triangle goes from `a` to `b`.
 fn runs([x, y, z]: [u32; 3], a: u32, b: u32) -> bool {
     [[x, y], [y, z], [z, x]].contains(&[a, b])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parbake_model::Mesh;
+
+    /// A square of two triangles, and a third one that stands on its diagonal if asked for.
+    fn square(with_fin: bool) -> Surface {
+        let positions = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0), (0.5, 0.5, 1.0)];
+        let mut triangles = vec![[0, 1, 2], [0, 2, 3]];
+        triangles.extend(with_fin.then_some([0, 2, 4]));
+        Surface::new(&Mesh {
+            positions: positions.map(|(x, y, z)| Vec3::new(x, y, z)).to_vec(),
+            triangle_materials: vec![0; triangles.len()],
+            triangles,
+            ..Mesh::default()
+        })
+    }
+
+    /// Protects flips: the other diagonal, with the same orientation; none where an edge has three triangles or
+    /// separates materials.
+    #[test]
+    fn flips_take_the_other_diagonal() {
+        let surface = square(false);
+        let change = Change::flip(&surface, 0, 2);
+        let added: Vec<[u32; 3]> = change.iter().flat_map(|c| &c.added).map(|t| t.corners).collect();
+        assert_eq!(added.len(), 2);
+        for corners in added {
+            assert!(normal(surface.corners(corners)).z > 0.0, "{corners:?}");
+            assert!(corners.contains(&1) && corners.contains(&3));
+        }
+        assert_eq!(Change::flip(&surface, 0, 1), None, "a border has no other side");
+        assert_eq!(Change::flip(&square(true), 0, 2), None);
+    }
+
+    /// Protects orientation: a point may not cross the edge on its other side, nor come to lie on it.
+    #[test]
+    fn triangles_do_not_turn_over() {
+        let surface = square(false);
+        assert!(Change::shift(&surface, 1, Vec3::new(1.2, -0.2, 0.0)).is_some());
+        assert_eq!(Change::shift(&surface, 1, Vec3::new(0.0, 1.0, 0.0)), None);
+        assert_eq!(Change::shift(&surface, 1, Vec3::new(0.5, 0.5, 0.0)), None);
+    }
+
+    /// Protects sheets from being pinched: the edge inside joins two borders and may not collapse, those of the
+    /// border may.
+    #[test]
+    fn borders_are_not_joined() {
+        let surface = square(false);
+        assert_eq!(Change::collapse(&surface, 2, 0, Vec3::new(0.5, 0.5, 0.0)), None);
+        let change = Change::collapse(&surface, 1, 0, Vec3::ZERO);
+        assert_eq!(change.map(|c| (c.removed.len(), c.added.len())), Some((2, 1)));
+    }
 }

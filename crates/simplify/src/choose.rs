@@ -28,6 +28,8 @@ use serde::{Deserialize, Serialize};
 pub struct ChooseOptions {
     /// Triangles of the result, at most.
     pub triangles: usize,
+    /// Triangles of a start for each that is wanted, 1 or more: those that are too many collapse by the pictures.
+    pub room: usize,
     /// Views that errors are measured in.
     pub views: usize,
     /// Side of a view in pixels.
@@ -62,9 +64,6 @@ pub struct Chosen {
 
 /// Views that tell one collapse from another well enough.
 const FEW: usize = 24;
-/// Triangles of a start for each that is wanted.
-const ROOM: usize = 3;
-
 /// Chooses the triangles; `before` is the level before, if there is one.
 pub fn choose_triangles(
     high: &HighPoly,
@@ -76,7 +75,8 @@ pub fn choose_triangles(
     let mut targets: Vec<Target> =
         cameras.par_iter().map(|view| Target::new(high, None, view.camera, options.view_size)).collect();
     let mesh = high.scene.mesh();
-    let mut starts: Vec<(Start, Mesh)> = vec![(Start::Quadrics, quadrics(mesh, ROOM * options.triangles))];
+    let mut starts: Vec<(Start, Mesh)> =
+        vec![(Start::Quadrics, quadrics(mesh, options.room * options.triangles))];
     starts.extend(before.map(|mesh| (Start::Level, mesh.clone())));
     let mut tried: Vec<(StartReport, Surface)> = Vec::new();
     for (start, mesh) in starts {

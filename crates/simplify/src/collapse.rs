@@ -122,7 +122,9 @@ pub fn collapse_to(pictures: &mut Pictures, target: usize, watcher: &impl Watche
         let Some(top) = queue.pop() else { break };
         if version(&pictures.surface, &top.candidate, &versions) == top.version {
             let Some((change, _)) = best(pictures, &top.candidate, &mut Scratch::default()) else { continue };
-            for point in change.removed.iter().filter_map(|&t| pictures.surface.get(t)).flat_map(|t| t.corners) {
+            for point in
+                change.removed.iter().filter_map(|&t| pictures.surface.get(t)).flat_map(|t| t.corners)
+            {
                 versions[point as usize] += 1;
             }
             let moved = change.moved;
@@ -156,7 +158,8 @@ pub fn collapse_to(pictures: &mut Pictures, target: usize, watcher: &impl Watche
 
 fn candidates(surface: &Surface, parts: &Parts) -> Vec<Candidate> {
     let mut out: Vec<Candidate> = surface.edges().into_iter().map(Candidate::Edge).collect();
-    let is_root = |point: &u32| parts.of_point[*point as usize] == *point && !surface.around(*point).is_empty();
+    let is_root =
+        |point: &u32| parts.of_point[*point as usize] == *point && !surface.around(*point).is_empty();
     let roots = (0..surface.points.len() as u32).filter(is_root);
     out.extend(roots.filter(|&root| Parts::small(surface, root).is_some()).map(Candidate::Part));
     out
@@ -197,7 +200,8 @@ fn best(pictures: &Pictures, candidate: &Candidate, scratch: &mut Scratch) -> Op
             places.into_iter().filter_map(|place| Change::collapse(surface, *b, *a, place)).collect()
         }
     };
-    let (gain, change) = pictures.best_of(changes.into_iter().filter(|change| change.saved() > 0), scratch)?;
+    let (gain, change) =
+        pictures.best_of(changes.into_iter().filter(|change| change.saved() > 0), scratch)?;
     let lengths: f64 = change.added.iter().map(|t| squared_sides(change.corners(surface, t))).sum();
     let cost = (LENGTH * lengths - gain) / change.saved() as f64;
     Some((change, cost))

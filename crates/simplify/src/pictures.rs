@@ -94,7 +94,11 @@ impl<'a> Pictures<'a> {
     }
 
     /// The change that gains most, with its gain. Where there are several, most of them are ruled out by a few views.
-    pub fn best_of(&self, changes: impl Iterator<Item = Change>, scratch: &mut Scratch) -> Option<(f64, Change)> {
+    pub fn best_of(
+        &self,
+        changes: impl Iterator<Item = Change>,
+        scratch: &mut Scratch,
+    ) -> Option<(f64, Change)> {
         let mut changes: Vec<(f64, Change)> = changes.map(|change| (0.0, change)).collect();
         if changes.len() > LOOKED_AT {
             changes.iter_mut().for_each(|(gain, change)| *gain = self.gain_in(GUESSED_FROM, change, scratch));
@@ -107,7 +111,11 @@ impl<'a> Pictures<'a> {
 
     /// Makes a change.
     pub fn apply(&mut self, change: &Change) {
-        let before = change.removed.iter().filter_map(|&t| Some((t, self.surface.get(t)?.corners))).collect::<Vec<_>>();
+        let before = change
+            .removed
+            .iter()
+            .filter_map(|&t| Some((t, self.surface.get(t)?.corners)))
+            .collect::<Vec<_>>();
         let added = self.surface.apply(change);
         let surface = &self.surface;
         let views = self.views.par_iter_mut().zip(self.targets);
@@ -179,7 +187,9 @@ impl View {
         }
         let row = size.div_ceil(TILE);
         for y in within.y0 / TILE..=(within.y1 - 1) / TILE {
-            self.tiles[y * row + within.x0 / TILE..=y * row + (within.x1 - 1) / TILE].iter_mut().for_each(&mut on_each);
+            self.tiles[y * row + within.x0 / TILE..=y * row + (within.x1 - 1) / TILE]
+                .iter_mut()
+                .for_each(&mut on_each);
         }
     }
 
@@ -205,7 +215,8 @@ impl View {
             Some((own, at)) if own == point => at,
             _ => self.points[point as usize],
         };
-        let removed = || change.removed.iter().filter_map(|&t| Some((t, self.corners(surface.get(t)?.corners))));
+        let removed =
+            || change.removed.iter().filter_map(|&t| Some((t, self.corners(surface.get(t)?.corners))));
         let added = || change.added.iter().map(|triangle| triangle.corners.map(place));
         let all = || removed().map(|(_, corners)| corners).chain(added());
         let within = all().fold(Rectangle::default(), |r, corners| r.around(Rectangle::of(&corners, size)));
@@ -273,8 +284,10 @@ impl View {
             for x in within.x0 / TILE..=(within.x1 - 1) / TILE {
                 let rows = y * TILE..((y + 1) * TILE).min(size);
                 let columns = x * TILE..((x + 1) * TILE).min(size);
-                let of_row = |y: usize| self.nearness[y * size + columns.start..y * size + columns.end].iter();
-                self.farthest[y * row + x] = rows.flat_map(of_row).fold(f32::INFINITY, |least, &n| least.min(n));
+                let of_row =
+                    |y: usize| self.nearness[y * size + columns.start..y * size + columns.end].iter();
+                self.farthest[y * row + x] =
+                    rows.flat_map(of_row).fold(f32::INFINITY, |least, &n| least.min(n));
             }
         }
     }
@@ -303,7 +316,9 @@ impl View {
             }
         }
         let rectangle = |index: &u32, view: &Self| {
-            surface.get(*index).map_or(Rectangle::default(), |t| Rectangle::of(&view.corners(t.corners), size))
+            surface
+                .get(*index)
+                .map_or(Rectangle::default(), |t| Rectangle::of(&view.corners(t.corners), size))
         };
         for index in added {
             within = within.around(rectangle(index, self));

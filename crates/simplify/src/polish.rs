@@ -11,7 +11,7 @@ use crate::collapse::{collapse_to, least_squares};
 use crate::pictures::{Pictures, Scratch};
 use crate::surface::Surface;
 use glam::Vec3;
-use parbake_progress::Watcher;
+use parbake_progress::{Message, Watcher};
 use parbake_render::interpolate::interpolate;
 use parbake_views::high_poly::HighPoly;
 use rayon::prelude::*;
@@ -51,7 +51,7 @@ pub fn polish(pictures: &mut Pictures, high: &HighPoly, options: &PolishOptions,
         let (mut trial, mut own) = (pictures.clone(), steps.clone());
         split_worst(&mut trial, high, count);
         settle(&mut trial, &mut own, 1, watcher);
-        collapse_to(&mut trial, target, &());
+        collapse_to(&mut trial, target, &Quietly(watcher));
         settle(&mut trial, &mut own, options.sweeps, watcher);
         if trial.error() < pictures.error() && trial.surface.count() <= target {
             (*pictures, steps) = (trial, own);
@@ -61,6 +61,17 @@ pub fn polish(pictures: &mut Pictures, high: &HighPoly, options: &PolishOptions,
         }
     }
     settle(pictures, &mut steps, 3 * options.sweeps, watcher);
+}
+
+/// Passes on that a run should stop, and no progress: a round is a part of the whole.
+struct Quietly<'a, W>(&'a W);
+
+impl<W: Watcher> Watcher for Quietly<'_, W> {
+    fn message(&self, _: Message) {}
+
+    fn stopped(&self) -> bool {
+        self.0.stopped()
+    }
 }
 
 /// How far each point goes at a time (a pattern search with a step of its own for each point): farther after a
@@ -86,7 +97,8 @@ impl Steps {
         for (&point, &before) in points.iter().zip(before) {
             let has_moved = surface.points[point as usize] != before;
             let step = &mut self.of_point[point as usize];
-            *step = if has_moved { (1.3 * *step).min(2.0 * FIRST_STEP) } else { (0.55 * *step).max(LEAST_STEP) };
+            *step =
+                if has_moved { (1.3 * *step).min(2.0 * FIRST_STEP) } else { (0.55 * *step).max(LEAST_STEP) };
         }
         self.sweeps += 1;
     }
@@ -100,10 +112,13 @@ fn settle(pictures: &mut Pictures, steps: &mut Steps, sweeps: usize, watcher: &i
         }
         let points = points(&pictures.surface);
         let before: Vec<Vec3> = points.iter().map(|&point| pictures.surface.points[point as usize]).collect();
-        sweep(pictures, points.clone(), |surface, &point| moves(surface, point, steps.of(point), steps.sweeps));
+        sweep(pictures, points.clone(), |surface, &point| {
+            moves(surface, point, steps.of(point), steps.sweeps)
+        });
         steps.note(&points, &before, &pictures.surface);
         if steps.sweeps.is_multiple_of(2) {
-            let flips = |surface: &Surface, &[a, b]: &[u32; 2]| Change::flip(surface, a, b).into_iter().collect();
+            let flips =
+                |surface: &Surface, &[a, b]: &[u32; 2]| Change::flip(surface, a, b).into_iter().collect();
             sweep(pictures, pictures.surface.edges(), flips);
         }
     }
@@ -139,10 +154,17 @@ fn sweep<T: Sync + Send>(
             change.removed.iter().filter_map(|&t| surface.get(t)).flat_map(|t| t.corners).collect()
         };
         let around = points(&change, &pictures.surface);
-        let is_stale = around.len() < 3 * change.removed.len() || around.iter().any(|&p| is_changed[p as usize]);
-        let change = if is_stale { best(&places[index], pictures, &mut scratch).map(|best| best.1) } else { Some(change) };
+        let is_stale =
+            around.len() < 3 * change.removed.len() || around.iter().any(|&p| is_changed[p as usize]);
+        let change = if is_stale {
+            best(&places[index], pictures, &mut scratch).map(|best| best.1)
+        } else {
+            Some(change)
+        };
         if let Some(change) = change {
-            points(&change, &pictures.surface).into_iter().for_each(|point| is_changed[point as usize] = true);
+            points(&change, &pictures.surface)
+                .into_iter()
+                .for_each(|point| is_changed[point as usize] = true);
             pictures.apply(&change);
         }
     }
@@ -155,7 +177,8 @@ fn moves(surface: &Surface, point: u32, step: f32, sweep: u64) -> Vec<Change> {
     let neighbours = surface.neighbours(point);
     let mean = neighbours.iter().map(|&other| surface.points[other as usize].distance(at)).sum::<f32>()
         / neighbours.len().max(1) as f32;
-    let around = || surface.around(point).iter().filter_map(|&t| surface.get(t)).map(|t| surface.corners(t.corners));
+    let around =
+        || surface.around(point).iter().filter_map(|&t| surface.get(t)).map(|t| surface.corners(t.corners));
     let normal: Vec3 = around().map(|[a, b, c]| (b - a).cross(c - a)).sum();
     let normal = normal.normalize_or(Vec3::Z);
     let (x, y) = normal.any_orthonormal_pair();
@@ -176,7 +199,11 @@ fn split_worst(pictures: &mut Pictures, high: &HighPoly, count: usize) {
         let middle = 0.5 * (p + q);
         let reach = 0.5 * p.distance(q);
         let on_high = closest(high, middle, reach);
-        [Some(middle), on_high].into_iter().flatten().filter_map(|at| Change::split(surface, a, b, at)).collect()
+        [Some(middle), on_high]
+            .into_iter()
+            .flatten()
+            .filter_map(|at| Change::split(surface, a, b, at))
+            .collect()
     };
     let best = |edge: &[u32; 2], pictures: &Pictures, scratch: &mut Scratch| {
         pictures.best_of(trials(&pictures.surface, edge).into_iter(), scratch)

@@ -158,7 +158,8 @@ pub fn nearness_at(corners: &[[f32; 3]; 3], column: usize, row: usize) -> Option
     }
     let sign = sum.signum();
     let slack = |p: [f32; 3], q: [f32; 3]| -SLACK * ((q[0] - p[0]).abs() + (q[1] - p[1]).abs());
-    let is_inside = parts[0] * sign >= slack(b, c) && parts[1] * sign >= slack(c, a) && parts[2] * sign >= slack(a, b);
+    let is_inside =
+        parts[0] * sign >= slack(b, c) && parts[1] * sign >= slack(c, a) && parts[2] * sign >= slack(a, b);
     is_inside.then(|| {
         let nearness = (parts[0] * a[2] + parts[1] * b[2] + parts[2] * c[2]) / sum;
         with_side(nearness, u32::from(sum < 0.0))

@@ -209,7 +209,14 @@ fn inside(looks: &[Option<Look>], size: usize) -> Vec<TargetPixel> {
         (of.dot(Vec3::ONE) / 3.0).max(LEAST_VARIANCE)
     };
     let pixel = |(pixel, look): (usize, &Option<Look>)| match look {
-        None => TargetPixel { depth: f32::INFINITY, shift: 0.0, most: 0.0, outline: 0.0, other_side: 0.0, front: 0 },
+        None => TargetPixel {
+            depth: f32::INFINITY,
+            shift: 0.0,
+            most: 0.0,
+            outline: 0.0,
+            other_side: 0.0,
+            front: 0,
+        },
         Some(look) => TargetPixel {
             depth: look.depth,
             shift: look.shift,
@@ -234,4 +241,24 @@ pub fn projected(camera: &Camera, size: usize, point: Vec3) -> [f32; 3] {
         Projection::Orthographic(width) => at / width,
     };
     [half + half * at.x, half + half * at.y, depth.max(1e-4).recip()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects what is counted: nothing where both agree, little for a little shift, all where nothing is left, and
+    /// outlines and sides by their own.
+    #[test]
+    fn errors_are_those_of_the_formula() {
+        let pixel =
+            TargetPixel { depth: 2.0, shift: 10.0, most: 0.08, outline: 0.3, other_side: 0.1, front: 1 };
+        let near = |depth: f32, front: u32| f32::from_bits(depth.recip().to_bits() & !1 | front);
+        assert!(pixel.error(near(2.0, 1)) < 1e-9);
+        assert!((pixel.error(near(2.15, 1)) - 0.04).abs() < 1e-4, "half of it at 1.5 pixels");
+        assert!(pixel.error(near(9.0, 1)) > 0.079);
+        assert_eq!((pixel.error(near(2.0, 0)), pixel.error(0.0)), (0.1, 0.3));
+        let empty = TargetPixel { depth: f32::INFINITY, ..pixel };
+        assert_eq!((empty.error(0.0), empty.error(near(2.0, 1))), (0.0, 0.3));
+    }
 }

@@ -20,7 +20,8 @@ pub fn together(levels: &[&Model]) -> Model {
     if let [only] = levels {
         return (*only).clone();
     }
-    let mut all = Model { name: levels.first().map_or(String::new(), |l| l.name.clone()), ..Model::default() };
+    let mut all =
+        Model { name: levels.first().map_or(String::new(), |l| l.name.clone()), ..Model::default() };
     for level in levels {
         let (images, materials) = (all.images.len(), all.materials.len() as u32);
         all.images.extend(level.images.iter().cloned());

@@ -56,7 +56,8 @@ pub fn write_lod_glb(
     options: &WriteOptions,
 ) -> Result<Written, FileError> {
     if levels.is_empty() || levels.len() != coverages.len() {
-        let reason = format!("{} levels of detail need as many coverages, not {}", levels.len(), coverages.len());
+        let reason =
+            format!("{} levels of detail need as many coverages, not {}", levels.len(), coverages.len());
         return Err(FileError::Invalid { path: path.into(), place: Place::File, reason });
     }
     let (bytes, written) = to_bytes(path, levels, Some(coverages), options)?;

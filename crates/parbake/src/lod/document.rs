@@ -57,11 +57,17 @@ pub struct LodEntry {
 
 impl LodDocument {
     /// Of a chain whose levels were written to these files.
-    pub fn new(model: &Model, options: &super::LodOptions, all_levels: String, levels: Vec<(String, u64, LevelReport)>) -> Self {
+    pub fn new(
+        model: &Model,
+        options: &super::LodOptions,
+        all_levels: String,
+        levels: Vec<(String, u64, LevelReport)>,
+    ) -> Self {
         let bounds = Bounds::of(&model.mesh);
         let (size, centre) = bounds.map_or_else(Default::default, |b| (b.size(), (b.min + b.max) * 0.5));
         let coverages = coverages(&levels.iter().map(|(_, _, report)| report.clone()).collect::<Vec<_>>());
-        let switches: Vec<Option<AtSize>> = levels.iter().skip(1).map(|(_, _, next)| next.against_before).collect();
+        let switches: Vec<Option<AtSize>> =
+            levels.iter().skip(1).map(|(_, _, next)| next.against_before).collect();
         let entry = |(index, (file, bytes, report)): (usize, (String, u64, LevelReport))| LodEntry {
             file,
             bytes,

@@ -143,7 +143,8 @@ fn wanted_triangles(high: &HighPoly, options: &LodOptions, level: usize, screen_
 /// About a texel for each pixel that the surface covers at this size, where charts fill three quarters of the
 /// texture; a power of two.
 fn texture_size(high: &HighPoly, low: &Model, screen_size: f64, most: usize) -> usize {
-    let area: f64 = (0..low.mesh.triangles.len()).map(|t| 0.5 * f64::from(low.mesh.area_normal(t).length())).sum();
+    let area: f64 =
+        (0..low.mesh.triangles.len()).map(|t| 0.5 * f64::from(low.mesh.area_normal(t).length())).sum();
     let pixels_per_unit = 0.5 * screen_size * f64::from(high.frame.scale);
     let side = (area * pixels_per_unit.powi(2) / 0.75).sqrt();
     let side = 2f64.powf(side.max(1.0).log2().round()) as usize;

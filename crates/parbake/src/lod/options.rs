@@ -2,9 +2,9 @@
 
 use crate::error::BakeError;
 use crate::normal_y::NormalY;
-use crate::options::{BakeOptions, Preset, Shading};
 #[cfg(feature = "clap")]
 use crate::options::heading;
+use crate::options::{BakeOptions, Preset, Shading};
 use parbake_files::WriteOptions;
 use serde::{Deserialize, Serialize};
 
@@ -108,7 +108,8 @@ impl LodOptions {
         };
         let listed = |values: &[f64]| values.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
         let sizes = &self.screen_size;
-        if sizes.is_empty() || sizes.len() > MOST_LEVELS || !sizes.iter().all(|s| (16.0..=4096.0).contains(s)) {
+        if sizes.is_empty() || sizes.len() > MOST_LEVELS || !sizes.iter().all(|s| (16.0..=4096.0).contains(s))
+        {
             return refuse("screen-size", listed(sizes), "1 to 8 numbers of 16 to 4096 pixels");
         }
         if sizes.windows(2).any(|pair| pair[0] <= pair[1]) {

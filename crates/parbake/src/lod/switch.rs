@@ -3,16 +3,16 @@
 //!
 //! Both are photographed from some directions, by the whole material under the built-in light where there is one, on
 //! grey. The figure is the PSNR over whole pictures in which the model's longest side spans five sevenths of the
-//! width, the mean over the directions. Sizes are tried in steps of a fifth; between two of them the last that
-//! passes counts.
+//! width, the mean over the directions. Sizes are tried in steps of a fifth from the one that the level was made for;
+//! the largest that passes before one does not counts.
 //!
 //! Contract: deterministic, and the same for the same models, whatever the bake was.
 
 use crate::error::BakeError;
 use crate::evaluate::options::{EvaluateOptions, GREY};
 use crate::options::Shading;
-pub use crate::studio::Subject;
 use crate::studio::Studio;
+pub use crate::studio::Subject;
 use parbake_metric::Rgb;
 use parbake_model::Model;
 use parbake_render::camera::fibonacci_sphere;
@@ -20,17 +20,17 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Directions that models are seen from.
-const VIEWS: usize = 8;
+const VIEWS: usize = 6;
 /// Samples along a side of a pixel.
-const SAMPLES: usize = 4;
+const SAMPLES: usize = 2;
 /// Pixels of a picture for each that the model spans, as cameras stand (3.5 from the middle, half a width of 0.4).
 const PICTURE: f64 = 1.4;
 /// From one size to the next.
 const STEP: f64 = 1.2;
 /// The least and the largest size that is tried, in pixels.
-const SIZES: [f64; 2] = [8.0, 2048.0];
-/// Steps from the level's own size at most.
-const MOST_STEPS: usize = 16;
+const SIZES: [f64; 2] = [12.0, 2048.0];
+/// Steps from the level's own size at most, to larger ones, which cost more and more, and to smaller ones.
+const MOST_STEPS: [usize; 2] = [3, 16];
 
 /// Figures of two models at one size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -59,7 +59,7 @@ impl Lineup {
     }
 
     fn studio(&self, pixels: f64) -> Result<Studio, BakeError> {
-        let resolution = (PICTURE * pixels).round().max(8.0) as usize;
+        let resolution = (PICTURE * pixels).round().max(16.0) as usize;
         Studio::new(&self.original, &EvaluateOptions { resolution, ..self.options.clone() })
     }
 
@@ -91,8 +91,7 @@ impl Lineup {
                 if with_all {
                     return crate::evaluate::compare(&a, &b, true);
                 }
-                let error = parbake_metric::mean_squared_error(&a, &b).unwrap_or(f64::NAN);
-                crate::ViewFigures { psnr: parbake_metric::psnr_from_mse(error), ms_ssim: None, flip: None }
+                crate::ViewFigures { psnr: psnr(&a, &b), ms_ssim: None, flip: None }
             })
             .collect();
         let mean = crate::evaluate::mean(&views);
@@ -112,16 +111,22 @@ impl Lineup {
         same: f64,
     ) -> Result<Option<f64>, BakeError> {
         let passes = |pixels: f64| -> Result<bool, BakeError> {
-            for other in others {
-                if self.compare(other, level, pixels, false)?.psnr < same {
-                    return Ok(false);
-                }
-            }
-            Ok(true)
+            let studio = self.studio(pixels)?;
+            let errors: Vec<Vec<f64>> = fibonacci_sphere(VIEWS, 0.0)
+                .into_par_iter()
+                .map(|direction| {
+                    let picture =
+                        |subject: &Subject| studio.develop(&studio.shot(subject, direction), [GREY; 3]);
+                    let own = picture(level);
+                    others.iter().map(|other| psnr(&picture(other), &own)).collect()
+                })
+                .collect();
+            let mean = |other: usize| errors.iter().map(|of| of[other]).sum::<f64>() / VIEWS as f64;
+            Ok((0..others.len()).all(|other| mean(other) >= same))
         };
         let mut pixels = start.clamp(SIZES[0], SIZES[1]);
         let goes_up = passes(pixels)?;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MOST_STEPS[usize::from(!goes_up)] {
             let next = if goes_up { pixels * STEP } else { pixels / STEP };
             if !(SIZES[0]..=SIZES[1]).contains(&next) {
                 break;
@@ -134,4 +139,8 @@ impl Lineup {
         }
         Ok(goes_up.then_some(pixels))
     }
+}
+
+fn psnr(a: &Rgb, b: &Rgb) -> f64 {
+    parbake_metric::psnr_from_mse(parbake_metric::mean_squared_error(a, b).unwrap_or(f64::NAN))
 }
