@@ -2,7 +2,7 @@
 
 use crate::rules::{NOT_IN_COMPRESS, WITH_NORMAL_MAPS};
 use clap::{Args, Command as Clap, CommandFactory, Parser, Subcommand, ValueEnum};
-use parbake::{BakeOptions, EvaluateOptions, ImageOptions, WriteOptions, parse_texels};
+use parbake::{BakeOptions, EvaluateOptions, ImageOptions, StatsOptions, WriteOptions, parse_texels};
 use parbake_report::TurntableOptions;
 use parbake_reproduce::ReproduceOptions;
 use parbake_reproduce::variants::VariantsOptions;
@@ -83,6 +83,8 @@ pub enum Command {
     Check(CheckCommand),
     /// Write a coarser copy of a model, which keeps its UVs
     Simplify(SimplifyCommand),
+    /// Print a model's figures: topology, UVs, textures, draw calls; and its distance to another model
+    Stats(StatsCommand),
 }
 
 /// What is told while running.
@@ -442,6 +444,38 @@ pub struct SimplifyCommand {
     /// How the file is written
     #[command(flatten)]
     pub formats: WriteOptions,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = IO)]
+    pub talk: Talk,
+}
+
+/// Arguments of `stats`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Topology is that of the surface welded by position. Distances are measured from points on each surface to \
+the other surface, both in the unit of the files and as a share of the first model's bounding box diagonal: Chamfer is the mean \
+of both ways' mean distance, Hausdorff the greatest of both ways."
+)]
+pub struct StatsCommand {
+    /// The model: .obj, .gltf or .glb
+    pub model: PathBuf,
+
+    /// Another model: its figures beside the first one's, and the distance between both
+    #[arg(long, value_name = "OTHER")]
+    pub against: Option<PathBuf>,
+
+    /// Write the figures as JSON to this .json file, or to standard output for "-"
+    #[arg(long, value_name = "FILE", help_heading = IO)]
+    pub json: Option<PathBuf>,
+
+    /// How to measure
+    #[command(flatten)]
+    pub stats: StatsOptions,
+
+    /// What to read
+    #[command(flatten, next_help_heading = IO)]
+    pub reading: Reading,
 
     /// What to tell
     #[command(flatten, next_help_heading = IO)]

@@ -18,6 +18,7 @@ mod progress;
 mod reproduce;
 mod rules;
 mod simplify;
+mod stats;
 mod turntable;
 mod variants;
 
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
         (Command::Reproduce(command), _) => reproduce::run(command),
         (Command::Check(command), _) => check::run(command),
         (Command::Simplify(command), _) => simplify::run(command),
+        (Command::Stats(command), _) => stats::run(command),
         _ => Ok(failure::Ending::Finished),
     };
     match outcome {

@@ -12,4 +12,5 @@ mod real_models;
 mod refusals;
 mod reproduce;
 mod schema;
+mod stats;
 mod turntable;

@@ -25,6 +25,7 @@ mod merge;
 mod meshopt;
 mod meshopt_filter;
 mod meshopt_out;
+mod names;
 mod parallax;
 mod quantise;
 mod references;
@@ -41,6 +42,7 @@ mod write_material;
 mod write_mesh;
 mod write_parallax;
 
+pub(crate) use names::named_files;
 pub use write::{glb_bytes, write_glb, write_glb_with};
 
 use crate::context::{Context, Textures};
