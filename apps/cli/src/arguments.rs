@@ -3,6 +3,7 @@
 use crate::rules::{NOT_IN_COMPRESS, WITH_NORMAL_MAPS};
 use clap::{Args, Command as Clap, CommandFactory, Parser, Subcommand, ValueEnum};
 use parbake::{BakeOptions, EvaluateOptions, ImageOptions, StatsOptions, WriteOptions, parse_texels};
+use parbake_batch::BatchOptions;
 use parbake_report::TurntableOptions;
 use parbake_reproduce::ReproduceOptions;
 use parbake_reproduce::variants::VariantsOptions;
@@ -85,6 +86,11 @@ pub enum Command {
     Simplify(SimplifyCommand),
     /// Print a model's figures: topology, UVs, textures, draw calls; and its distance to another model
     Stats(StatsCommand),
+    /// Run many jobs, from a file or on a folder of models, and go on where it was stopped
+    Batch(BatchCommand),
+    /// Take a small picture of a model, for the page of a batch
+    #[command(hide = true)]
+    Thumbnail(ThumbnailCommand),
 }
 
 /// What is told while running.
@@ -479,5 +485,56 @@ pub struct StatsCommand {
 
     /// What to tell
     #[command(flatten, next_help_heading = IO)]
+    pub talk: Talk,
+}
+
+/// Arguments of `batch`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "A jobs file has [[job]] entries with command, inputs, and options or arguments; docs/batch.md describes it. For a \
+folder, options of the command come after --: parbake batch models --command compress -- --preset fast. Each job is a process \
+of its own with a folder of its own in the output folder. Run the same command again to go on after a stop; what is \
+finished and has not changed is kept. The exit code is 1 if a job failed."
+)]
+pub struct BatchCommand {
+    /// The jobs file (.toml), or a folder of models
+    pub jobs: PathBuf,
+
+    /// The command to run on each model of a folder: compress, simplify, stats, …
+    #[arg(long, value_name = "COMMAND")]
+    pub command: Option<String>,
+
+    /// Options of that command, after --
+    #[arg(last = true, value_name = "OPTIONS")]
+    pub arguments: Vec<String>,
+
+    /// Folder for results and batch.html [default: what the jobs file says, else batch]
+    #[arg(short, long, value_name = "FOLDER", help_heading = IO)]
+    pub output: Option<PathBuf>,
+
+    /// Run nothing, but write a job template of Open Job Description for a render farm to this .json file
+    #[arg(long, value_name = "FILE", help_heading = IO)]
+    pub openjd: Option<PathBuf>,
+
+    /// How to run
+    #[command(flatten)]
+    pub batch: BatchOptions,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = IO)]
+    pub talk: Talk,
+}
+
+/// Arguments of `thumbnail`.
+#[derive(Args, Debug)]
+pub struct ThumbnailCommand {
+    /// The model
+    pub model: PathBuf,
+
+    /// The picture to write: .png
+    pub picture: PathBuf,
+
+    /// What to tell
+    #[command(flatten)]
     pub talk: Talk,
 }
