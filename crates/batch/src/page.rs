@@ -18,6 +18,10 @@ pub const PICTURE: &str = "picture.png";
 /// Pictures of more bytes are none that this program has taken.
 const LARGEST_PICTURE: u64 = 2_000_000;
 
+/// Heads of the table's columns.
+const HEAD: [&str; 9] =
+    ["job", "command", "before", "after", "gain", "triangles", "bytes", "seconds", "memory"];
+
 /// The page.
 pub fn html(batch: &Batch, place: &Place) -> String {
     let mut out = format!(
@@ -47,12 +51,22 @@ pub fn html(batch: &Batch, place: &Place) -> String {
         let plates: String =
             finished.iter().map(|(_, record, figures)| plate(record, figures, place)).collect();
         section(&mut out, "results", "Results", "", &format!(r#"<div class="plates">{plates}</div>"#));
-        let head = ["job", "command", "before", "after", "gain", "triangles", "bytes", "seconds", "memory"];
-        let head: String = head.iter().map(|name| format!("<th>{name}</th>")).collect();
-        let rows: String =
+        let rows: Vec<[String; HEAD.len()]> =
             finished.iter().map(|(ended, record, figures)| row(ended, record, figures)).collect();
+        // Columns of figures that no command here has are left out.
+        let shown = |column: usize| rows.iter().any(|row| !row[column].is_empty());
+        let line = |cells: &[String; HEAD.len()], element: &str| -> String {
+            let cells = cells.iter().enumerate().filter(|(column, _)| shown(*column));
+            let cell = |(column, text): (usize, &String)| {
+                let element = if column == 0 { "th" } else { element };
+                format!("<{element}>{text}</{element}>")
+            };
+            format!("<tr>{}</tr>", cells.map(cell).collect::<String>())
+        };
+        let head = line(&HEAD.map(String::from), "th");
+        let rows: String = rows.iter().map(|row| line(row, "td")).collect();
         let table = format!(
-            r#"<div class="wide"><table class="numbers-table"><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>"#
+            r#"<div class="wide"><table class="numbers-table"><thead>{head}</thead><tbody>{rows}</tbody></table></div>"#
         );
         let lead = "Before and after are PSNR in dB on black: a ray-cast bake or the coordinates as they were, and the \
                     result. Seconds and memory are those of the run that made it.";
@@ -94,14 +108,14 @@ fn embedded(path: &Path) -> Option<String> {
     Some(address)
 }
 
-fn row(ended: &Ended, record: &Record, figures: &Value) -> String {
+fn row(ended: &Ended, record: &Record, figures: &Value) -> [String; HEAD.len()] {
     let number = |value: Option<f64>, decimals| value.map_or(String::new(), |value| decimal(value, decimals));
     let [before, after, gain] = psnr(figures);
     let triangles = ["/low_triangles", "/triangles", "/model/file/triangles"];
     let triangles = triangles.iter().find_map(|at| figures.pointer(at)?.as_u64());
     let output = ended.job.output.as_deref();
     let bytes = record.files.iter().filter(|file| Some(file.name.as_str()) == output).map(|file| file.bytes);
-    let cells = [
+    [
         escape(&record.name),
         escape(&ended.job.command),
         number(before, 2),
@@ -113,9 +127,7 @@ fn row(ended: &Ended, record: &Record, figures: &Value) -> String {
         record
             .peak_memory
             .map_or(String::new(), |bytes| format!("{} MB", count((bytes / 1_000_000) as usize))),
-    ];
-    let [name, rest @ ..] = cells;
-    format!("<tr><th>{name}</th>{}</tr>", rest.map(|cell| format!("<td>{cell}</td>")).concat())
+    ]
 }
 
 /// PSNR before, after and gained, as far as a command's figures have it.

@@ -101,8 +101,12 @@ pub fn run_batch(
         std::thread::sleep(PAUSE);
         run.look();
     }
-    // Those that still run are killed here.
-    run.running.clear();
+    for (_, worker) in run.running.drain(..) {
+        let folder = worker.folder().to_path_buf();
+        // Killed first, so that nothing is written there any more.
+        drop(worker);
+        let _ = std::fs::remove_dir_all(folder);
+    }
     let (place, stopped) = (run.place, run.outcomes.contains(&Outcome::Waiting));
     let jobs = run.jobs.into_iter().zip(run.outcomes).map(|(job, outcome)| Ended { job, outcome }).collect();
     let mut batch = Batch { jobs, stopped, page: None };

@@ -7,22 +7,17 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// Options with which a job takes a fraction of a second.
-const FAST: &str = "options = { texture-size = 32, uv-steps = 2, preset = 'fast' }";
-
-/// A jobs file of four jobs over the demo's models in this folder, of which the third fails.
+/// A jobs file of four quick jobs over the demo's models in this folder, and one that fails.
 fn jobs(folder: &Path, with_failure: bool) {
     demo_pair(folder);
     fs::write(folder.join("broken.glb"), "glTF and no more").unwrap();
     let broken = "[[job]]\nname = 'broken'\ninputs = ['broken.glb']\n";
     let file = format!(
-        "[defaults]\ncommand = 'compress'\n{FAST}\n\
+        "[defaults]\ncommand = 'simplify'\noptions = {{ triangles = 400 }}\n\
          [[job]]\ninputs = ['demo_high.glb']\n\
-         [[job]]\nname = 'finer'\ninputs = ['demo_high.glb']\noptions = {{ texture-size = 48 }}\n\
-         {}[[job]]\nname = 'baked'\ncommand = 'bake'\ninputs = ['demo_high.glb', 'demo_low.glb']\n\
-         options = {{ texture-size = 32, views = 6, view-size = 48, rounds = 1, uv = 'keep', shape = 'keep', uv-steps = false }}\n\
-         [[job]]\nname = 'coarse'\ncommand = 'simplify'\ninputs = ['demo_high.glb']\n\
-         options = {{ triangles = 300, texture-size = false, uv-steps = false, preset = false }}\n",
+         [[job]]\nname = 'finer'\ninputs = ['demo_high.glb']\noptions = {{ triangles = 900 }}\n\
+         {}[[job]]\nname = 'measured'\ncommand = 'stats'\ninputs = ['demo_low.glb']\noptions = {{ triangles = false }}\n\
+         [[job]]\nname = 'coarse'\ninputs = ['demo_high.glb']\narguments = ['--mesh-compression', 'meshopt']\n",
         if with_failure { broken } else { "" }
     );
     fs::write(folder.join("jobs.toml"), file).unwrap();
@@ -63,15 +58,15 @@ fn a_failure_ends_nothing_and_what_is_finished_stays() {
     assert!(said.contains("broken: ") && said.contains("broken.glb"), "{said}");
     let made = results(&folder.join("out"));
     let names: Vec<&str> = made.keys().map(String::as_str).collect();
-    let wanted = ["baked/baked.glb", "coarse/coarse.glb", "demo_high/demo_high.glb", "finer/finer.glb"];
+    let wanted = ["coarse/coarse.glb", "demo_high/demo_high.glb", "finer/finer.glb"];
     assert_eq!(names.iter().filter(|name| name.ends_with(".glb")).copied().collect::<Vec<_>>(), wanted);
-    assert_eq!(names.len(), 8, "{names:?}");
-    let record = json(&folder.join("out/baked/job.json"));
-    assert_eq!(record["command_line"][0], "bake");
+    assert_eq!(names.len(), 6, "{names:?}");
+    let record = json(&folder.join("out/measured/job.json"));
+    assert_eq!(record["command_line"][0], "stats");
     assert!(record["files"].as_array().unwrap().iter().any(|file| file["name"] == "figures.json"));
     let page = fs::read_to_string(folder.join("out/batch.html")).unwrap();
     assert!(page.contains("4 of 5 jobs") && page.contains("<b>broken</b> failed") && !page.contains("NaN"));
-    assert_eq!(page.matches("data:image/png;base64,").count(), 4);
+    assert_eq!(page.matches("data:image/png;base64,").count(), 3);
     let all = json(&folder.join("out/batch.json"));
     assert_eq!(all["jobs"][2]["state"], "failed");
 
@@ -96,7 +91,7 @@ fn a_killed_batch_goes_on() {
     jobs(folder, false);
     assert!(batch(folder, &["jobs.toml", "-o", "whole"]).status.success());
     let finished = || {
-        let all = ["demo_high", "finer", "baked", "coarse"];
+        let all = ["demo_high", "finer", "measured", "coarse"];
         all.iter().filter(|name| folder.join("cut").join(name).join("job.json").exists()).count()
     };
     let mut before = 0;
