@@ -134,7 +134,7 @@ fn sentence(said: &str, status: ExitStatus) -> String {
         let why = if signal == 9 { ", as when memory runs out" } else { "" };
         return format!("it was ended by signal {signal}{why}");
     }
-    let last = lines().last().map_or(String::new(), |line| format!(": {line}"));
+    let last = lines().next_back().map_or(String::new(), |line| format!(": {line}"));
     match status.code() {
         Some(code) => format!("exit code {code}{last}"),
         None => format!("it was ended{last}"),

@@ -65,7 +65,7 @@ fn a_failure_ends_nothing_and_what_is_finished_stays() {
     assert_eq!(record["command_line"][0], "stats");
     assert!(record["files"].as_array().unwrap().iter().any(|file| file["name"] == "figures.json"));
     let page = fs::read_to_string(folder.join("out/batch.html")).unwrap();
-    assert!(page.contains("4 of 5 jobs") && page.contains("<b>broken</b> failed") && !page.contains("NaN"));
+    assert!(page.contains("4 of 5 jobs") && page.contains("<b>broken</b> failed") && !page.contains(">NaN"));
     assert_eq!(page.matches("data:image/png;base64,").count(), 3);
     let all = json(&folder.join("out/batch.json"));
     assert_eq!(all["jobs"][2]["state"], "failed");

@@ -31,8 +31,11 @@ fn read(path: &Path) -> Option<Model> {
     Some(read_model(path, &Limits::default()).ok()?.model)
 }
 
-/// The high-polys, then each level: what it is called, the paper's number for it, and its files.
-fn sets(scope: &Scope) -> Vec<(&'static str, u8, Vec<(&ModelFolder, &Path)>)> {
+/// What a set of meshes is called, the paper's number for it (0 for high-polys), and its files.
+type Set<'a> = (&'static str, u8, Vec<(&'a ModelFolder, &'a Path)>);
+
+/// The high-polys, then each level.
+fn sets(scope: &Scope) -> Vec<Set<'_>> {
     let models = &scope.catalogue.models;
     let level = |level: Level| models.iter().filter_map(|m| Some((m, m.low(level)?))).collect();
     vec![
