@@ -97,12 +97,8 @@ fn write_template(
     let template = openjd_template(&format!("parbake {name}"), jobs, &TaskCommand { before, after })?;
     write_file(path, template.as_bytes())?;
     if !arguments.talk.quiet {
-        eprintln!(
-            "{}: {} tasks; run {} batch again after them for the page",
-            path.display(),
-            jobs.len(),
-            "parbake"
-        );
+        let (path, tasks) = (path.display(), jobs.len());
+        eprintln!("{path}: {tasks} tasks; run parbake batch again after them for the page");
     }
     Ok(Ending::Finished)
 }
