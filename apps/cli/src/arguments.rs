@@ -3,7 +3,10 @@
 use crate::rules::{NOT_IN_COMPRESS, WITH_NORMAL_MAPS};
 use clap::{Args, Command as Clap, CommandFactory, Parser, Subcommand, ValueEnum};
 use parbake::lod::layout::Layout;
-use parbake::{BakeOptions, EvaluateOptions, ImageOptions, LodOptions, WriteOptions, parse_texels};
+use parbake::{
+    BakeOptions, EvaluateOptions, ImageOptions, LodOptions, StatsOptions, WriteOptions, parse_texels,
+};
+use parbake_batch::BatchOptions;
 use parbake_report::TurntableOptions;
 use parbake_reproduce::ReproduceOptions;
 use parbake_reproduce::variants::VariantsOptions;
@@ -86,6 +89,13 @@ pub enum Command {
     Check(CheckCommand),
     /// Write a coarser copy of a model, which keeps its UVs
     Simplify(SimplifyCommand),
+    /// Print a model's figures: topology, UVs, textures, draw calls; and its distance to another model
+    Stats(StatsCommand),
+    /// Run many jobs, from a file or on a folder of models, and go on where it was stopped
+    Batch(BatchCommand),
+    /// Take a small picture of a model, for the page of a batch
+    #[command(hide = true)]
+    Thumbnail(ThumbnailCommand),
 }
 
 /// What is told while running.
@@ -485,5 +495,88 @@ pub struct SimplifyCommand {
 
     /// What to tell
     #[command(flatten, next_help_heading = IO)]
+    pub talk: Talk,
+}
+
+/// Arguments of `stats`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Topology is that of the surface welded by position. Distances are measured from points on each surface to \
+the other surface, both in the unit of the files and as a share of the first model's bounding box diagonal: Chamfer is the mean \
+of both ways' mean distance, Hausdorff the greatest of both ways."
+)]
+pub struct StatsCommand {
+    /// The model: .obj, .gltf or .glb
+    pub model: PathBuf,
+
+    /// Another model: its figures beside the first one's, and the distance between both
+    #[arg(long, value_name = "OTHER")]
+    pub against: Option<PathBuf>,
+
+    /// Write the figures as JSON to this .json file, or to standard output for "-"
+    #[arg(long, value_name = "FILE", help_heading = IO)]
+    pub json: Option<PathBuf>,
+
+    /// How to measure
+    #[command(flatten)]
+    pub stats: StatsOptions,
+
+    /// What to read
+    #[command(flatten, next_help_heading = IO)]
+    pub reading: Reading,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = IO)]
+    pub talk: Talk,
+}
+
+/// Arguments of `batch`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "A jobs file has [[job]] entries with command, inputs, and options or arguments; docs/batch.md describes it. For a \
+folder, options of the command come after --: parbake batch models --command compress -- --preset fast. Each job is a process \
+of its own with a folder of its own in the output folder. Run the same command again to go on after a stop; what is \
+finished and has not changed is kept. The exit code is 1 if a job failed."
+)]
+pub struct BatchCommand {
+    /// The jobs file (.toml), or a folder of models
+    pub jobs: PathBuf,
+
+    /// The command to run on each model of a folder: compress, simplify, stats, …
+    #[arg(long, value_name = "COMMAND")]
+    pub command: Option<String>,
+
+    /// Options of that command, after --
+    #[arg(last = true, value_name = "OPTIONS")]
+    pub arguments: Vec<String>,
+
+    /// Folder for results and batch.html [default: what the jobs file says, else batch]
+    #[arg(short, long, value_name = "FOLDER", help_heading = IO)]
+    pub output: Option<PathBuf>,
+
+    /// Run nothing, but write a job template of Open Job Description for a render farm to this .json file
+    #[arg(long, value_name = "FILE", help_heading = IO)]
+    pub openjd: Option<PathBuf>,
+
+    /// How to run
+    #[command(flatten)]
+    pub batch: BatchOptions,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = IO)]
+    pub talk: Talk,
+}
+
+/// Arguments of `thumbnail`.
+#[derive(Args, Debug)]
+pub struct ThumbnailCommand {
+    /// The model
+    pub model: PathBuf,
+
+    /// The picture to write: .png
+    pub picture: PathBuf,
+
+    /// What to tell
+    #[command(flatten)]
     pub talk: Talk,
 }

@@ -113,12 +113,17 @@ pub struct Pair {
     pub seconds: Option<f64>,
 }
 
-/// Reads both models at once.
-pub fn read_pair(high: &Path, low: &Path, console: &Console) -> Result<Pair, Failure> {
+/// Reads two models at once.
+pub fn read_both(first: &Path, second: &Path, console: &Console) -> Result<[Loaded; 2], Failure> {
     console.message(Message::Progress { stage: Stage::Read, done: 0, total: 2 });
+    let (first, second) = parbake::join(|| read(first, console), || read(second, console));
+    Ok([first?, second?])
+}
+
+/// Reads both models of a bake at once.
+pub fn read_pair(high: &Path, low: &Path, console: &Console) -> Result<Pair, Failure> {
     let begin = console.seconds();
-    let (high, low) = parbake::join(|| read(high, console), || read(low, console));
-    let (high, low) = (high?, low?);
+    let [high, low] = read_both(high, low, console)?;
     let warnings = [high.warnings, low.warnings].concat();
     Ok(Pair { high: high.model, low: low.model, warnings, seconds: Some(console.seconds() - begin) })
 }

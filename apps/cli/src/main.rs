@@ -3,6 +3,7 @@
 
 mod arguments;
 mod bake;
+mod batch;
 mod check;
 mod compress;
 mod demo;
@@ -11,6 +12,7 @@ mod evaluate;
 mod failure;
 mod formats;
 mod image;
+mod leash;
 mod lod;
 mod options_file;
 mod outputs;
@@ -19,6 +21,8 @@ mod progress;
 mod reproduce;
 mod rules;
 mod simplify;
+mod stats;
+mod thumbnail;
 mod turntable;
 mod variants;
 
@@ -27,6 +31,7 @@ use clap::FromArgMatches;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    leash::heed();
     let matches = arguments::command().get_matches();
     let arguments = match Arguments::from_arg_matches(&matches) {
         Ok(arguments) => arguments,
@@ -45,6 +50,9 @@ fn main() -> ExitCode {
         (Command::Reproduce(command), _) => reproduce::run(command),
         (Command::Check(command), _) => check::run(command),
         (Command::Simplify(command), _) => simplify::run(command),
+        (Command::Stats(command), _) => stats::run(command),
+        (Command::Batch(command), _) => batch::run(command),
+        (Command::Thumbnail(command), _) => thumbnail::run(command),
         _ => Ok(failure::Ending::Finished),
     };
     match outcome {

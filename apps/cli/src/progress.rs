@@ -81,7 +81,16 @@ impl Console {
 
     /// For many runs one after the other, which Ctrl-C ends with what is finished.
     pub fn for_many(talk: Talk) -> Self {
-        catch_interrupts("what is finished is being drawn");
+        Self::of_runs(talk, "what is finished is being drawn")
+    }
+
+    /// For a batch, which Ctrl-C ends at once with what is finished.
+    pub fn for_batch(talk: Talk) -> Self {
+        Self::of_runs(talk, "running jobs end, what is finished stays")
+    }
+
+    fn of_runs(talk: Talk, what_becomes: &'static str) -> Self {
+        catch_interrupts(what_becomes);
         let console = Self::with_deadline(talk, None);
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {prefix}{msg}") {
             console.bar.set_style(style);

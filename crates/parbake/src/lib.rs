@@ -48,6 +48,7 @@ mod normal_y;
 mod options;
 mod plan;
 mod report;
+mod stats;
 pub mod studio;
 mod texels;
 mod textures;
@@ -79,11 +80,14 @@ pub use options::{
 };
 pub use parbake_atlas::{LayoutCheck, ModelCheck, UvCheck, check_mesh, check_model};
 pub use parbake_files::{
-    DEFAULT_TEXTURE_QUALITY, FileError, Limits, Loaded, MeshCompression, TextureFormat, Warning, WarningKind,
-    WriteOptions, Written, WrittenMesh, WrittenTexture, encode_png, read_image, read_model,
-    write_atomically as write_file, write_glb, write_glb_with, write_lod_glb, write_obj,
+    Contents, DEFAULT_TEXTURE_QUALITY, FileError, Limits, Loaded, MeshCompression, PictureFormat,
+    StoredPicture, TextureFormat, Warning, WarningKind, WriteOptions, Written, WrittenMesh, WrittenTexture,
+    encode_png, read_image, read_model, write_atomically as write_file, write_glb, write_glb_with,
+    write_lod_glb, write_obj,
 };
 pub use parbake_fit::parallax_maps::ParallaxReport;
+pub use parbake_mesh::distance::{OneWay, SurfaceDistance};
+pub use parbake_mesh::topology::{Component, Topology};
 pub use parbake_model::{Image as Picture, Model};
 pub use parbake_progress::{Estimate, Message, ProgressScope, Stage, StageTime, Watcher};
 pub use parbake_shape::stage::ShapeReport;
@@ -94,6 +98,9 @@ pub use parbake_views::PrepareError;
 pub use parbake_views::high_poly::HighPoly;
 pub use plan::Plan;
 pub use report::{BakeReport, LossStep, Work};
+pub use stats::{
+    FileStats, LayoutStats, ModelStats, StatsOptions, TexelDensity, TextureStats, model_distance, model_stats,
+};
 pub use studio::{Shot, Studio, Subject};
 pub use texels::parse_texels;
 pub use threads::{MOST_THREADS, join, with_threads};

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod batch;
 mod check;
 mod command;
 mod common;
@@ -12,4 +13,5 @@ mod real_models;
 mod refusals;
 mod reproduce;
 mod schema;
+mod stats;
 mod turntable;

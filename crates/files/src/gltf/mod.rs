@@ -26,6 +26,7 @@ mod merge;
 mod meshopt;
 mod meshopt_filter;
 mod meshopt_out;
+mod names;
 mod parallax;
 mod quantise;
 mod references;
@@ -42,6 +43,7 @@ mod write_material;
 mod write_mesh;
 mod write_parallax;
 
+pub(crate) use names::named_files;
 pub use write::{glb_bytes, write_glb, write_glb_with, write_lod_glb};
 
 use crate::context::{Context, Textures};
