@@ -31,7 +31,7 @@ pub use atomic::{write_atomically, write_streamed};
 pub use error::{FileError, Place};
 pub use gltf::{glb_bytes, read_gltf_bytes, write_glb, write_glb_with};
 pub use image_in::{decode_image, read_image};
-pub use image_out::encode_png;
+pub use image_out::{encode_png, encode_png16};
 pub use limits::Limits;
 pub use model_in::{Loaded, read_geometry, read_model};
 pub use obj::{read_obj_bytes, write_obj};

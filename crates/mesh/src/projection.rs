@@ -9,7 +9,7 @@
 //! Contract: coordinates are of moderate size, as in the common frame [−1, 1]³.
 //! Triangles without area are left out. Answers do not depend on threads.
 
-use crate::bvh::{Bvh, Near, Stack};
+use crate::bvh::{Bvh, Corners, Near, Stack};
 use parbake_model::Mesh;
 use parbake_model::glam::{Vec3, Vec3A};
 
@@ -41,7 +41,14 @@ impl HighSurface {
     /// the surface. The direction may have any length but zero; distances are in
     /// the mesh's unit.
     pub fn cast(&self, origin: Vec3, direction: Vec3, max_distance: f32) -> Option<SurfacePoint> {
-        self.along_line::<false>(origin, direction.try_normalize()?, max_distance, None)
+        self.along_line::<false, false>(origin, direction.try_normalize()?, max_distance, |_, _| true)
+    }
+
+    /// Whether a ray meets anything within `max_distance`, on either side of the surface: what
+    /// [`cast`](Self::cast) would find, without asking what comes first.
+    pub fn blocks(&self, origin: Vec3, direction: Vec3, max_distance: f32) -> bool {
+        let Some(direction) = direction.try_normalize() else { return false };
+        self.along_line::<false, true>(origin, direction, max_distance, |_, _| true).is_some()
     }
 
     /// The nearest point of the surface within `max_distance`, which may be
@@ -126,24 +133,48 @@ impl HighSurface {
     /// length, and places must face outwards by that too. At rims and creases an interpolated normal looks
     /// along the wall, where either side of it may pass for the outer one.
     pub fn project_facing(&self, point: Vec3, normal: Vec3, side: Vec3, reach: f32) -> Option<SurfacePoint> {
-        let hit = normal.try_normalize().and_then(|n| self.along_line::<true>(point, n, reach, Some(side)));
-        hit.or_else(|| {
-            let any = self.closest(point, f32::INFINITY)?;
-            Some(self.closest_facing(point, side, any.distance + reach).unwrap_or(any))
-        })
+        let side_of_wall = Vec3A::from(side);
+        let is_meant = |triangle: &Corners, ahead: bool| ahead && triangle.normal().dot(side_of_wall) > 0.0;
+        let hit = normal.try_normalize().and_then(|n| self.along_line::<true, false>(point, n, reach, is_meant));
+        hit.or_else(|| self.closest_on_side(point, side, reach))
+    }
+
+    /// The same, but of all places on the segment the outermost: what a ray meets first that comes from
+    /// outside, at `point + reach · normal`. Parts that float over the surface hide what is under them.
+    pub fn project_from_outside(
+        &self,
+        point: Vec3,
+        normal: Vec3,
+        side: Vec3,
+        reach: f32,
+    ) -> Option<SurfacePoint> {
+        let side_of_wall = Vec3A::from(side);
+        let is_meant = |triangle: &Corners, ahead: bool| !ahead && triangle.normal().dot(side_of_wall) > 0.0;
+        let hit = normal.try_normalize().and_then(|n| {
+            let hit = self.along_line::<false, false>(point + reach * n, -n, 2.0 * reach, is_meant)?;
+            Some(SurfacePoint { distance: (reach - hit.distance).abs(), ..hit })
+        });
+        hit.or_else(|| self.closest_on_side(point, side, reach))
+    }
+
+    /// The closest point that faces along `side`, up to `reach` farther than the closest of all, else that
+    /// one. `None` only for a surface without any area.
+    pub fn closest_on_side(&self, point: Vec3, side: Vec3, reach: f32) -> Option<SurfacePoint> {
+        let any = self.closest(point, f32::INFINITY)?;
+        Some(self.closest_facing(point, side, any.distance + reach).unwrap_or(any))
     }
 
     /// The hit nearest to the origin on a line: only ahead of it or, if
-    /// `BOTH_WAYS`, behind it too. Optionally only of triangles whose normals are
-    /// within 90° of the direction and of another one.
-    fn along_line<const BOTH_WAYS: bool>(
+    /// `BOTH_WAYS`, behind it too; or, if `ANY`, the first that is come across. Only of
+    /// triangles that are meant, which are told whether their normals are within 90° of the
+    /// direction.
+    fn along_line<const BOTH_WAYS: bool, const ANY: bool>(
         &self,
         origin: Vec3,
         direction: Vec3,
         max_distance: f32,
-        facing: Option<Vec3>,
+        is_meant: impl Fn(&Corners, bool) -> bool,
     ) -> Option<SurfacePoint> {
-        let side = facing.map(Vec3A::from);
         let (origin, direction) = (Vec3A::from(origin), Vec3A::from(direction));
         // A zero component would make ∞ · 0 in the slab test.
         let inverse = Vec3A::from_array(
@@ -182,11 +213,16 @@ impl HighSurface {
                     };
                     let distance = if BOTH_WAYS { t.abs() } else { t };
                     let nearer = distance < best || (found.is_none() && distance == best);
-                    let is_meant = || side.is_none_or(|side| ahead && triangle.normal().dot(side) > 0.0);
-                    if distance >= 0.0 && nearer && is_meant() {
+                    if distance >= 0.0 && nearer && is_meant(triangle, ahead) {
                         best = distance;
                         found = Some((slot, barycentric));
+                        if ANY {
+                            break;
+                        }
                     }
+                }
+                if ANY && found.is_some() {
+                    break;
                 }
                 continue;
             }

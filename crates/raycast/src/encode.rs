@@ -1,0 +1,82 @@
+//! Maps of shape as numbers of 16 bits, and what black and white stand for.
+//!
+//! A stored share s of 0 … 1 (the number over 65535) stands for black + s · (white − black), in each channel.
+//! Directions and ρ H have −1 … 1, occlusion 0 … 1; thickness goes from 0 to its largest value, height as far
+//! to either side as its largest, so that half grey is 0; positions have the high-poly's cube, whose sides are
+//! as long as its longest and whose centre is the centre of its box.
+
+use crate::map::GeometryMap;
+use parbake_image::FloatImage;
+use parbake_model::Placement;
+use parbake_model::glam::{Vec3, Vec4};
+
+/// A map as numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Encoded {
+    /// Texels along a side.
+    pub size: usize,
+    /// 1 or 3.
+    pub channels: usize,
+    /// size² · channels numbers, row 0 on top.
+    pub samples: Vec<u16>,
+    /// What 0 stands for in each channel; lengths in the model's unit.
+    pub black: Vec<f32>,
+    /// What 65535 stands for.
+    pub white: Vec<f32>,
+}
+
+/// Encodes a map that was cast in this frame.
+pub fn encode(map: GeometryMap, image: &FloatImage<Vec4>, frame: &Placement) -> Encoded {
+    let largest = image.texels.iter().fold(0.0f32, |most, texel| most.max(texel.x.abs()));
+    // A map of nothing has a range all the same.
+    let largest = if largest > 0.0 { largest } else { 1.0 };
+    let [low, high] = match map {
+        GeometryMap::Occlusion => [0.0, 1.0],
+        GeometryMap::Thickness => [0.0, largest],
+        GeometryMap::Height => [-largest, largest],
+        GeometryMap::BentNormal
+        | GeometryMap::ObjectNormal
+        | GeometryMap::Curvature
+        | GeometryMap::Position => [-1.0, 1.0],
+    };
+    let channels = map.channels();
+    let stored = |x: f32| (((x - low) / (high - low)).clamp(0.0, 1.0) * 65535.0 + 0.5) as u16;
+    let samples = image.texels.iter().flat_map(|texel| texel.to_array().into_iter().take(channels)).map(stored);
+    let ends = |end: f32| match map {
+        GeometryMap::Position => (Vec3::splat(end) / frame.scale + frame.centre).to_array().to_vec(),
+        GeometryMap::Thickness | GeometryMap::Height => vec![end / frame.scale],
+        _ => vec![end; channels],
+    };
+    Encoded {
+        size: image.width,
+        channels,
+        samples: samples.collect(),
+        black: ends(low),
+        white: ends(high),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects who reads the numbers: the range that is told gives the lengths of the model back.
+    #[test]
+    fn ranges_give_lengths_back() {
+        let frame = Placement { centre: Vec3::new(10.0, 0.0, 0.0), scale: 0.5 };
+        let image = FloatImage::square(1, vec![Vec4::new(-0.25, 0.5, 1.0, 0.0)]);
+        let decoded = |map| {
+            let Encoded { samples, black, white, .. } = encode(map, &image, &frame);
+            let ends = black.into_iter().zip(white);
+            samples.iter().zip(ends).map(|(&s, (b, w))| b + f32::from(s) / 65535.0 * (w - b)).collect::<Vec<_>>()
+        };
+        let near = |found: Vec<f32>, wanted: &[f32]| {
+            assert_eq!(found.len(), wanted.len());
+            assert!(found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-3), "{found:?} {wanted:?}");
+        };
+        near(decoded(GeometryMap::Position), &[9.5, 1.0, 2.0]);
+        near(decoded(GeometryMap::Height), &[-0.5]);
+        near(decoded(GeometryMap::ObjectNormal), &[-0.25, 0.5, 1.0]);
+        near(decoded(GeometryMap::Curvature), &[-0.25]);
+    }
+}
