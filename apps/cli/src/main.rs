@@ -15,6 +15,7 @@ mod options_file;
 mod outputs;
 mod pictures;
 mod progress;
+mod raycast;
 mod reproduce;
 mod rules;
 mod simplify;
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         (Command::Bake(command), Some(given)) => bake::run(command, given),
         (Command::Demo(command), Some(given)) => demo::run(command, given),
         (Command::Eval(command), _) => evaluate::run(command),
+        (Command::Raycast(command), Some(given)) => raycast::run(command, given),
         (Command::Compress(command), Some(given)) => compress::run(command, given),
         (Command::Image(command), Some(given)) => image::run(command, given),
         (Command::Variants(command), _) => variants::run(command),

@@ -18,7 +18,7 @@
 //! ```
 //!
 //! * **Options** are plain structs with a documented default for each field: [`BakeOptions`] for
-//!   [`bake`] and [`compress`], [`ImageOptions`] for [`bake_image`], [`EvaluateOptions`] for
+//!   [`bake`] and [`compress`], [`RaycastOptions`] for [`raycast()`], [`ImageOptions`] for [`bake_image`], [`EvaluateOptions`] for
 //!   [`evaluate()`]. They are the same for library, command line and options file.
 //! * **Several low-polys** of one high-poly: [`prepare_high_poly`] once, then [`bake_prepared`] for each.
 //! * **Warnings and progress** come as [`Message`]s to the [`Watcher`] that is the last argument, which
@@ -45,6 +45,8 @@ mod models;
 mod normal_y;
 mod options;
 mod plan;
+mod raycast;
+mod raycast_options;
 mod report;
 pub mod studio;
 mod texels;
@@ -81,6 +83,7 @@ pub use parbake_files::{
 pub use parbake_fit::parallax_maps::ParallaxReport;
 pub use parbake_model::{Image as Picture, Model};
 pub use parbake_progress::{Estimate, Message, ProgressScope, Stage, StageTime, Watcher};
+pub use parbake_raycast::{Encoded, GeometryMap};
 pub use parbake_shape::stage::ShapeReport;
 pub use parbake_uv::convergence::Convergence;
 pub use parbake_uv::moves::UvMoves;
@@ -88,6 +91,9 @@ pub use parbake_uv::surface::UvStageReport;
 pub use parbake_views::PrepareError;
 pub use parbake_views::high_poly::HighPoly;
 pub use plan::Plan;
+pub use raycast::{
+    Match, RayNormals, Raycast, RaycastOptions, RaycastReport, RaycastUv, ShapeMapReport, ShapePicture, raycast,
+};
 pub use report::{BakeReport, LossStep, Work};
 pub use studio::{Shot, Studio, Subject};
 pub use texels::parse_texels;
