@@ -151,8 +151,10 @@ pub struct BakeCommand {
 
 /// Arguments of `raycast`.
 #[derive(Args, Debug)]
-#[command(after_help = "The classical bake: rays from the low-poly to the high-poly, nothing is fitted. Base colour, normals and all \
-other maps of the materials go into the output; maps of shape are files beside it (docs/raycast.md).")]
+#[command(
+    after_help = "The classical bake: rays from the low-poly to the high-poly, nothing is fitted. Base colour, normals and all \
+other maps of the materials go into the output; maps of shape are files beside it (docs/raycast.md)."
+)]
 pub struct RaycastCommand {
     /// The high-poly: .obj, .gltf or .glb
     pub high: PathBuf,

@@ -8,7 +8,8 @@ use crate::failure::Failure;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
 use parbake::{
-    BakeOptions, GeometryMap, ImageOptions, Match, Method, Parallax, PictureUv, RaycastOptions, TextureFormat, UvMode, Work,
+    BakeOptions, GeometryMap, ImageOptions, Match, Method, Parallax, PictureUv, RaycastOptions,
+    TextureFormat, UvMode, Work,
 };
 use serde_json::Value;
 use std::path::Path;

@@ -92,7 +92,8 @@ pub use parbake_views::PrepareError;
 pub use parbake_views::high_poly::HighPoly;
 pub use plan::Plan;
 pub use raycast::{
-    Match, RayNormals, Raycast, RaycastOptions, RaycastReport, RaycastUv, ShapeMapReport, ShapePicture, raycast,
+    Match, RayNormals, Raycast, RaycastOptions, RaycastReport, RaycastUv, ShapeMapReport, ShapePicture,
+    raycast,
 };
 pub use report::{BakeReport, LossStep, Work};
 pub use studio::{Shot, Studio, Subject};

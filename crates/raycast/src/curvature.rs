@@ -1,10 +1,11 @@
 //! Curvature: the high-poly's mean curvature at the scale of a radius ρ.
 //!
-//! In each tangent direction a ray looks, from above the point p, at the surface beside it. If it meets it x
-//! farther along the tangent and h higher, the circle through there that touches the surface at p has the
-//! curvature κ = −2 h / (x² + h²), which is exact on spheres, and is at most 1/ρ where x is ρ. The mean over
-//! directions is the mean curvature H = (κ₁ + κ₂) / 2 (Euler). What the map holds is ρ H, within −1 … 1:
-//! a hard edge, whose curvature has no bound, is a line as wide as ρ on either side.
+//! In each tangent direction t a ray looks, from above the point p, at the surface beside it. If it meets it at q,
+//! x farther along t, the curvature in that direction is how fast the normal turns, κ = (n(q) − n(p)) · t / x,
+//! with the interpolated normals n of the high-poly, so that facets of a smooth surface do not show. On a sphere
+//! that is 1/r exactly. The mean over directions is the mean curvature H = (κ₁ + κ₂) / 2 (Euler). What the map
+//! holds is ρ H, each κ within ± 1/ρ: a hard edge, whose curvature has no bound, is a line as wide as ρ on
+//! either side.
 //!
 //! Rays ask at tangent distances of ρ/2 to ρ, so that such lines end softly. They begin as high as they look
 //! far, or lower in a crevice, where something stands above.
@@ -12,7 +13,7 @@
 //! Contract: positive where the surface is convex, 0 where it is flat. A ray that finds nothing down to ρ
 //! below the tangent plane passed an edge: 1.
 
-use crate::sample::{LIFT, Sample};
+use crate::sample::{LIFT, Sample, normals_at};
 use std::f32::consts::TAU;
 
 /// Directions a texel at most: curvature is smooth in the direction.
@@ -37,10 +38,9 @@ pub fn curvature(sample: &Sample, radius: f32) -> f32 {
         sum += match found {
             None => 1.0,
             Some(hit) => {
-                let share = hit.distance / length;
-                let (along, above) = (share * reach, high - share * high + LIFT);
-                let square = (along * along + above * above).max(f32::MIN_POSITIVE);
-                (-2.0 * above * radius / square).clamp(-1.0, 1.0)
+                let along = (hit.distance / length * reach).max(LIFT);
+                let (_, normal) = normals_at(sample.mesh, &hit, -ray);
+                ((normal - smooth).dot(tangent * cos + bitangent * sin) * radius / along).clamp(-1.0, 1.0)
             }
         };
         count += 1.0;

@@ -1,7 +1,8 @@
 //! Maps of shape as numbers of 16 bits, and what black and white stand for.
 //!
 //! A stored share s of 0 … 1 (the number over 65535) stands for black + s · (white − black), in each channel.
-//! Directions and ρ H have −1 … 1, occlusion 0 … 1; thickness goes from 0 to its largest value, height as far
+//! Directions and ρ H have −1 … 1, occlusion 0 … 1; thickness goes from 0 to what 99 % of texels stay
+//! below, since a few rays through openings would leave all else dark; height goes as far
 //! to either side as its largest, so that half grey is 0; positions have the high-poly's cube, whose sides are
 //! as long as its longest and whose centre is the centre of its box.
 
@@ -28,6 +29,7 @@ pub struct Encoded {
 /// Encodes a map that was cast in this frame.
 pub fn encode(map: GeometryMap, image: &FloatImage<Vec4>, frame: &Placement) -> Encoded {
     let largest = image.texels.iter().fold(0.0f32, |most, texel| most.max(texel.x.abs()));
+    let largest = if map == GeometryMap::Thickness { most_stay_below(image) } else { largest };
     // A map of nothing has a range all the same.
     let largest = if largest > 0.0 { largest } else { 1.0 };
     let [low, high] = match map {
@@ -41,19 +43,21 @@ pub fn encode(map: GeometryMap, image: &FloatImage<Vec4>, frame: &Placement) -> 
     };
     let channels = map.channels();
     let stored = |x: f32| (((x - low) / (high - low)).clamp(0.0, 1.0) * 65535.0 + 0.5) as u16;
-    let samples = image.texels.iter().flat_map(|texel| texel.to_array().into_iter().take(channels)).map(stored);
+    let samples =
+        image.texels.iter().flat_map(|texel| texel.to_array().into_iter().take(channels)).map(stored);
     let ends = |end: f32| match map {
         GeometryMap::Position => (Vec3::splat(end) / frame.scale + frame.centre).to_array().to_vec(),
         GeometryMap::Thickness | GeometryMap::Height => vec![end / frame.scale],
         _ => vec![end; channels],
     };
-    Encoded {
-        size: image.width,
-        channels,
-        samples: samples.collect(),
-        black: ends(low),
-        white: ends(high),
-    }
+    Encoded { size: image.width, channels, samples: samples.collect(), black: ends(low), white: ends(high) }
+}
+
+/// The value in x that 99 % of texels do not exceed.
+fn most_stay_below(image: &FloatImage<Vec4>) -> f32 {
+    let mut values: Vec<f32> = image.texels.iter().map(|texel| texel.x).collect();
+    let place = (values.len() * 99 / 100).min(values.len().saturating_sub(1));
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(place, f32::total_cmp).1 }
 }
 
 #[cfg(test)]
@@ -68,7 +72,11 @@ mod tests {
         let decoded = |map| {
             let Encoded { samples, black, white, .. } = encode(map, &image, &frame);
             let ends = black.into_iter().zip(white);
-            samples.iter().zip(ends).map(|(&s, (b, w))| b + f32::from(s) / 65535.0 * (w - b)).collect::<Vec<_>>()
+            samples
+                .iter()
+                .zip(ends)
+                .map(|(&s, (b, w))| b + f32::from(s) / 65535.0 * (w - b))
+                .collect::<Vec<_>>()
         };
         let near = |found: Vec<f32>, wanted: &[f32]| {
             assert_eq!(found.len(), wanted.len());

@@ -84,7 +84,9 @@ mod tests {
         let normal = vec3(1.0, -2.0, 0.5).normalize();
         for (texel, samples) in [(0, 1), (17, 4), (123_456, 3)] {
             let all: Vec<Vec3> = (0..samples)
-                .flat_map(|k| Rays::new(256, texel, k, samples).directions(normal, normal).collect::<Vec<_>>())
+                .flat_map(|k| {
+                    Rays::new(256, texel, k, samples).directions(normal, normal).collect::<Vec<_>>()
+                })
                 .collect();
             assert_eq!(all.len(), 256usize.div_ceil(samples) * samples);
             let mean = all.iter().sum::<Vec3>() / all.len() as f32;

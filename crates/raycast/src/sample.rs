@@ -6,7 +6,7 @@
 //! that neighbouring facets of a convex body do not shade it.
 
 use crate::rays::Rays;
-use parbake_mesh::HighSurface;
+use parbake_mesh::{HighSurface, SurfacePoint};
 use parbake_model::Mesh;
 use parbake_model::glam::{Mat3, Vec3};
 use parbake_render::interpolate::interpolate;
@@ -21,7 +21,9 @@ const MOST_RAISED: f32 = 0.01;
 
 /// A sample, in the common frame.
 pub struct Sample<'a> {
-    /// The high-poly, for rays.
+    /// The high-poly.
+    pub mesh: &'a Mesh,
+    /// The same for rays.
     pub surface: &'a HighSurface,
     /// The low-poly's point.
     pub low: Vec3,
@@ -45,7 +47,7 @@ pub struct Sample<'a> {
 
 impl<'a> Sample<'a> {
     /// Of what the low-poly found on a mesh.
-    pub fn new(found: &Found, mesh: &Mesh, surface: &'a HighSurface, rays: Rays) -> Self {
+    pub fn new(found: &Found, mesh: &'a Mesh, surface: &'a HighSurface, rays: Rays) -> Self {
         let triangle = found.hit.triangle as usize;
         let corners = mesh.triangles[triangle].map(|i| i as usize);
         let [second, third] = found.hit.barycentric;
@@ -53,19 +55,16 @@ impl<'a> Sample<'a> {
         let positions = corners.map(|i| mesh.positions[i]);
         let point: Vec3 = interpolate(positions, weights);
         let outwards = found.frame.z_axis;
-        let turned = |v: Vec3| if v.dot(outwards) < 0.0 { -v } else { v };
-        let facet = turned(mesh.area_normal(triangle)).normalize_or(outwards.normalize_or(Vec3::Z));
+        let (facet, smooth) = normals_at(mesh, &found.hit, outwards);
         let of_vertices = corners.map(|i| mesh.normals[i]);
-        // A normal that looks into its own triangle says nothing of the surface.
-        let same_side = |v: Vec3| if v.dot(facet) < 0.0 { -v } else { v };
-        let smooth = same_side(interpolate(of_vertices, weights)).normalize_or(facet);
         let raised: [Vec3; 3] = std::array::from_fn(|k| {
-            let normal = same_side(of_vertices[k]);
+            let normal = same_side(of_vertices[k], facet);
             point - (point - positions[k]).dot(normal).min(0.0) * normal
         });
         let raise = (interpolate::<Vec3>(raised, weights) - point).clamp_length_max(MOST_RAISED);
         let origin = point + raise + LIFT * facet;
         Self {
+            mesh,
             surface,
             low: found.point,
             direction: found.direction,
@@ -78,4 +77,20 @@ impl<'a> Sample<'a> {
             rays,
         }
     }
+}
+
+/// The unit normals of a triangle and of the smooth surface at a point of a mesh, on the side that looks along
+/// `outwards`.
+pub fn normals_at(mesh: &Mesh, point: &SurfacePoint, outwards: Vec3) -> (Vec3, Vec3) {
+    let triangle = point.triangle as usize;
+    let facet = same_side(mesh.area_normal(triangle), outwards).normalize_or(outwards.normalize_or(Vec3::Z));
+    let [second, third] = point.barycentric;
+    let normals = mesh.triangles[triangle].map(|i| mesh.normals[i as usize]);
+    let smooth: Vec3 = interpolate(normals, [1.0 - second - third, second, third]);
+    // A normal that looks into its own triangle says nothing of the surface.
+    (facet, same_side(smooth, facet).normalize_or(facet))
+}
+
+fn same_side(v: Vec3, other: Vec3) -> Vec3 {
+    if v.dot(other) < 0.0 { -v } else { v }
 }

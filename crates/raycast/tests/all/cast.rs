@@ -2,8 +2,8 @@
 
 use crate::scenes::{WHOLE, add_sheet, cube, painted, pair, square};
 use parbake_image::MapKind;
-use parbake_model::glam::{Vec3, vec2, vec3};
 use parbake_model::Mesh;
+use parbake_model::glam::{Vec3, vec2, vec3};
 use parbake_raycast::{CastMaps, CastOptions, GeometryMap, cast_maps};
 use parbake_views::projection::Search;
 
@@ -103,7 +103,8 @@ fn averaged_normals_leave_no_gaps() {
     let on_edges = |smooth_rays| {
         let options = CastOptions { smooth_rays, ..options(1, &[GeometryMap::Position]) };
         let cast = cast_maps(&low, &high, &options, &()).unwrap();
-        let covered = cast.geometry[0].1.texels.iter().zip(&low.atlas.covered).filter(|(_, covered)| **covered);
+        let covered =
+            cast.geometry[0].1.texels.iter().zip(&low.atlas.covered).filter(|(_, covered)| **covered);
         let is_on_edge = |p: Vec3| p.abs().to_array().iter().filter(|x| **x > 0.9999).count() > 1;
         covered.filter(|(p, _)| is_on_edge(p.truncate())).count()
     };

@@ -41,7 +41,9 @@ pub fn square(half: f32, z: f32) -> Mesh {
 /// A box of this half side with hard edges; each side has a ninth of the texture.
 pub fn cube(half: f32) -> Mesh {
     let mut mesh = Mesh::default();
-    for (index, normal) in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z].iter().enumerate() {
+    for (index, normal) in
+        [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z].iter().enumerate()
+    {
         let (u, v) = normal.any_orthonormal_pair();
         let corner = (*normal - u - v) * half;
         let from = vec2((index % 3) as f32, (index / 3) as f32) / 3.0 + 0.02;
@@ -77,11 +79,24 @@ pub fn ball(radius: f32) -> Mesh {
     mesh
 }
 
+/// A mesh, ready for rays.
+pub struct Solid {
+    mesh: Mesh,
+    surface: HighSurface,
+}
+
+impl Solid {
+    pub fn new(mesh: &Mesh) -> Self {
+        Self { mesh: mesh.clone(), surface: HighSurface::new(mesh) }
+    }
+}
+
 /// A sample on a surface whose normal there is `normal`, seen from a low-poly at the same place.
-pub fn sample_at(surface: &HighSurface, point: Vec3, normal: Vec3, rays: usize) -> Sample<'_> {
+pub fn sample_at(solid: &Solid, point: Vec3, normal: Vec3, rays: usize) -> Sample<'_> {
     let (tangent, bitangent) = normal.any_orthonormal_pair();
     Sample {
-        surface,
+        mesh: &solid.mesh,
+        surface: &solid.surface,
         low: point,
         direction: normal,
         frame: Mat3::from_cols(tangent, bitangent, normal),
@@ -104,7 +119,8 @@ pub fn pair(high: &Model, low: Mesh, size: usize, max_distance: f32) -> (HighPol
         max_distance,
     };
     let high = HighPoly::new(high, conventions).unwrap();
-    let low = Model { name: "low".into(), mesh: low, materials: vec![Material::default()], images: Vec::new() };
+    let low =
+        Model { name: "low".into(), mesh: low, materials: vec![Material::default()], images: Vec::new() };
     let low = LowPoly::new(&low, &high.frame, size).unwrap();
     (high, low)
 }
