@@ -167,7 +167,7 @@ pub fn raycast(
         .filter(|(map, _)| wanted.contains(map))
         .map(|(map, image)| {
             let image = directed(*map, image, options.normal_y);
-            ShapePicture { map: *map, encoded: encode(*map, &image, &high.frame) }
+            ShapePicture { map: *map, encoded: encode(*map, &image, &cast.known, &high.frame) }
         })
         .collect();
     clock.lap(Stage::Start);
@@ -183,7 +183,7 @@ pub fn raycast(
         options: options.clone(),
         high_triangles: high.triangles,
         low_triangles: low.mesh.triangles.len(),
-        covered_texels: cast.covered,
+        covered_texels: cast.known.iter().filter(|known| **known).count(),
         overlapping_texels: prepared.map.overlaps,
         missed_texels: cast.missed,
         uv,

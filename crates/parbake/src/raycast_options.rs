@@ -64,7 +64,7 @@ pub struct RaycastOptions {
     pub texture_size: usize,
 
     /// Samples a texel, 1 to 64
-    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 4, help_heading = heading::QUALITY))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 2, help_heading = heading::QUALITY))]
     pub samples: usize,
 
     /// UV mode: how the low-poly's texture coordinates are treated
@@ -135,7 +135,7 @@ impl Default for RaycastOptions {
     fn default() -> Self {
         Self {
             texture_size: 512,
-            samples: 4,
+            samples: 2,
             uv: RaycastUv::Repair,
             gutter: None,
             max_distance: 0.05,

@@ -57,8 +57,8 @@ pub struct CastMaps {
     /// Maps of shape in the common frame, in the order in which they were asked for. Grey ones have their
     /// value in x.
     pub geometry: Vec<(GeometryMap, FloatImage<Vec4>)>,
-    /// Texels of which any point lies on the surface.
-    pub covered: usize,
+    /// Texels of which any point lies on the surface; the others are filled.
+    pub known: Vec<bool>,
     /// Those among them of which most points found nothing within reach and took a point farther away.
     pub missed: usize,
 }
@@ -85,7 +85,9 @@ pub fn cast_maps(
     let mut counts = vec![Count::default(); size * size];
     let rows = AtomicUsize::new(0);
     for index in 0..samples {
-        let grid = texel_map(&moved(&low.placed, point(index, samples), size), size);
+        // One sample is in the centre, for which there is a grid already.
+        let own = (samples > 1).then(|| texel_map(&moved(&low.placed, point(index, samples), size), size));
+        let grid = own.as_ref().unwrap_or(&low.map);
         let work = sums.par_chunks_mut(size * lanes).zip(counts.par_chunks_mut(size)).enumerate();
         work.for_each(|(row, (sums, counts))| {
             if watcher.stopped() {
@@ -116,22 +118,26 @@ pub fn cast_maps(
         let found = counts[texel].found;
         (found > 0).then(|| sums[texel * lanes + lane] / f32::from(found))
     };
-    let mut maps = MapSet::new(size);
-    for (lane, kind) in kinds.iter().enumerate() {
+    // Gutters grow texel by texel, so maps are finished side by side.
+    let of_material = |(lane, kind): (usize, &MapKind)| {
         let value = |texel: usize| mean(texel, lane).map(|sum| unweighted(*kind, sum));
-        maps.insert(*kind, finished(*kind, high, size, &known, value));
-    }
-    let geometry = options.maps.iter().enumerate().map(|(place, &map)| {
+        (*kind, finished(*kind, high, size, &known, value))
+    };
+    let finished_maps: Vec<_> = kinds.par_iter().enumerate().map(of_material).collect();
+    let mut maps = MapSet::new(size);
+    finished_maps.into_iter().for_each(|(kind, map)| maps.insert(kind, map));
+    let of_shape = |(place, &map): (usize, &GeometryMap)| {
         let lane = kinds.len() + place;
         let value = |texel| mean(texel, lane).map_or(Vec4::ZERO, |sum| of_unit_length(map, sum));
         let mut image = FloatImage::square(size, (0..size * size).into_par_iter().map(value).collect());
         gutter::fill(&mut image, &known);
         (map, image)
-    });
+    };
+    let geometry = options.maps.par_iter().enumerate().map(of_shape).collect();
     Some(CastMaps {
-        geometry: geometry.collect(),
+        geometry,
         maps,
-        covered: known.iter().filter(|known| **known).count(),
+        known,
         missed: counts.iter().filter(|count| 2 * count.missed > count.found).count(),
     })
 }
