@@ -107,8 +107,8 @@ impl WideNode {
     #[inline]
     pub(crate) fn near(&self, point: [Vec4; 3], best: f32) -> ([f32; WIDTH], u32) {
         let mut square = Vec4::ZERO;
-        for axis in 0..3 {
-            let outside = (self.low[axis] - point[axis]).max(point[axis] - self.high[axis]).max(Vec4::ZERO);
+        for ((low, high), point) in self.low.iter().zip(&self.high).zip(point) {
+            let outside = (*low - point).max(point - *high).max(Vec4::ZERO);
             square += outside * outside;
         }
         (square.to_array(), square.cmple(Vec4::splat(best)).bitmask() & self.used)

@@ -78,7 +78,7 @@ pub fn cast_maps(
     let kinds: Vec<MapKind> = high.kinds().collect();
     let mut projector = Projector::new(low, high, options.search, samples);
     if options.smooth_rays {
-        projector = projector.along(smooth_normals(&low.placed));
+        projector = projector.along(averaged_normals(&low.placed));
     }
     let lanes = kinds.len() + options.maps.len();
     let mut sums = vec![Vec4::ZERO; size * size * lanes];
@@ -140,6 +140,16 @@ pub fn cast_maps(
         known,
         missed: counts.iter().filter(|count| 2 * count.missed > count.found).count(),
     })
+}
+
+/// Least cosine between a vertex's own normal and an averaged one that is used for it.
+const LEAST_COSINE: f32 = 0.2;
+
+/// Normals averaged over all triangles at a position; a vertex's own where that is hardly on its side, as where
+/// both sides of a sheet share their positions.
+fn averaged_normals(low: &Mesh) -> Vec<Vec3> {
+    let pairs = smooth_normals(low).into_iter().zip(&low.normals);
+    pairs.map(|(averaged, own)| if averaged.dot(*own) > LEAST_COSINE { averaged } else { *own }).collect()
 }
 
 /// Samples of a texel.

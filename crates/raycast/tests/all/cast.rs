@@ -112,6 +112,28 @@ fn averaged_normals_leave_no_gaps() {
     assert!(on_edges(true) == 0 && on_edges(false) > 200, "{} {}", on_edges(true), on_edges(false));
 }
 
+/// Protects leaves and cloth: the two sides of a sheet share their positions, where normals cancel out, and
+/// each looks along its own all the same.
+#[test]
+fn both_sides_of_a_sheet_look_outwards() {
+    let sheets = |z: f32| {
+        let (mut mesh, half) = (Mesh::default(), vec2(0.45, 0.9));
+        let [front, back] = [vec2(0.02, 0.05), vec2(0.52, 0.05)].map(|from| [from, from + half]);
+        add_sheet(&mut mesh, vec3(-1.0, -1.0, z), [Vec3::X * 2.0, Vec3::Y * 2.0], 0, front);
+        add_sheet(&mut mesh, vec3(-1.0, -1.0, -z), [Vec3::Y * 2.0, Vec3::X * 2.0], 0, back);
+        mesh
+    };
+    let (high, low) = pair(&painted(sheets(0.03), &[[1.0; 3]]), sheets(0.0), 16, 0.1);
+    let cast = cast_maps(&low, &high, &options(2, &[GeometryMap::Height]), &()).unwrap();
+    let height = |x: usize| cast.geometry[0].1.texels[8 * 16 + x].x;
+    assert!(
+        (height(4) - 0.03).abs() < 1e-5 && (height(12) - 0.03).abs() < 1e-5,
+        "{} {}",
+        height(4),
+        height(12)
+    );
+}
+
 /// Protects scripts: the same numbers for 1, 2 and 5 threads, all maps included.
 #[test]
 fn threads_change_nothing() {
