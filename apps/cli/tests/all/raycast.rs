@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 const PAIR: [&str; 3] = ["raycast", "demo_high.glb", "demo_low.glb"];
-const SMALL: [&str; 6] = ["--texture-size", "64", "--samples", "2", "--rays", "8"];
+const SMALL: [&str; 4] = ["--texture-size", "64", "--samples", "2"];
 
 /// Protects artists: one command writes the model and a 16-bit picture of each map, and says what black and white
 /// of each are; all of it the same bytes for any number of threads.
@@ -19,7 +19,8 @@ fn maps_are_written_beside_the_model() {
     let list = names.map(|name| name.replace('_', "-")).join(",");
     let bake = |stem: &str, threads: &str| {
         let output = format!("{stem}.glb");
-        let more = ["-o", &output, "--maps", &list, "--threads", threads, "--json", "out.json"];
+        let more =
+            ["-o", &output, "--rays", "8", "--maps", &list, "--threads", threads, "--json", "out.json"];
         let said = text(&run(folder, &[&PAIR[..], &SMALL, &more].concat()).stdout);
         let png = |name: &&str| fs::read(folder.join(format!("{stem}_{name}.png"))).unwrap();
         (said, fs::read(folder.join(&output)).unwrap(), names.iter().map(png).collect::<Vec<_>>())
