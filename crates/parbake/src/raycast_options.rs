@@ -46,11 +46,11 @@ pub enum Match {
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum RayNormals {
-    /// Normals averaged over all triangles at a vertex: no gaps at hard edges.
-    #[default]
-    Averaged,
     /// The low-poly's own normals: nothing is slanted on flat sides, gaps at hard edges take the closest point.
+    #[default]
     Own,
+    /// Normals averaged over all triangles at a vertex: no gaps at hard edges.
+    Averaged,
 }
 
 /// Options of [`crate::raycast`]. [`RaycastOptions::check`] checks ranges.
@@ -86,7 +86,7 @@ pub struct RaycastOptions {
     pub r#match: Match,
 
     /// Directions of rays
-    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = RayNormals::Averaged, help_heading = RAYS))]
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = RayNormals::Own, help_heading = RAYS))]
     pub ray_normals: RayNormals,
 
     /// Maps of shape to write beside the output as 16-bit PNG, a list with commas: OUTPUT_occlusion.png and
@@ -140,7 +140,7 @@ impl Default for RaycastOptions {
             gutter: None,
             max_distance: 0.05,
             r#match: Match::Nearest,
-            ray_normals: RayNormals::Averaged,
+            ray_normals: RayNormals::Own,
             maps: Vec::new(),
             occlusion_texture: false,
             rays: 64,
