@@ -66,8 +66,10 @@ def main():
     parser.add_argument("--views", type=int, default=24)
     parser.add_argument("--repeats", type=int, default=3, help="times are the least of so many runs")
     parser.add_argument("--cage", action="store_true", help="Blender's automatic cage")
-    parser.add_argument("rest", nargs="*", help="behind --: options of parbake raycast")
-    a = parser.parse_args()
+    parser.epilog = "Options behind -- go to parbake raycast."
+    typed = sys.argv[1:]
+    end = typed.index("--") if "--" in typed else len(typed)
+    a, rest = parser.parse_args(typed[:end]), typed[end + 1:]
     os.makedirs(a.out, exist_ok=True)
     rows = []
     for name, high, low, color in pairs(a.data, a.levels, a.only):
@@ -78,7 +80,7 @@ def main():
             # In turn, so that what else the machine does hits both.
             _, whole = run([a.parbake, "raycast", high, low, "-o", stem + ".glb", "--json", stem + ".json", "-q",
                             "--texture-size", str(a.size), "--max-distance", str(a.distance), "--uv", "keep",
-                            *common, *a.rest])
+                            *common, *rest])
             with open(stem + ".json") as file:
                 stages = {s["stage"]: s["seconds"] for s in json.load(file)["stages"]}
             ours.append((stages["prepare"] + stages["start"], whole))

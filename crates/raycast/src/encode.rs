@@ -92,7 +92,7 @@ mod tests {
     /// Protects thickness from a few deep rims, and from what gutters repeat of them.
     #[test]
     fn thickness_is_scaled_by_most_of_the_surface() {
-        let depth = |i: usize| if i % 30 == 0 { 5.0 } else { 0.001 * i as f32 };
+        let depth = |i: usize| if i.is_multiple_of(30) { 5.0 } else { 0.001 * i as f32 };
         let image = FloatImage::square(10, (0..100).map(|i| Vec4::splat(depth(i))).collect());
         let known: Vec<bool> = (0..100).map(|i| i < 60).collect();
         let frame = Placement { centre: Vec3::ZERO, scale: 2.0 };
