@@ -4,7 +4,8 @@ use crate::rules::{NOT_IN_COMPRESS, WITH_NORMAL_MAPS};
 use clap::{Args, Command as Clap, CommandFactory, Parser, Subcommand, ValueEnum};
 use parbake::lod::layout::Layout;
 use parbake::{
-    BakeOptions, EvaluateOptions, ImageOptions, LodOptions, StatsOptions, WriteOptions, parse_texels,
+    BakeOptions, EvaluateOptions, ImageOptions, LodOptions, RaycastOptions, StatsOptions, WriteOptions,
+    parse_texels,
 };
 use parbake_batch::BatchOptions;
 use parbake_report::TurntableOptions;
@@ -71,6 +72,8 @@ pub enum Command {
     Bake(BakeCommand),
     /// Make levels of detail of a single model
     Lod(LodCommand),
+    /// Bake by rays alone: materials, normals, occlusion, curvature, …
+    Raycast(RaycastCommand),
     /// Shrink a model's texture
     Compress(CompressCommand),
     /// Make a plane that shows a picture with a smaller texture
@@ -187,6 +190,44 @@ pub struct LodCommand {
     /// How to make them
     #[command(flatten)]
     pub lod: LodOptions,
+
+    /// What to read
+    #[command(flatten, next_help_heading = IO)]
+    pub reading: Reading,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = IO)]
+    pub talk: Talk,
+}
+
+/// Arguments of `raycast`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "The classical bake: rays from the low-poly to the high-poly, nothing is fitted. Base colour, normals and all \
+other maps of the materials go into the output; maps of shape are files beside it (docs/raycast.md)."
+)]
+pub struct RaycastCommand {
+    /// The high-poly: .obj, .gltf or .glb
+    pub high: PathBuf,
+
+    /// The low-poly: .obj, .gltf or .glb; missing UVs are made
+    pub low: PathBuf,
+
+    /// File to write: .glb, or .obj with .mtl and .png beside it
+    #[arg(short, long, value_name = "FILE", default_value = "baked.glb", help_heading = IO)]
+    pub output: PathBuf,
+
+    /// Write the figures of the run as JSON to this .json file, or to standard output for "-"
+    #[arg(long, value_name = "FILE", help_heading = IO)]
+    pub json: Option<PathBuf>,
+
+    /// Fail if a texture or material that a model names is missing, instead of warning
+    #[arg(long, help_heading = IO)]
+    pub strict: bool,
+
+    /// How to bake
+    #[command(flatten)]
+    pub raycast: RaycastOptions,
 
     /// What to read
     #[command(flatten, next_help_heading = IO)]

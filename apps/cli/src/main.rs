@@ -18,6 +18,7 @@ mod options_file;
 mod outputs;
 mod pictures;
 mod progress;
+mod raycast;
 mod reproduce;
 mod rules;
 mod simplify;
@@ -42,6 +43,7 @@ fn main() -> ExitCode {
         (Command::Bake(command), Some(given)) => bake::run(command, given),
         (Command::Demo(command), Some(given)) => demo::run(command, given),
         (Command::Eval(command), _) => evaluate::run(command),
+        (Command::Raycast(command), Some(given)) => raycast::run(command, given),
         (Command::Compress(command), Some(given)) => compress::run(command, given),
         (Command::Lod(command), _) => lod::run(command),
         (Command::Image(command), Some(given)) => image::run(command, given),

@@ -79,6 +79,12 @@ impl Console {
         Self::with_deadline(talk, None)
     }
 
+    /// For work of which a part is no use: Ctrl-C ends without a file.
+    pub fn for_whole(talk: Talk) -> Self {
+        catch_interrupts("nothing is written");
+        Self::with_deadline(talk, None)
+    }
+
     /// For many runs one after the other, which Ctrl-C ends with what is finished.
     pub fn for_many(talk: Talk) -> Self {
         Self::of_runs(talk, "what is finished is being drawn")

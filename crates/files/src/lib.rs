@@ -34,7 +34,7 @@ pub use contents::{Contents, PictureFormat, StoredPicture};
 pub use error::{FileError, Place};
 pub use gltf::{glb_bytes, read_gltf_bytes, write_glb, write_glb_with, write_lod_glb};
 pub use image_in::{decode_image, read_image};
-pub use image_out::encode_png;
+pub use image_out::{encode_png, encode_png16};
 pub use limits::Limits;
 pub use model_in::{Loaded, read_geometry, read_model};
 pub use named_files::named_files;

@@ -37,6 +37,7 @@ mod union_find;
 pub mod vertices;
 pub mod visibility;
 pub mod weld;
+mod wide_nodes;
 
 pub use bisect::{Bisected, Piece};
 pub use charts::{charts, texel_charts};

@@ -141,7 +141,7 @@ pub(crate) fn bake_onto_itself(
     run(&prepare(model, options)?, model, Work::Compress, options, watcher, begin)
 }
 
-fn conventions(options: &BakeOptions) -> Conventions {
+pub(crate) fn conventions(options: &BakeOptions) -> Conventions {
     Conventions {
         interpretation: options.convention.interpretation(),
         display: options.convention.display(),
@@ -268,6 +268,6 @@ fn run(
 }
 
 /// Maps as files hold them.
-fn images(maps: &MapSet, srgb: bool) -> Vec<(MapKind, Image)> {
+pub(crate) fn images(maps: &MapSet, srgb: bool) -> Vec<(MapKind, Image)> {
     maps.iter().map(|(kind, map)| (kind, to_image(kind, map, srgb))).collect()
 }

@@ -18,7 +18,7 @@
 //! ```
 //!
 //! * **Options** are plain structs with a documented default for each field: [`BakeOptions`] for
-//!   [`bake`] and [`compress`], [`ImageOptions`] for [`bake_image`], [`EvaluateOptions`] for
+//!   [`bake`] and [`compress`], [`RaycastOptions`] for [`raycast()`], [`ImageOptions`] for [`bake_image`], [`EvaluateOptions`] for
 //!   [`evaluate()`]. They are the same for library, command line and options file.
 //! * **Several low-polys** of one high-poly: [`prepare_high_poly`] once, then [`bake_prepared`] for each.
 //! * **Warnings and progress** come as [`Message`]s to the [`Watcher`] that is the last argument, which
@@ -47,6 +47,8 @@ mod models;
 mod normal_y;
 mod options;
 mod plan;
+mod raycast;
+mod raycast_options;
 mod report;
 mod stats;
 pub mod studio;
@@ -90,6 +92,7 @@ pub use parbake_mesh::distance::{OneWay, SurfaceDistance};
 pub use parbake_mesh::topology::{Component, Topology};
 pub use parbake_model::{Image as Picture, Model};
 pub use parbake_progress::{Estimate, Message, ProgressScope, Stage, StageTime, Watcher};
+pub use parbake_raycast::{Encoded, GeometryMap};
 pub use parbake_shape::stage::ShapeReport;
 pub use parbake_uv::convergence::Convergence;
 pub use parbake_uv::moves::UvMoves;
@@ -97,6 +100,10 @@ pub use parbake_uv::surface::UvStageReport;
 pub use parbake_views::PrepareError;
 pub use parbake_views::high_poly::HighPoly;
 pub use plan::Plan;
+pub use raycast::{
+    Match, RayNormals, Raycast, RaycastOptions, RaycastReport, RaycastUv, ShapeMapReport, ShapePicture,
+    raycast,
+};
 pub use report::{BakeReport, LossStep, Work};
 pub use stats::{
     FileStats, LayoutStats, ModelStats, StatsOptions, TexelDensity, TextureStats, model_distance, model_stats,

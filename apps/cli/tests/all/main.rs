@@ -9,6 +9,7 @@ mod command;
 mod common;
 mod layouts;
 mod parallax;
+mod raycast;
 mod real_models;
 mod refusals;
 mod reproduce;

@@ -101,10 +101,11 @@ fn outputs_keep_to_the_schema() {
     std::fs::write(folder.join("checks.png"), parbake::encode_png(&picture).unwrap()).unwrap();
     let pair = ["demo_high.glb", "demo_low.glb"];
     let small_file = ["--preset", "fast", "--texture-format", "ktx2", "--mesh-compression", "meshopt"];
-    let runs: [(&str, Vec<&str>); 8] = [
+    let runs: [(&str, Vec<&str>); 9] = [
         ("bake", [&pair[..], &SMALL].concat()),
         ("bake", [&pair[..], &SMALL, &["--parallax", "sh", "--preset", "fast"]].concat()),
         ("bake", [&pair[..], &SMALL, &small_file].concat()),
+        ("raycast", [&pair[..], &["--texture-size", "32", "--maps", "height,occlusion"]].concat()),
         ("compress", [&pair[..1], &["--texture-size", "32", "--uv-steps", "2"]].concat()),
         ("image", vec!["checks.png", "--texture-size", "16", "--grid", "8"]),
         ("eval", [&pair[..], &["--views", "2", "--resolution", "64"]].concat()),
