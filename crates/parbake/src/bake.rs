@@ -194,12 +194,14 @@ fn run(
     let turned = (!same).then(|| lit(low));
     let low = turned.as_ref().map_or(low, |(model, _)| model);
     let delivered = low;
-    warnings.tell(turned.iter().flat_map(|(_, of_normals)| of_normals.clone()));
+    // Of a low-poly that was made here there is nothing that its maker should mend.
+    let is_given = work != Work::Level;
+    warnings.tell(turned.iter().filter(|_| is_given).flat_map(|(_, of_normals)| of_normals.clone()));
     let Geometry { uv_stage, shape, map } = move_geometry(low, work, high, options, &scope, &mut clock)?;
     let low = uv_stage.as_ref().map_or(low, |u| &u.model);
     let prepared = LowPoly::new(low, &high.frame, size)?;
     warnings.tell(prepared.warnings.iter().cloned());
-    let repaired = uv_stage.iter().flat_map(|u| &u.report.repaired);
+    let repaired = uv_stage.iter().filter(|_| is_given).flat_map(|u| &u.report.repaired);
     warnings.tell(repaired.map(|done| format!("{}: {done}", low.name)));
     clock.lap(Stage::Prepare);
 

@@ -8,6 +8,7 @@ mod check;
 mod command;
 mod common;
 mod layouts;
+mod lod;
 mod parallax;
 mod raycast;
 mod real_models;

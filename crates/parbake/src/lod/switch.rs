@@ -21,8 +21,10 @@ use serde::{Deserialize, Serialize};
 
 /// Directions that models are seen from.
 const VIEWS: usize = 6;
-/// Samples along a side of a pixel.
-const SAMPLES: usize = 2;
+/// Pixels that samples are enough for at small sizes, where thin parts flicker with fewer, and samples along a side of
+/// a pixel at least and at most.
+const SAMPLED: f64 = 480.0;
+const SAMPLES: [f64; 2] = [2.0, 6.0];
 /// Pixels of a picture for each that the model spans, as cameras stand (3.5 from the middle, half a width of 0.4).
 const PICTURE: f64 = 1.4;
 /// From one size to the next.
@@ -54,13 +56,14 @@ pub struct Lineup {
 impl Lineup {
     /// Around the original.
     pub fn new(original: &Model, shading: Shading) -> Self {
-        let options = EvaluateOptions { shading, supersample: SAMPLES, ..EvaluateOptions::default() };
+        let options = EvaluateOptions { shading, ..EvaluateOptions::default() };
         Self { original: original.clone(), options }
     }
 
     fn studio(&self, pixels: f64) -> Result<Studio, BakeError> {
         let resolution = (PICTURE * pixels).round().max(16.0) as usize;
-        Studio::new(&self.original, &EvaluateOptions { resolution, ..self.options.clone() })
+        let supersample = (SAMPLED / pixels).clamp(SAMPLES[0], SAMPLES[1]) as usize;
+        Studio::new(&self.original, &EvaluateOptions { resolution, supersample, ..self.options.clone() })
     }
 
     /// Makes a model ready for pictures.
