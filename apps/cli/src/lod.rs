@@ -48,6 +48,11 @@ pub fn run(command: &LodCommand) -> Result<Ending, Failure> {
             Ok(())
         };
         make_levels(&model, options, &console, on_level)?;
+        if levels.is_empty() {
+            console.finish();
+            console.say("stopped before the first level was finished: nothing was written");
+            return Ok(Ending::Interrupted);
+        }
         let reports: Vec<LevelReport> = written.iter().map(|(_, _, report)| report.clone()).collect();
         let all: Vec<&Model> = levels.iter().collect();
         write_lod_glb(&command.output.join(&all_file), &all, &coverages(&reports), &options.write)?;

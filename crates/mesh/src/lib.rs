@@ -33,7 +33,7 @@ pub mod subdivide;
 pub mod tangents;
 pub mod texel_map;
 pub mod topology;
-mod union_find;
+pub mod union_find;
 pub mod vertices;
 pub mod visibility;
 pub mod weld;

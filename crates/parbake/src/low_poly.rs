@@ -4,23 +4,12 @@ use crate::options::Preset;
 use parbake_model::{AlphaMode, Material, MaterialExtensions, Model};
 use parbake_progress::Watcher;
 use parbake_simplify::polish::PolishOptions;
-use parbake_simplify::{ChooseOptions, StartReport, choose_triangles};
+use parbake_simplify::{ChooseOptions, LayerReport, choose_triangles};
 use parbake_views::high_poly::HighPoly;
-use serde::{Deserialize, Serialize};
-
-/// How the triangles of a low-poly were found.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct LowPolyReport {
-    /// Triangles.
-    pub triangles: usize,
-    /// The surfaces that were tried; the first was taken.
-    pub starts: Vec<StartReport>,
-    /// Mean squared display error of the shape alone, before and after its triangles were improved.
-    pub error: [f64; 2],
-}
 
 /// A low-poly of at most so many triangles, without texture coordinates, in the high-poly's own space. `model` is
-/// what the high-poly was prepared from; `before` is a finer low-poly that it may start from.
+/// what the high-poly was prepared from; `before` is a finer low-poly that it may start from. Also returns how the
+/// triangles of each layer were found.
 pub fn low_poly(
     high: &HighPoly,
     model: &Model,
@@ -28,7 +17,7 @@ pub fn low_poly(
     triangles: usize,
     preset: Preset,
     watcher: &dyn Watcher,
-) -> (Model, LowPolyReport) {
+) -> (Model, Vec<LayerReport>) {
     let before = before.map(|low| {
         let mut mesh = low.mesh.clone();
         high.frame.apply(&mut mesh);
@@ -40,14 +29,8 @@ pub fn low_poly(
     for point in &mut mesh.positions {
         *point = *point / high.frame.scale + high.frame.centre;
     }
-    let first = chosen.starts.first().map_or(0.0, |start| start.error);
-    let report = LowPolyReport {
-        triangles: mesh.triangles.len(),
-        starts: chosen.starts,
-        error: [first, chosen.error],
-    };
     let materials = model.materials.iter().map(layer_only).collect();
-    (Model { name: model.name.clone(), mesh, materials, images: Vec::new() }, report)
+    (Model { name: model.name.clone(), mesh, materials, images: Vec::new() }, chosen.layers)
 }
 
 /// Of a material what says in which layer it is drawn.

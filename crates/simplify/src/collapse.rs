@@ -9,12 +9,14 @@
 //! Costs go stale as their surroundings change. They are evaluated again when their turn comes (a lazy queue),
 //! several at once on all cores.
 //!
-//! Contract: deterministic; ends at the wanted number of triangles or one less, at more only where nothing can go.
+//! Contract: deterministic; ends at the wanted number of triangles or one less; at fewer where only whole parts can
+//! go, at more only where nothing can.
 
 use crate::change::Change;
 use crate::pictures::{Pictures, Scratch};
 use crate::surface::Surface;
 use glam::{DMat3, DVec3, Vec3};
+use parbake_mesh::union_find::UnionFind;
 use parbake_progress::{Stage, Watcher};
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -59,53 +61,38 @@ impl Ord for Entry {
     }
 }
 
-/// The parts of a surface: which each triangle belongs to, and the triangles of small ones.
-struct Parts {
-    of_point: Vec<u32>,
+/// A point of each part of a surface, ascending.
+fn parts(surface: &Surface) -> Vec<u32> {
+    let mut sets = UnionFind::new(surface.points.len());
+    for (_, triangle) in surface.triangles() {
+        let [a, b, c] = triangle.corners;
+        sets.union(a, b);
+        sets.union(b, c);
+    }
+    let is_first = |point: &u32| !surface.around(*point).is_empty() && sets.find(*point) == *point;
+    (0..surface.points.len() as u32).filter(is_first).collect()
 }
 
-impl Parts {
-    fn new(surface: &Surface) -> Self {
-        let mut of_point: Vec<u32> = (0..surface.points.len() as u32).collect();
-        fn root(of: &mut [u32], mut point: u32) -> u32 {
-            while of[point as usize] != point {
-                of[point as usize] = of[of[point as usize] as usize];
-                point = of[point as usize];
-            }
-            point
-        }
-        for (_, triangle) in surface.triangles() {
-            let [a, b, c] = triangle.corners.map(|point| root(&mut of_point, point));
-            let least = a.min(b).min(c);
-            [a, b, c].iter().for_each(|&r| of_point[r as usize] = least);
-        }
-        for point in 0..of_point.len() as u32 {
-            of_point[point as usize] = root(&mut of_point, point);
-        }
-        Self { of_point }
-    }
-
-    /// The triangles that hang together with this point, ascending, if they are few.
-    fn small(surface: &Surface, point: u32) -> Option<Vec<u32>> {
-        let mut triangles: Vec<u32> = Vec::new();
-        let mut points = vec![point];
-        let mut next = 0;
-        while next < points.len() {
-            for &index in surface.around(points[next]) {
-                if !triangles.contains(&index) {
-                    triangles.push(index);
-                    if triangles.len() > SMALL_PART {
-                        return None;
-                    }
-                    let corners = surface.get(index)?.corners;
-                    points.extend(corners.into_iter().filter(|c| !points.contains(c)).collect::<Vec<_>>());
+/// The triangles that hang together with this point, ascending, if they are few.
+fn small_part(surface: &Surface, point: u32) -> Option<Vec<u32>> {
+    let mut triangles: Vec<u32> = Vec::new();
+    let mut points = vec![point];
+    let mut next = 0;
+    while next < points.len() {
+        for &index in surface.around(points[next]) {
+            if !triangles.contains(&index) {
+                triangles.push(index);
+                if triangles.len() > SMALL_PART {
+                    return None;
                 }
+                let corners = surface.get(index)?.corners;
+                points.extend(corners.into_iter().filter(|c| !points.contains(c)).collect::<Vec<_>>());
             }
-            next += 1;
         }
-        triangles.sort_unstable();
-        (!triangles.is_empty()).then_some(triangles)
+        next += 1;
     }
+    triangles.sort_unstable();
+    (!triangles.is_empty()).then_some(triangles)
 }
 
 /// Collapses until `target` triangles are left, or nothing can go any more, or the watcher says stop.
@@ -114,14 +101,26 @@ pub fn collapse_to(pictures: &mut Pictures, target: usize, watcher: &impl Watche
     if start <= target {
         return;
     }
-    let parts = Parts::new(&pictures.surface);
     let mut versions = vec![0u64; pictures.surface.points.len()];
-    let candidates: Vec<Candidate> = candidates(&pictures.surface, &parts);
+    let candidates: Vec<Candidate> = candidates(&pictures.surface);
     let mut queue: BinaryHeap<Entry> = evaluate(pictures, candidates, &versions).into_iter().collect();
+    // Parts with which more would go than is asked for; they go if nothing else can.
+    let mut too_large: Vec<Candidate> = Vec::new();
     while pictures.surface.count() > target && !watcher.stopped() {
-        let Some(top) = queue.pop() else { break };
+        let Some(top) = queue.pop() else {
+            let Some(part) = too_large.pop() else { break };
+            if let Some((change, _)) = best(pictures, &part, &mut Scratch::default()) {
+                pictures.apply(&change);
+            }
+            continue;
+        };
         if version(&pictures.surface, &top.candidate, &versions) == top.version {
             let Some((change, _)) = best(pictures, &top.candidate, &mut Scratch::default()) else { continue };
+            let excess = pictures.surface.count() - target;
+            if change.added.is_empty() && change.removed.len() > excess + 1 {
+                too_large.push(top.candidate);
+                continue;
+            }
             for point in
                 change.removed.iter().filter_map(|&t| pictures.surface.get(t)).flat_map(|t| t.corners)
             {
@@ -135,7 +134,7 @@ pub fn collapse_to(pictures: &mut Pictures, target: usize, watcher: &impl Watche
                 let fresh = pictures.surface.neighbours(point).into_iter();
                 let mut fresh: Vec<Candidate> =
                     fresh.map(|other| Candidate::Edge([point.min(other), point.max(other)])).collect();
-                if Parts::small(&pictures.surface, point).is_some() {
+                if small_part(&pictures.surface, point).is_some() {
                     fresh.push(Candidate::Part(point));
                 }
                 queue.extend(evaluate(pictures, fresh, &versions));
@@ -156,13 +155,10 @@ pub fn collapse_to(pictures: &mut Pictures, target: usize, watcher: &impl Watche
     }
 }
 
-fn candidates(surface: &Surface, parts: &Parts) -> Vec<Candidate> {
-    let mut out: Vec<Candidate> = surface.edges().into_iter().map(Candidate::Edge).collect();
-    let is_root =
-        |point: &u32| parts.of_point[*point as usize] == *point && !surface.around(*point).is_empty();
-    let roots = (0..surface.points.len() as u32).filter(is_root);
-    out.extend(roots.filter(|&root| Parts::small(surface, root).is_some()).map(Candidate::Part));
-    out
+fn candidates(surface: &Surface) -> Vec<Candidate> {
+    let edges = surface.edges().into_iter().map(Candidate::Edge);
+    let parts = parts(surface).into_iter().filter(|&part| small_part(surface, part).is_some());
+    edges.chain(parts.map(Candidate::Part)).collect()
 }
 
 /// Changes whenever a triangle around the candidate does.
@@ -170,7 +166,7 @@ fn version(surface: &Surface, candidate: &Candidate, versions: &[u64]) -> u64 {
     match candidate {
         Candidate::Edge([a, b]) => versions[*a as usize] + versions[*b as usize],
         Candidate::Part(point) => {
-            let triangles = Parts::small(surface, *point).unwrap_or_default();
+            let triangles = small_part(surface, *point).unwrap_or_default();
             let corners = triangles.iter().filter_map(|&t| surface.get(t)).flat_map(|t| t.corners);
             corners.map(|point| versions[point as usize]).sum()
         }
@@ -194,7 +190,7 @@ fn evaluate(pictures: &Pictures, candidates: Vec<Candidate>, versions: &[u64]) -
 fn best(pictures: &Pictures, candidate: &Candidate, scratch: &mut Scratch) -> Option<(Change, f64)> {
     let surface = &pictures.surface;
     let changes: Vec<Change> = match candidate {
-        Candidate::Part(point) => vec![Change::removal(Parts::small(surface, *point)?)],
+        Candidate::Part(point) => vec![Change::removal(small_part(surface, *point)?)],
         Candidate::Edge([a, b]) => {
             let places = places(surface, *a, *b);
             places.into_iter().filter_map(|place| Change::collapse(surface, *b, *a, place)).collect()

@@ -20,9 +20,7 @@ use rayon::prelude::*;
 
 /// Pixels along a side of a tile.
 const TILE: usize = 4;
-/// Of several changes so many are looked at in all views.
-const LOOKED_AT: usize = 1;
-/// The others are ruled out by one view in so many.
+/// Of several changes the best is guessed from one view in so many.
 const GUESSED_FROM: usize = 4;
 /// A pixel that was looked at; less than any nearness.
 const DONE: f32 = -1.0;
@@ -93,44 +91,37 @@ impl<'a> Pictures<'a> {
         -sum * every as f64 / self.pixels()
     }
 
-    /// The change that gains most, with its gain. Where there are several, most of them are ruled out by a few views.
+    /// The change that gains most, with its gain. Where there are several, a few views rule out all but one.
     pub fn best_of(
         &self,
         changes: impl Iterator<Item = Change>,
         scratch: &mut Scratch,
     ) -> Option<(f64, Change)> {
         let mut changes: Vec<(f64, Change)> = changes.map(|change| (0.0, change)).collect();
-        if changes.len() > LOOKED_AT {
+        if changes.len() > 1 {
             changes.iter_mut().for_each(|(gain, change)| *gain = self.gain_in(GUESSED_FROM, change, scratch));
-            changes.sort_by(|a, b| b.0.total_cmp(&a.0));
-            changes.truncate(LOOKED_AT);
         }
-        let gains = changes.into_iter().map(|(_, change)| (self.gain_of(&change, scratch), change));
-        gains.max_by(|a, b| a.0.total_cmp(&b.0))
+        let (_, best) = changes.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some((self.gain_of(&best, scratch), best))
     }
 
     /// Makes a change.
     pub fn apply(&mut self, change: &Change) {
-        let before = change
-            .removed
-            .iter()
-            .filter_map(|&t| Some((t, self.surface.get(t)?.corners)))
-            .collect::<Vec<_>>();
+        let removed = change.removed.iter().filter_map(|&t| Some((t, self.surface.get(t)?.corners)));
+        let removed: Vec<_> = removed.collect();
         let added = self.surface.apply(change);
         let surface = &self.surface;
         let views = self.views.par_iter_mut().zip(self.targets);
-        views.for_each(|(view, target)| view.update(target, surface, &before, &added, change.moved));
+        views.for_each(|(view, target)| view.update(target, surface, &removed, &added, change.moved));
     }
 
-    /// Sum of the errors of the pixels at which each triangle is seen, by the triangles' indices, and the number of
-    /// those pixels.
-    pub fn errors_by_triangle(&self) -> Vec<(f64, usize)> {
-        let mut out = vec![(0.0, 0); self.surface.indices()];
-        for (view, target) in self.views.iter().zip(self.targets) {
-            for (pixel, &triangle) in view.triangle.iter().enumerate() {
-                if let Some(sum) = out.get_mut(triangle as usize) {
-                    sum.0 += f64::from(target.pixels[pixel].error(view.nearness[pixel]));
-                    sum.1 += 1;
+    /// Sum of the errors of the pixels at which each triangle is seen, by the triangles' indices.
+    pub fn errors_by_triangle(&self) -> Vec<f64> {
+        let mut out = vec![0.0; self.surface.indices()];
+        for view in &self.views {
+            for (&triangle, &error) in view.triangle.iter().zip(&view.errors) {
+                if triangle != NOTHING {
+                    out[triangle as usize] += f64::from(error);
                 }
             }
         }

@@ -191,7 +191,7 @@ fn moves(surface: &Surface, point: u32, step: f32, sweep: u64) -> Vec<Change> {
     places.chain(meet).filter_map(|place| Change::shift(surface, point, place)).collect()
 }
 
-/// Splits the edges that gain most, each far enough from the others.
+/// Splits the edges from which most is to be hoped, until at least `count` triangles came.
 fn split_worst(pictures: &mut Pictures, high: &HighPoly, count: usize) {
     let edges = pictures.surface.edges();
     let trials = |surface: &Surface, &[a, b]: &[u32; 2]| -> Vec<Change> {
@@ -215,7 +215,7 @@ fn split_worst(pictures: &mut Pictures, high: &HighPoly, count: usize) {
         .map_init(Scratch::default, |scratch, (index, edge)| {
             let (gain, change) = best(edge, pictures, scratch)?;
             // What is wrong there may be mended once the new point has moved.
-            let hope: f64 = change.removed.iter().map(|&t| errors[t as usize].0).sum();
+            let hope: f64 = change.removed.iter().map(|&t| errors[t as usize]).sum();
             Some((gain + 0.1 * hope / pictures.pixels(), index))
         })
         .flatten()

@@ -1,11 +1,10 @@
-//! Surfaces to begin with: coarse, but with several times the wanted triangles, made in ways that suit different
-//! models (meshoptimizer, A. Kapoulkine).
+//! Surfaces to begin with: coarse, but with several times the wanted triangles (meshoptimizer, A. Kapoulkine).
 //!
 //! Contract: positions only; welded, without texture coordinates, so that no seam is in the way. The layout is made
 //! anew for the result.
 
 use crate::surface::Surface;
-use meshopt::{RemeshOptions, SimplifyOptions as Flags};
+use meshopt::SimplifyOptions as Flags;
 use parbake_model::Mesh;
 use parbake_model::glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -16,24 +15,8 @@ use serde::{Deserialize, Serialize};
 pub enum Start {
     /// Edges of the model collapse, positions follow the quadrics (Garland and Heckbert 1997).
     Quadrics,
-    /// A closed surface around the model's voxels: parts are merged, what is inside is gone.
-    Remesh,
-    /// The same, from both sides of open sheets.
-    Shell,
     /// The level before.
     Level,
-}
-
-impl Start {
-    /// What to call it.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Quadrics => "edge collapses",
-            Self::Remesh => "remeshed, closed",
-            Self::Shell => "remeshed, two-sided",
-            Self::Level => "the level before",
-        }
-    }
 }
 
 /// Edge collapses down to about `target` triangles, in halvings: one shot at a large reduction is worse.
@@ -72,16 +55,6 @@ pub fn triangles_within(mesh: &Mesh, distance: f32) -> usize {
     let indices: Vec<u32> = surface.triangles.iter().flatten().copied().collect();
     let flags = Flags::Prune | Flags::ErrorAbsolute;
     meshopt::simplify_decoder(&indices, &positions, 0, distance, flags, None).len() / 3
-}
-
-/// A closed or two-sided surface of `resolution` voxels along the longest side.
-pub fn remeshed(mesh: &Mesh, resolution: usize, is_shell: bool) -> Mesh {
-    let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|p| p.to_array()).collect();
-    let indices: Vec<u32> = mesh.triangles.iter().flatten().copied().collect();
-    let flags = RemeshOptions::Solve | if is_shell { RemeshOptions::Shell } else { RemeshOptions::None };
-    let corners = meshopt::remesh_decoder(&indices, &positions, resolution.clamp(4, 256) as u32, flags);
-    let indices: Vec<u32> = (0..corners.len() as u32).collect();
-    assembled(&corners, &indices, |_| 0)
 }
 
 /// Vertices with their materials: one at the border of two materials is its first one's, so that the surface stays

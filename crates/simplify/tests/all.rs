@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use parbake_image::display::{Curve, Display};
-use parbake_model::{Material, Mesh, Model};
+use parbake_model::{AlphaMode, Material, Mesh, Model};
 use parbake_render::camera::Projection;
 use parbake_render::interpretation::Interpretation;
 use parbake_simplify::change::Change;
@@ -16,6 +16,17 @@ use parbake_views::high_poly::{Conventions, HighPoly};
 use parbake_views::pool::{Rig, view_pool};
 
 const RIG: Rig = Rig { radius: 3.5, projection: Projection::Perspective(0.4) };
+
+/// A sphere within another one, which has the next material.
+fn nested(outer: usize, inner: usize) -> Mesh {
+    let (mut mesh, inner) = (sphere(outer), sphere(inner));
+    let first = mesh.positions.len() as u32;
+    mesh.positions.extend(inner.positions.iter().map(|p| 0.3 * *p));
+    mesh.triangles.extend(inner.triangles.iter().map(|t| t.map(|v| v + first)));
+    mesh.triangle_materials.fill(1);
+    mesh.triangle_materials.resize(mesh.triangles.len(), 0);
+    mesh
+}
 
 /// A sphere of `rows` × 2 `rows` quadrilaterals, around +Y.
 fn sphere(rows: usize) -> Mesh {
@@ -45,7 +56,11 @@ fn sphere(rows: usize) -> Mesh {
 }
 
 fn prepared(mesh: Mesh) -> HighPoly {
-    let model = Model { name: "high".into(), mesh, materials: vec![Material::default()], images: Vec::new() };
+    prepared_of(mesh, vec![Material::default()])
+}
+
+fn prepared_of(mesh: Mesh, materials: Vec<Material>) -> HighPoly {
+    let model = Model { name: "high".into(), mesh, materials, images: Vec::new() };
     let conventions = Conventions {
         interpretation: Interpretation { decode_srgb: true, trilinear: true, parallax: true },
         display: Display { gain: 1.0, curve: Curve::Srgb },
@@ -110,12 +125,8 @@ fn closed_surfaces_stay_closed() {
 /// Protects budgets from what is hidden: of a sphere within another one little is left.
 #[test]
 fn what_is_never_seen_goes_first() {
-    let mut mesh = sphere(10);
-    let inner = sphere(6);
-    let first = mesh.positions.len() as u32;
-    mesh.positions.extend(inner.positions.iter().map(|p| 0.3 * *p));
-    mesh.triangles.extend(inner.triangles.iter().map(|t| t.map(|v| v + first)));
-    mesh.triangle_materials.resize(mesh.triangles.len(), 0);
+    let mut mesh = nested(10, 6);
+    mesh.triangle_materials.fill(0);
     let high = prepared(mesh.clone());
     let targets = targets(&high, 8, 48);
     let mut pictures = Pictures::new(&targets, Surface::new(&mesh));
@@ -123,7 +134,7 @@ fn what_is_never_seen_goes_first() {
     collapse_to(&mut pictures, sphere(10).triangles.len(), &());
     let left = pictures.surface.to_mesh().positions.iter().filter(|p| p.length() < 0.9).count();
     // Triangles at the poles of the outer one are too small to be seen as well.
-    assert!(3 * left < Surface::new(&inner).points.len(), "{left} points of the inner one are left");
+    assert!(3 * left < Surface::new(&sphere(6)).points.len(), "{left} points of the inner one are left");
     assert!(pictures.error() <= error + 1e-6);
 }
 
@@ -150,10 +161,38 @@ fn chosen_triangles_fit_and_are_the_same_for_any_threads() {
     let (one, three) = (on(1), on(3));
     assert_eq!(one.mesh, three.mesh);
     assert!(one.mesh.triangles.len() <= 96 && one.mesh.triangles.len() >= 94);
-    assert!(one.error <= one.starts[0].error);
+    let [layer] = &one.layers[..] else { panic!("one layer") };
+    assert!(layer.error[1] < layer.error[0]);
     let test = targets(&high, 10, 96);
     let error = |mesh: &Mesh| Pictures::new(&test, Surface::new(mesh)).error();
     let even = sphere(5);
     assert!(even.triangles.len() >= 80);
     assert!(error(&one.mesh) < 0.6 * error(&even), "{} {}", error(&one.mesh), error(&even));
+}
+
+/// Protects what is behind glass: it is a layer of its own and keeps its share, though the pane is before it from
+/// every side.
+#[test]
+fn what_is_behind_glass_is_kept() {
+    let mesh = nested(10, 8);
+    let glass = Material { alpha_mode: AlphaMode::Blend, ..Material::default() };
+    let high = prepared_of(mesh, vec![Material::default(), glass]);
+    let options = ChooseOptions {
+        triangles: 120,
+        room: 2,
+        views: 6,
+        view_size: 48,
+        polish: PolishOptions { rounds: 0, sweeps: 1, ..PolishOptions::default() },
+        seed: 0,
+    };
+    let chosen = choose_triangles(&high, None, &options, &());
+    let is_inner = |t: &&[u32; 3]| t.iter().all(|&v| chosen.mesh.positions[v as usize].length() < 0.6);
+    let inner = chosen.mesh.triangles.iter().filter(is_inner).count();
+    assert!(
+        inner >= 12 && chosen.mesh.triangles.len() > inner + 24,
+        "{inner} of {}",
+        chosen.mesh.triangles.len()
+    );
+    assert!(chosen.mesh.triangles.len() <= 120);
+    assert_eq!(chosen.layers.len(), 2);
 }

@@ -18,11 +18,12 @@ pub mod switch;
 
 use crate::bake::{Baked, bake_as, prepare_high_poly};
 use crate::error::BakeError;
-use crate::low_poly::{LowPolyReport, low_poly};
+use crate::low_poly::low_poly;
 use crate::report::Work;
 use options::LodOptions;
 use parbake_model::Model;
 use parbake_progress::Watcher;
+use parbake_simplify::LayerReport;
 use parbake_simplify::start::triangles_within;
 use parbake_views::high_poly::HighPoly;
 use serde::{Deserialize, Serialize};
@@ -37,7 +38,7 @@ pub struct Level {
     pub report: LevelReport,
 }
 
-/// What there is to say of a level.
+/// What `lods.json` holds of a level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelReport {
     /// Its place in the chain; 0 is the finest.
@@ -52,8 +53,8 @@ pub struct LevelReport {
     pub texels: usize,
     /// Draw calls: one for each material.
     pub draw_calls: usize,
-    /// How its triangles were found.
-    pub low_poly: LowPolyReport,
+    /// How the triangles of each layer (opaque, cut out, blended, transmitting) were found.
+    pub low_poly: Vec<LayerReport>,
     /// Against the original, at the size that it was made for.
     pub at_screen_size: AtSize,
     /// Pixels that the model spans below which this level cannot be told from the one before, nor from the
@@ -86,14 +87,15 @@ pub fn make_levels<E: From<BakeError>>(
     let mut before: Option<(Model, switch::Subject)> = None;
     let mut count = 0;
     for (index, &screen_size) in options.screen_size.iter().enumerate() {
-        if watcher.stopped() && index > 0 {
-            break;
-        }
         let begin = std::time::Instant::now();
         let most = before.as_ref().map_or(high.triangles, |(low, _)| low.mesh.triangles.len());
         let wanted = wanted_triangles(&high, options, index, screen_size).min(most);
         let finer = before.as_ref().map(|(low, _)| low);
         let (low, found) = low_poly(&high, model, finer, wanted, options.preset, watcher);
+        if watcher.stopped() {
+            // There may be too many triangles still.
+            break;
+        }
         let chosen = begin.elapsed().as_secs_f64();
         let texture_size = texture_size(&high, &low, screen_size, options.most_texels);
         let baked = bake_as(Work::Level, &high, &low, &options.bake(texture_size), watcher)?;
