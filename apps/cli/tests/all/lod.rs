@@ -39,7 +39,7 @@ fn a_chain_is_written_for_engines() {
     assert_eq!(all["nodes"][0]["extensions"]["MSFT_lod"]["ids"], serde_json::json!([1]));
     assert_eq!(all["extensionsUsed"], serde_json::json!(["MSFT_lod"]));
     let coverages = &all["nodes"][0]["extras"]["MSFT_screencoverage"];
-    assert_eq!(coverages[0], told[0]["least_coverage"]);
+    assert_eq!(coverages[0], told[0]["min_coverage"]);
     assert_eq!((coverages[1].as_f64(), coverages[2].as_f64()), (Some(0.0), None));
     assert!(lods.join("parbake_lods.js").exists());
     // The file with all levels shows the finest to readers that know no levels.

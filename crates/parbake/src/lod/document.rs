@@ -23,15 +23,15 @@ pub struct LodDocument {
     /// Triangles of the original.
     pub source_triangles: usize,
     /// Length of the model's longest side in the files' unit.
-    pub length: f64,
+    pub longest_side: f64,
     /// Centre of the model's box in the files' unit.
     pub centre: [f32; 3],
     /// Radius of the sphere around that box.
     pub radius: f64,
     /// Height in pixels of the screen that coverages are shares of.
-    pub viewport: f64,
+    pub viewport_height: f64,
     /// PSNR in dB from which on a level cannot be told from the one before.
-    pub same: f64,
+    pub switch_psnr: f64,
     /// The file that holds all levels, with `MSFT_lod`.
     pub all_levels: String,
     /// From fine to coarse.
@@ -47,7 +47,7 @@ pub struct LodEntry {
     pub bytes: u64,
     /// The least share of the screen's height at which it is shown: the one at which the next level takes over, 0
     /// for the last.
-    pub least_coverage: f64,
+    pub min_coverage: f64,
     /// PSNR, MS-SSIM and FLIP against the original where the next level takes over; none for the last.
     pub at_switch: Option<AtSize>,
     /// All else.
@@ -71,7 +71,7 @@ impl LodDocument {
         let entry = |(index, (file, bytes, report)): (usize, (String, u64, LevelReport))| LodEntry {
             file,
             bytes,
-            least_coverage: coverages[index],
+            min_coverage: coverages[index],
             at_switch: switches.get(index).copied().flatten(),
             report,
         };
@@ -79,11 +79,11 @@ impl LodDocument {
             version: VERSION,
             name: model.name.clone(),
             source_triangles: model.mesh.triangles.len(),
-            length: f64::from(size.max_element()),
+            longest_side: f64::from(size.max_element()),
             centre: centre.to_array(),
             radius: f64::from(0.5 * size.length()),
-            viewport: options.viewport,
-            same: options.same,
+            viewport_height: options.viewport_height,
+            switch_psnr: options.switch_psnr,
             all_levels,
             levels: levels.into_iter().enumerate().map(entry).collect(),
         }
@@ -96,7 +96,7 @@ impl LodDocument {
 pub fn coverages(levels: &[LevelReport]) -> Vec<f64> {
     let mut out: Vec<f64> = Vec::new();
     for next in levels.iter().skip(1) {
-        let own = next.switch_coverage.unwrap_or(LEAST_COVERAGE);
+        let own = next.switch_coverage.unwrap_or(MIN_COVERAGE);
         // Sizes descend, whatever was measured.
         let most = out.last().map_or(1.0, |last: &f64| 0.95 * last);
         out.push(own.min(most));
@@ -106,4 +106,4 @@ pub fn coverages(levels: &[LevelReport]) -> Vec<f64> {
 }
 
 /// Where nothing that was measured says when to switch.
-const LEAST_COVERAGE: f64 = 0.005;
+const MIN_COVERAGE: f64 = 0.005;

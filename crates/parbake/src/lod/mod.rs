@@ -81,7 +81,7 @@ pub fn make_levels<E: From<BakeError>>(
     mut on_level: impl FnMut(Level) -> Result<(), E>,
 ) -> Result<usize, E> {
     options.check()?;
-    let high = prepare_high_poly(model, &options.bake(options.most_texels))?;
+    let high = prepare_high_poly(model, &options.bake(options.max_texture_size))?;
     let lineup = Lineup::new(model, options.shading);
     let original = lineup.subject(model)?;
     let mut before: Option<(Model, switch::Subject)> = None;
@@ -97,7 +97,7 @@ pub fn make_levels<E: From<BakeError>>(
             break;
         }
         let chosen = begin.elapsed().as_secs_f64();
-        let texture_size = texture_size(&high, &low, screen_size, options.most_texels);
+        let texture_size = texture_size(&high, &low, screen_size, options.max_texture_size);
         let baked = bake_as(Work::Level, &high, &low, &options.bake(texture_size), watcher)?;
         let finished = begin.elapsed().as_secs_f64();
 
@@ -105,7 +105,7 @@ pub fn make_levels<E: From<BakeError>>(
         let at_screen_size = lineup.compare(&original, &subject, screen_size, true)?;
         let others = [Some(&original), before.as_ref().map(|(_, subject)| subject)];
         let others: Vec<_> = others.into_iter().flatten().collect();
-        let switch_pixels = lineup.largest_same(&subject, &others, screen_size, options.same)?;
+        let switch_pixels = lineup.largest_same(&subject, &others, screen_size, options.switch_psnr)?;
         let last = others[others.len() - 1];
         let against_before = switch_pixels.map(|pixels| lineup.compare(last, &subject, pixels, true));
         let report = LevelReport {
@@ -118,7 +118,7 @@ pub fn make_levels<E: From<BakeError>>(
             low_poly: found,
             at_screen_size,
             switch_pixels,
-            switch_coverage: switch_pixels.map(|pixels| (pixels / options.viewport).min(1.0)),
+            switch_coverage: switch_pixels.map(|pixels| (pixels / options.viewport_height).min(1.0)),
             against_before: against_before.transpose()?,
             seconds: [chosen, finished - chosen, begin.elapsed().as_secs_f64() - finished],
         };

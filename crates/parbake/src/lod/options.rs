@@ -34,15 +34,15 @@ pub struct LodOptions {
     /// a texel for each pixel
     #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 2048, value_parser = crate::texels::parse_texels, help_heading = LEVELS))]
     #[serde(deserialize_with = "crate::texels::texels")]
-    pub most_texels: usize,
+    pub max_texture_size: usize,
 
     /// PSNR in dB from which on a level cannot be told from the one before, 10 to 60; says where levels switch
     #[cfg_attr(feature = "clap", arg(long, value_name = "DECIBELS", default_value_t = 35.0, help_heading = LEVELS))]
-    pub same: f64,
+    pub switch_psnr: f64,
 
     /// Height in pixels of the screen that coverages are shares of, 100 to 100000
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", default_value_t = 1080.0, help_heading = LEVELS))]
-    pub viewport: f64,
+    pub viewport_height: f64,
 
     /// Trades time for quality
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Preset::Fast, help_heading = heading::QUALITY))]
@@ -81,9 +81,9 @@ impl Default for LodOptions {
             triangles: Vec::new(),
             ratio: Vec::new(),
             error: 0.25,
-            most_texels: 2048,
-            same: 35.0,
-            viewport: 1080.0,
+            max_texture_size: 2048,
+            switch_psnr: 35.0,
+            viewport_height: 1080.0,
             preset: Preset::Fast,
             shading: Shading::Auto,
             write: WriteOptions::default(),
@@ -131,16 +131,16 @@ impl LodOptions {
         }
         let ranges = [
             ("error", self.error, 0.01, 10.0),
-            ("most-texels", self.most_texels as f64, 16.0, 8192.0),
-            ("same", self.same, 10.0, 60.0),
-            ("viewport", self.viewport, 100.0, 1e5),
+            ("max-texture-size", self.max_texture_size as f64, 16.0, 8192.0),
+            ("switch-psnr", self.switch_psnr, 10.0, 60.0),
+            ("viewport-height", self.viewport_height, 100.0, 1e5),
         ];
         for (option, value, low, high) in ranges {
             if !(low..=high).contains(&value) {
                 return refuse(option, value.to_string(), &format!("{low} to {high}"));
             }
         }
-        self.bake(self.most_texels).check()
+        self.bake(self.max_texture_size).check()
     }
 
     /// The options of a level's bake.

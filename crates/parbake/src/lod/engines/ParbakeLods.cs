@@ -12,7 +12,7 @@ public class ParbakeLods : AssetPostprocessor
     class Level
     {
         public string file;
-        public float least_coverage;
+        public float min_coverage;
     }
 
     [System.Serializable]
@@ -42,10 +42,10 @@ public class ParbakeLods : AssetPostprocessor
             if (asset == null)
             {
                 Debug.LogError("Parbake: " + folder + "/" + level.file + " was not imported; is there a glTF importer?");
-                return new LOD(level.least_coverage, new Renderer[0]);
+                return new LOD(level.min_coverage, new Renderer[0]);
             }
             var instance = (GameObject)PrefabUtility.InstantiatePrefab(asset, root.transform);
-            return new LOD(level.least_coverage, instance.GetComponentsInChildren<Renderer>());
+            return new LOD(level.min_coverage, instance.GetComponentsInChildren<Renderer>());
         }).ToArray();
         root.AddComponent<LODGroup>().SetLODs(lods);
         root.GetComponent<LODGroup>().RecalculateBounds();

@@ -38,7 +38,7 @@ def main():
     for index, mesh in enumerate(meshes[1:], 1):
         editor.set_lod_from_static_mesh(first, index, mesh, 0, True)
     # A screen size is the level's upper end: that of the first is 1.
-    sizes = [1.0] + [level["least_coverage"] for level in chain["levels"][:-1]]
+    sizes = [1.0] + [level["min_coverage"] for level in chain["levels"][:-1]]
     editor.set_lod_screen_sizes(first, sizes)
     unreal.EditorAssetLibrary.save_loaded_asset(first)
     unreal.log("Parbake: %s has %d levels" % (first.get_path_name(), len(meshes)))

@@ -23,7 +23,7 @@ func _ready() -> void:
 		if scene == null:
 			push_error("Parbake: %s was not imported" % file)
 			return
-		var end := _distance(chain["length"], level["least_coverage"])
+		var end := _distance(chain["longest_side"], level["min_coverage"])
 		var instance := scene.instantiate()
 		add_child(instance)
 		for mesh: GeometryInstance3D in instance.find_children("*", "GeometryInstance3D", true, false):

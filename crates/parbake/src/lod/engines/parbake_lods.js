@@ -29,7 +29,7 @@ export async function loadLods(url, { camera, loader = new GLTFLoader(), hystere
   let distance = 0;
   scenes.forEach((scene, index) => {
     lod.addLevel(scene, distance, hysteresis);
-    distance = chain.length / (chain.levels[index].least_coverage * slope);
+    distance = chain.longest_side / (chain.levels[index].min_coverage * slope);
   });
   return lod;
 }

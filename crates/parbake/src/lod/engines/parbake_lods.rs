@@ -23,7 +23,7 @@ impl Plugin for ParbakeLodsPlugin {
 /// A chain of levels; they become children.
 #[derive(Component, Deserialize)]
 pub struct Lods {
-    length: f32,
+    longest_side: f32,
     levels: Vec<Level>,
     /// The files' folder within the assets.
     #[serde(skip)]
@@ -36,7 +36,7 @@ pub struct Lods {
 #[derive(Deserialize)]
 struct Level {
     file: String,
-    least_coverage: f32,
+    min_coverage: f32,
 }
 
 /// The range of a level, until its meshes are there.
@@ -53,8 +53,8 @@ impl Lods {
 
     /// The distance at which a level ends.
     fn end(&self, level: &Level) -> f32 {
-        if level.least_coverage <= 0.0 { return f32::MAX };
-        self.length / (2.0 * level.least_coverage * (0.5 * self.field_of_view).tan())
+        if level.min_coverage <= 0.0 { return f32::MAX };
+        self.longest_side / (2.0 * level.min_coverage * (0.5 * self.field_of_view).tan())
     }
 }
 
