@@ -52,9 +52,10 @@ fn layer_only(material: &Material) -> Material {
 fn choose_options(triangles: usize, preset: Preset) -> ChooseOptions {
     let own = PolishOptions::default();
     let (room, views, view_size, rounds, sweeps) = match triangles {
-        0..=150 => (3, 48, 128, own.rounds, own.sweeps),
-        151..=400 => (3, 40, 128, own.rounds / 2, own.sweeps),
-        401..=1000 => (2, 24, 160, 1, 1),
+        0..=150 => (3, 64, 128, 2 * own.rounds, own.sweeps),
+        151..=400 => (3, 48, 128, own.rounds, own.sweeps),
+        401..=1000 => (3, 32, 160, own.rounds / 2, own.sweeps),
+        1001..=2500 => (2, 24, 192, own.rounds / 4, 1),
         _ => (1, 16, 160, 0, 0),
     };
     let rounds = match preset {
