@@ -2,7 +2,12 @@
 
 use crate::rules::{NOT_IN_COMPRESS, WITH_NORMAL_MAPS};
 use clap::{Args, Command as Clap, CommandFactory, Parser, Subcommand, ValueEnum};
-use parbake::{BakeOptions, EvaluateOptions, ImageOptions, WriteOptions, parse_texels};
+use parbake::lod::layout::Layout;
+use parbake::{
+    BakeOptions, EvaluateOptions, ImageOptions, LodOptions, RaycastOptions, StatsOptions, WriteOptions,
+    parse_texels,
+};
+use parbake_batch::BatchOptions;
 use parbake_report::TurntableOptions;
 use parbake_reproduce::ReproduceOptions;
 use parbake_reproduce::variants::VariantsOptions;
@@ -65,6 +70,10 @@ pub struct Arguments {
 pub enum Command {
     /// Bake a high-poly's appearance onto a low-poly
     Bake(BakeCommand),
+    /// Make levels of detail of a single model
+    Lod(LodCommand),
+    /// Bake by rays alone: materials, normals, occlusion, curvature, …
+    Raycast(RaycastCommand),
     /// Shrink a model's texture
     Compress(CompressCommand),
     /// Make a plane that shows a picture with a smaller texture
@@ -85,6 +94,13 @@ pub enum Command {
     Check(CheckCommand),
     /// Write a coarser copy of a model, which keeps its UVs
     Simplify(SimplifyCommand),
+    /// Print a model's figures: topology, UVs, textures, draw calls; and its distance to another model
+    Stats(StatsCommand),
+    /// Run many jobs, from a file or on a folder of models, and go on where it was stopped
+    Batch(BatchCommand),
+    /// Take a small picture of a model, for the page of a batch
+    #[command(hide = true)]
+    Thumbnail(ThumbnailCommand),
 }
 
 /// What is told while running.
@@ -113,8 +129,13 @@ pub struct BakeCommand {
     /// The high-poly: .obj, .gltf or .glb
     pub high: PathBuf,
 
-    /// The low-poly: .obj, .gltf or .glb; missing UVs are made
-    pub low: PathBuf,
+    /// The low-poly: .obj, .gltf or .glb; missing UVs are made. Left out with --triangles
+    #[arg(required_unless_present = "triangles")]
+    pub low: Option<PathBuf>,
+
+    /// Make the low-poly, of at most so many triangles, 4 or more
+    #[arg(short, long, value_name = "COUNT", conflicts_with = "low", value_parser = clap::value_parser!(u32).range(4..))]
+    pub triangles: Option<u32>,
 
     /// File to write: .glb, or .obj with .mtl and .png beside it
     #[arg(short, long, value_name = "FILE", default_value = "baked.glb", help_heading = IO)]
@@ -139,6 +160,76 @@ pub struct BakeCommand {
     /// How to bake
     #[command(flatten)]
     pub bake: BakeOptions,
+
+    /// What to read
+    #[command(flatten, next_help_heading = IO)]
+    pub reading: Reading,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = IO)]
+    pub talk: Talk,
+}
+
+/// Arguments of `lod`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Each level is written as soon as it is finished. Ctrl-C keeps those that are. lods.json says for each level \
+how many triangles, texels and bytes it has, what it looks like at its size, and below which size on screen it cannot \
+be told from the one before."
+)]
+pub struct LodCommand {
+    /// The model: .obj, .gltf or .glb
+    pub model: PathBuf,
+
+    /// Folder to write the levels, a file with all of them, and lods.json to
+    #[arg(short, long, value_name = "FOLDER", default_value = "lods", help_heading = IO)]
+    pub output: PathBuf,
+
+    /// Engine whose names and helper files are written
+    #[arg(long, value_enum, default_value_t = Layout::Files, help_heading = IO)]
+    pub layout: Layout,
+
+    /// How to make them
+    #[command(flatten)]
+    pub lod: LodOptions,
+
+    /// What to read
+    #[command(flatten, next_help_heading = IO)]
+    pub reading: Reading,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = IO)]
+    pub talk: Talk,
+}
+
+/// Arguments of `raycast`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "The classical bake: rays from the low-poly to the high-poly, nothing is fitted. Base colour, normals and all \
+other maps of the materials go into the output; maps of shape are files beside it (docs/raycast.md)."
+)]
+pub struct RaycastCommand {
+    /// The high-poly: .obj, .gltf or .glb
+    pub high: PathBuf,
+
+    /// The low-poly: .obj, .gltf or .glb; missing UVs are made
+    pub low: PathBuf,
+
+    /// File to write: .glb, or .obj with .mtl and .png beside it
+    #[arg(short, long, value_name = "FILE", default_value = "baked.glb", help_heading = IO)]
+    pub output: PathBuf,
+
+    /// Write the figures of the run as JSON to this .json file, or to standard output for "-"
+    #[arg(long, value_name = "FILE", help_heading = IO)]
+    pub json: Option<PathBuf>,
+
+    /// Fail if a texture or material that a model names is missing, instead of warning
+    #[arg(long, help_heading = IO)]
+    pub strict: bool,
+
+    /// How to bake
+    #[command(flatten)]
+    pub raycast: RaycastOptions,
 
     /// What to read
     #[command(flatten, next_help_heading = IO)]
@@ -480,5 +571,88 @@ pub struct SimplifyCommand {
 
     /// What to tell
     #[command(flatten, next_help_heading = IO)]
+    pub talk: Talk,
+}
+
+/// Arguments of `stats`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Topology is that of the surface welded by position. Distances are measured from points on each surface to \
+the other surface, both in the unit of the files and as a share of the first model's bounding box diagonal: Chamfer is the mean \
+of both ways' mean distance, Hausdorff the greatest of both ways."
+)]
+pub struct StatsCommand {
+    /// The model: .obj, .gltf or .glb
+    pub model: PathBuf,
+
+    /// Another model: its figures beside the first one's, and the distance between both
+    #[arg(long, value_name = "OTHER")]
+    pub against: Option<PathBuf>,
+
+    /// Write the figures as JSON to this .json file, or to standard output for "-"
+    #[arg(long, value_name = "FILE", help_heading = IO)]
+    pub json: Option<PathBuf>,
+
+    /// How to measure
+    #[command(flatten)]
+    pub stats: StatsOptions,
+
+    /// What to read
+    #[command(flatten, next_help_heading = IO)]
+    pub reading: Reading,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = IO)]
+    pub talk: Talk,
+}
+
+/// Arguments of `batch`.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "A jobs file has [[job]] entries with command, inputs, and options or arguments; docs/batch.md describes it. For a \
+folder, options of the command come after --: parbake batch models --command compress -- --preset fast. Each job is a process \
+of its own with a folder of its own in the output folder. Run the same command again to go on after a stop; what is \
+finished and has not changed is kept. The exit code is 1 if a job failed."
+)]
+pub struct BatchCommand {
+    /// The jobs file (.toml), or a folder of models
+    pub jobs: PathBuf,
+
+    /// The command to run on each model of a folder: compress, simplify, stats, …
+    #[arg(long, value_name = "COMMAND")]
+    pub command: Option<String>,
+
+    /// Options of that command, after --
+    #[arg(last = true, value_name = "OPTIONS")]
+    pub arguments: Vec<String>,
+
+    /// Folder for results and batch.html [default: what the jobs file says, else batch]
+    #[arg(short, long, value_name = "FOLDER", help_heading = IO)]
+    pub output: Option<PathBuf>,
+
+    /// Run nothing, but write a job template of Open Job Description for a render farm to this .json file
+    #[arg(long, value_name = "FILE", help_heading = IO)]
+    pub openjd: Option<PathBuf>,
+
+    /// How to run
+    #[command(flatten)]
+    pub batch: BatchOptions,
+
+    /// What to tell
+    #[command(flatten, next_help_heading = IO)]
+    pub talk: Talk,
+}
+
+/// Arguments of `thumbnail`.
+#[derive(Args, Debug)]
+pub struct ThumbnailCommand {
+    /// The model
+    pub model: PathBuf,
+
+    /// The picture to write: .png
+    pub picture: PathBuf,
+
+    /// What to tell
+    #[command(flatten)]
     pub talk: Talk,
 }

@@ -11,8 +11,8 @@ use crate::rules;
 use clap::ArgMatches;
 use parbake::{
     BakeOptions, BakeReport, Baked, Comparison, Convention, Detail, Loaded, Message, Model, NormalY, Shading,
-    Stage, StageTime, Warning, WarningKind, Watcher, Work, bake, check_budget, compare_bake, read_model,
-    with_normal_y, with_threads, write_file,
+    Stage, StageTime, Warning, WarningKind, Watcher, Work, bake, bake_to_triangles, check_budget,
+    compare_bake, read_model, with_normal_y, with_threads, write_file,
 };
 use parbake_report::html_report;
 use std::io::Write;
@@ -25,7 +25,9 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
     rules::check(Work::Bake, &options, given, file)?;
     options.check()?;
     check_budget(&options)?;
-    let (output, inputs) = (&command.output, [command.high.as_path(), command.low.as_path()]);
+    let inputs: Vec<&Path> =
+        [Some(&command.high), command.low.as_ref()].into_iter().flatten().map(|p| p.as_path()).collect();
+    let output = &command.output;
     check_maps(output, &options)?;
     check_output(output)?;
     check_formats(output, &options.write)?;
@@ -33,18 +35,28 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
     check_beside(Some(output), command.json.as_ref(), command.report.as_ref(), &inputs)?;
     let console = Console::for_bake(command.talk, options.time_budget).confined(command.reading);
     with_threads(options.threads, || {
-        let pair = read_pair(&command.high, &command.low, &console)?;
+        let pair = match &command.low {
+            Some(low) => read_pair(&command.high, low, &console)?,
+            None => read_high(&command.high, &console)?,
+        };
         if command.strict {
             check_textures(&pair.warnings)?;
         }
-        let mut baked = bake_and_write(&pair, &options, output, &console)?;
+        let mut baked = match command.triangles {
+            None => bake_and_write(&pair, &options, output, &console)?,
+            Some(count) => {
+                let baked = bake_to_triangles(&pair.high, count as usize, &options, &console)?;
+                finish(baked, &pair, &options, output, &console)?
+            }
+        };
         if !command.talk.quiet || command.json.is_some() || command.report.is_some() {
             let (flip, channels) =
                 (command.report.is_some(), command.report.is_some() || command.json.is_some());
             compare(&pair.high, &mut baked, Detail { flip, channels }, &console)?;
         }
         if let Some(path) = &command.json {
-            let files = [("high", command.high.as_path()), ("low", command.low.as_path())];
+            let names = ["high", "low"].into_iter();
+            let files: Vec<(&str, &Path)> = names.zip(inputs.iter().copied()).collect();
             let about = ("bake", &files[..], Some(command.output.as_path()));
             write_document(path, about, &baked.report, &console)?;
         }
@@ -101,14 +113,27 @@ pub struct Pair {
     pub seconds: Option<f64>,
 }
 
-/// Reads both models at once.
-pub fn read_pair(high: &Path, low: &Path, console: &Console) -> Result<Pair, Failure> {
+/// Reads two models at once.
+pub fn read_both(first: &Path, second: &Path, console: &Console) -> Result<[Loaded; 2], Failure> {
     console.message(Message::Progress { stage: Stage::Read, done: 0, total: 2 });
+    let (first, second) = parbake::join(|| read(first, console), || read(second, console));
+    Ok([first?, second?])
+}
+
+/// Reads both models of a bake at once.
+pub fn read_pair(high: &Path, low: &Path, console: &Console) -> Result<Pair, Failure> {
     let begin = console.seconds();
-    let (high, low) = parbake::join(|| read(high, console), || read(low, console));
-    let (high, low) = (high?, low?);
+    let [high, low] = read_both(high, low, console)?;
     let warnings = [high.warnings, low.warnings].concat();
     Ok(Pair { high: high.model, low: low.model, warnings, seconds: Some(console.seconds() - begin) })
+}
+
+/// Reads the high-poly alone; its low-poly is to be made.
+fn read_high(high: &Path, console: &Console) -> Result<Pair, Failure> {
+    let begin = console.seconds();
+    let Loaded { model, warnings, .. } = read(high, console)?;
+    let seconds = Some(console.seconds() - begin);
+    Ok(Pair { high: model, low: Model::default(), warnings, seconds })
 }
 
 /// Bakes and writes the model; completes the report with what happened around it.
@@ -118,7 +143,16 @@ pub fn bake_and_write(
     output: &Path,
     console: &Console,
 ) -> Result<Baked, Failure> {
-    let mut baked = bake(&pair.high, &pair.low, options, console)?;
+    finish(bake(&pair.high, &pair.low, options, console)?, pair, options, output, console)
+}
+
+fn finish(
+    mut baked: Baked,
+    pair: &Pair,
+    options: &BakeOptions,
+    output: &Path,
+    console: &Console,
+) -> Result<Baked, Failure> {
     let begin = console.seconds();
     let model = with_normal_y(&baked.model, options.normal_y);
     (_, baked.report.written) = write_model(output, &model, &options.write, console)?;

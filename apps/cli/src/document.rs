@@ -1,4 +1,5 @@
-//! What the JSON outputs of `bake`, `compress`, `image`, `demo` and `eval` have in common: which command it was,
+//! What the JSON outputs of `bake`, `raycast`, `compress`, `image`, `demo`, `eval` and `stats` have in common: which
+//! command it was,
 //! of which files, and how long it took; the command's own figures follow as fields beside these.
 //!
 //! Contract: `docs/report.schema.json` describes them, and a test holds them to it. [`VERSION`] grows when a

@@ -3,6 +3,7 @@
 
 mod arguments;
 mod bake;
+mod batch;
 mod check;
 mod compress;
 mod demo;
@@ -11,13 +12,18 @@ mod evaluate;
 mod failure;
 mod formats;
 mod image;
+mod leash;
+mod lod;
 mod options_file;
 mod outputs;
 mod pictures;
 mod progress;
+mod raycast;
 mod reproduce;
 mod rules;
 mod simplify;
+mod stats;
+mod thumbnail;
 mod turntable;
 mod variants;
 mod view;
@@ -27,6 +33,7 @@ use clap::FromArgMatches;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    leash::heed();
     let matches = arguments::command().get_matches();
     let arguments = match Arguments::from_arg_matches(&matches) {
         Ok(arguments) => arguments,
@@ -37,7 +44,9 @@ fn main() -> ExitCode {
         (Command::Bake(command), Some(given)) => bake::run(command, given),
         (Command::Demo(command), Some(given)) => demo::run(command, given),
         (Command::Eval(command), _) => evaluate::run(command),
+        (Command::Raycast(command), Some(given)) => raycast::run(command, given),
         (Command::Compress(command), Some(given)) => compress::run(command, given),
+        (Command::Lod(command), _) => lod::run(command),
         (Command::Image(command), Some(given)) => image::run(command, given),
         (Command::Variants(command), _) => variants::run(command),
         (Command::Turntable(command), _) => turntable::run(command),
@@ -45,6 +54,9 @@ fn main() -> ExitCode {
         (Command::Reproduce(command), _) => reproduce::run(command),
         (Command::Check(command), _) => check::run(command),
         (Command::Simplify(command), _) => simplify::run(command),
+        (Command::Stats(command), _) => stats::run(command),
+        (Command::Batch(command), _) => batch::run(command),
+        (Command::Thumbnail(command), _) => thumbnail::run(command),
         _ => Ok(failure::Ending::Finished),
     };
     match outcome {

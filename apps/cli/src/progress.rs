@@ -67,15 +67,36 @@ impl Console {
         Self::with_deadline(talk, time_budget)
     }
 
+    /// For levels of detail, which Ctrl-C ends with those that are finished.
+    pub fn for_levels(talk: Talk) -> Self {
+        catch_interrupts("the level in hand is finished quickly, no further one begins");
+        Self::with_deadline(talk, None)
+    }
+
     /// For a film, of which a part is no use: Ctrl-C ends without a file, not even a temporary one.
     pub fn for_film(talk: Talk) -> Self {
         catch_interrupts("no film is written");
         Self::with_deadline(talk, None)
     }
 
+    /// For work of which a part is no use: Ctrl-C ends without a file.
+    pub fn for_whole(talk: Talk) -> Self {
+        catch_interrupts("nothing is written");
+        Self::with_deadline(talk, None)
+    }
+
     /// For many runs one after the other, which Ctrl-C ends with what is finished.
     pub fn for_many(talk: Talk) -> Self {
-        catch_interrupts("what is finished is being drawn");
+        Self::of_runs(talk, "what is finished is being drawn")
+    }
+
+    /// For a batch, which Ctrl-C ends at once with what is finished.
+    pub fn for_batch(talk: Talk) -> Self {
+        Self::of_runs(talk, "running jobs end, what is finished stays")
+    }
+
+    fn of_runs(talk: Talk, what_becomes: &'static str) -> Self {
+        catch_interrupts(what_becomes);
         let console = Self::with_deadline(talk, None);
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {prefix}{msg}") {
             console.bar.set_style(style);

@@ -7,7 +7,10 @@
 use crate::failure::Failure;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
-use parbake::{BakeOptions, ImageOptions, Method, Parallax, PictureUv, TextureFormat, UvMode, Work};
+use parbake::{
+    BakeOptions, GeometryMap, ImageOptions, Match, Method, Parallax, PictureUv, RaycastOptions,
+    TextureFormat, UvMode, Work,
+};
 use serde_json::Value;
 use std::path::Path;
 
@@ -91,6 +94,35 @@ pub fn check(
         refuse(
             &["silhouette_background"],
             "does nothing where --silhouette is 0, its default with a cutout; give --silhouette as well",
+        )?;
+    }
+    Ok(())
+}
+
+/// Checks the options of `raycast`.
+pub fn check_raycast(options: &RaycastOptions, given: &ArgMatches) -> Result<(), Failure> {
+    let refuse = |name: &str, why: &str| match is_typed(given, name) {
+        false => Ok(()),
+        true => Err(Failure::Usage(format!("{} {why}", typed_name(name)))),
+    };
+    let has = |maps: &[GeometryMap]| maps.iter().any(|map| options.maps.contains(map));
+    let sees_sky = has(&[GeometryMap::Occlusion, GeometryMap::BentNormal]) || options.occlusion_texture;
+    if !sees_sky {
+        refuse("occlusion_distance", "does nothing without --maps occlusion; add that or leave it out")?;
+    }
+    if !sees_sky && !has(&[GeometryMap::Thickness, GeometryMap::Curvature]) {
+        refuse("rays", "does nothing without --maps occlusion or thickness; add that or leave it out")?;
+    }
+    if !has(&[GeometryMap::Curvature]) {
+        refuse("curvature_radius", "does nothing without --maps curvature; add that or leave it out")?;
+    }
+    if options.r#match == Match::ClosestPoint {
+        refuse("ray_normals", "does nothing with --match closest-point, which casts no rays; leave it out")?;
+    }
+    if matches!(options.write.texture_format, TextureFormat::Png | TextureFormat::WebpLossless) {
+        refuse(
+            "texture_quality",
+            "does nothing with a lossless --texture-format; choose another or leave it out",
         )?;
     }
     Ok(())

@@ -140,6 +140,9 @@ pub struct Distortion {
     pub stretch_l2: f64,
     /// L^∞ texture stretch, likewise.
     pub stretch_max: f64,
+    /// Symmetric Dirichlet energy, 4 or more, likewise; 0 in reports of before it was measured.
+    #[serde(default)]
+    pub symmetric_dirichlet: f64,
     /// Texels along a unit of length on the surface: the root of texels of texture area
     /// for a unit of surface, in the mean.
     pub texels_per_unit: f64,

@@ -34,6 +34,9 @@ pub struct ModelCheck {
 pub struct LayoutCheck {
     /// The base colour picture's name; `None` for a model without pictures.
     pub picture: Option<String>,
+    /// Its index among the model's images.
+    #[serde(skip)]
+    pub picture_index: Option<usize>,
     /// Materials that read the picture, by name.
     pub materials: Vec<String>,
     /// What the check found. Triangles have the model's indices; charts are numbered in
@@ -85,6 +88,7 @@ pub fn check_model(model: &Model, texture_size: Option<usize>, gutter: f64) -> M
         problems.extend(narrow_gutter(&uv, gutter));
         found.layouts.push(LayoutCheck {
             picture: image.map(|image| image.name.clone()),
+            picture_index: picture,
             materials: material_names(model, &triangles),
             uv,
             problems,

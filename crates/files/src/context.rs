@@ -1,10 +1,11 @@
 //! What every reader carries along: whose file it is, what it may use, and the
 //! warnings so far.
 
+use crate::contents::{PictureFormat, StoredPicture};
 use crate::image_in::{decode, texels};
 use crate::search;
 use crate::words::shown;
-use crate::{FileError, Limits, Place, Resources, Warning, WarningKind};
+use crate::{Contents, FileError, Limits, Place, Resources, Warning, WarningKind};
 use parbake_model::Image;
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -38,12 +39,13 @@ pub(crate) struct Context<'a> {
     seen: RefCell<BTreeSet<String>>,
     /// Bytes of each file that was read, the model's own under the empty name.
     read: RefCell<BTreeMap<String, u64>>,
+    contents: RefCell<Contents>,
 }
 
 impl<'a> Context<'a> {
     pub fn new(path: &'a Path, resources: &'a dyn Resources, limits: &'a Limits, textures: Textures) -> Self {
-        let (warnings, seen, read) = Default::default();
-        Self { path, resources, limits, textures, warnings, seen, read }
+        let (warnings, seen, read, contents) = Default::default();
+        Self { path, resources, limits, textures, warnings, seen, read, contents }
     }
 
     /// Counts the model's own file.
@@ -118,6 +120,16 @@ impl<'a> Context<'a> {
         self.read.borrow().values().sum()
     }
 
+    /// Counts further draw calls.
+    pub fn count_draw_calls(&self, more: usize) {
+        self.contents.borrow_mut().draw_calls += more;
+    }
+
+    /// What the files hold, as far as they were read.
+    pub fn contents(&self) -> Contents {
+        self.contents.borrow().clone()
+    }
+
     /// Adds a warning of no kind of its own, once.
     pub fn warn(&self, text: impl Into<String>) {
         self.warn_of(WarningKind::Other, text);
@@ -189,11 +201,22 @@ impl<'a> Context<'a> {
         let images: Vec<_> =
             pictures.par_iter().map(|(name, bytes)| decode(name, bytes, self.limits)).collect();
         let named = images.into_iter().zip(pictures);
-        named
+        let images: Vec<Image> = named
             .map(|(image, (name, _))| {
                 image.map_err(|trouble| trouble.into_error(self.path, place(name), self.limits))
             })
-            .collect()
+            .collect::<Result<_, _>>()?;
+        let stored = images.iter().zip(pictures).filter_map(|(image, (name, bytes))| {
+            Some(StoredPicture {
+                name: shown(name),
+                format: PictureFormat::of(bytes)?,
+                width: image.width,
+                height: image.height,
+                bytes: bytes.len() as u64,
+            })
+        });
+        self.contents.borrow_mut().pictures.extend(stored);
+        Ok(images)
     }
 }
 

@@ -11,7 +11,7 @@
 use crate::context::Context;
 use crate::unit::{unit, unit_tangent};
 use crate::words::count;
-use crate::{FileError, Loaded, Place};
+use crate::{Contents, FileError, Loaded, Place};
 use parbake_model::glam::{DVec3, Vec2, Vec3, Vec4};
 use parbake_model::{Mesh, Model};
 
@@ -45,7 +45,8 @@ pub(crate) fn finish(
         return Err(context.invalid(Place::File, "the attributes of its vertices differ in number"));
     }
     let bytes = context.bytes();
-    Ok(Loaded { model, warnings: context.into_warnings(), bytes })
+    let contents = Contents { degenerate_triangles: degenerate, ..context.contents() };
+    Ok(Loaded { model, warnings: context.into_warnings(), bytes, contents })
 }
 
 /// Twice the area vector, in doubles: products of small floats would vanish.
@@ -150,6 +151,7 @@ mod tests {
         assert_eq!(loaded.model.mesh.triangles, [[0, 1, 2]]);
         assert_eq!(loaded.model.mesh.triangle_materials, [0]);
         assert_eq!(loaded.warnings, ["left out 2 triangles without area"]);
+        assert_eq!(loaded.contents.degenerate_triangles, 2);
     }
 
     /// Protects tiny models: areas of 1e-50 are areas.

@@ -30,6 +30,38 @@ pub fn encode_png(image: &Image) -> Result<Vec<u8>, FileError> {
     Ok(bytes)
 }
 
+/// Encodes numbers as a 16-bit PNG without a colour space: grey for one channel, RGB for three.
+///
+/// # Errors
+/// When there are no texels, more than a PNG can hold, other channels, or another number of samples than
+/// `width * height * channels`.
+pub fn encode_png16(
+    name: &str,
+    [width, height]: [usize; 2],
+    channels: usize,
+    samples: &[u16],
+) -> Result<Vec<u8>, FileError> {
+    let image = Image { name: name.into(), width, height, pixels: Vec::new() };
+    let kind = match channels {
+        1 => ExtendedColorType::L16,
+        3 => ExtendedColorType::Rgb16,
+        _ => return Err(refuse(&image, format!("a picture cannot have {channels} channels of numbers"))),
+    };
+    let (Ok(w @ 1..), Ok(h @ 1..)) = (u32::try_from(width), u32::try_from(height)) else {
+        return Err(refuse(&image, format!("an image cannot have {width} × {height} texels")));
+    };
+    if width.checked_mul(height).and_then(|texels| texels.checked_mul(channels)) != Some(samples.len()) {
+        let reason = format!("{width} × {height} texels do not have {} numbers", samples.len());
+        return Err(refuse(&image, reason));
+    }
+    let bytes: Vec<u8> = samples.iter().flat_map(|number| number.to_ne_bytes()).collect();
+    let mut png = Vec::new();
+    PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::Adaptive)
+        .write_image(&bytes, w, h, kind)
+        .map_err(|e| refuse(&image, format!("cannot be encoded as PNG: {e}")))?;
+    Ok(png)
+}
+
 /// As [`encode_png`], but small: 3 to 30 % smaller, in 0.1 s instead of 2 ms at 512².
 pub(crate) fn pack_png(image: &Image) -> Result<Vec<u8>, FileError> {
     let Raw { width, height, samples, opaque } = Raw::new(image)?;
@@ -110,6 +142,20 @@ mod tests {
             assert_eq!(decode_image("a", &rgba, &Limits::default()).unwrap(), image);
             assert_eq!(encode(&image).unwrap(), rgba, "deterministic");
         }
+    }
+
+    /// Protects maps of lengths: all 16 bits are there, in the order in which PNG has them.
+    #[test]
+    fn numbers_keep_sixteen_bits() {
+        let numbers = [0x0102u16, 0xfffe, 7, 40_000, 0, 65_535];
+        let read = |png: &[u8]| image::load_from_memory(png).unwrap();
+        let grey = encode_png16("g", [3, 2], 1, &numbers).unwrap();
+        assert_eq!(grey[24..26], [16, 0], "sixteen bits, grey");
+        assert_eq!(read(&grey).as_luma16().unwrap().as_raw()[..], numbers);
+        let rgb = encode_png16("c", [1, 2], 3, &numbers).unwrap();
+        assert_eq!(read(&rgb).as_rgb16().unwrap().as_raw()[..], numbers);
+        assert!(encode_png16("c", [2, 2], 3, &numbers).is_err());
+        assert!(encode_png16("c", [3, 1], 2, &numbers).is_err());
     }
 
     /// Protects against a panic on an image that breaks its contract.

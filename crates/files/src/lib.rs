@@ -6,6 +6,7 @@
 //! ([`Limits`]). What is odd but can be lived with becomes a [`Warning`].
 
 mod atomic;
+mod contents;
 mod context;
 mod error;
 mod finish;
@@ -18,6 +19,7 @@ mod ktx2_out;
 mod limits;
 mod model_in;
 mod model_out;
+mod named_files;
 mod obj;
 mod resources;
 mod search;
@@ -29,12 +31,14 @@ mod words;
 mod write_options;
 
 pub use atomic::{write_atomically, write_streamed};
+pub use contents::{Contents, PictureFormat, StoredPicture};
 pub use error::{FileError, Place};
-pub use gltf::{glb_bytes, read_gltf_bytes, write_glb, write_glb_with};
+pub use gltf::{glb_bytes, read_gltf_bytes, write_glb, write_glb_with, write_lod_glb};
 pub use image_in::{decode_image, read_image};
-pub use image_out::encode_png;
+pub use image_out::{encode_png, encode_png16};
 pub use limits::Limits;
 pub use model_in::{Loaded, read_geometry, read_model};
+pub use named_files::named_files;
 pub use obj::{read_obj_bytes, write_obj};
 pub use resources::{Folder, NoResources, Resources};
 pub use self_contained::{SelfContained, read_self_contained};

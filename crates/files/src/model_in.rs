@@ -3,7 +3,7 @@
 use crate::context::{Context, Textures};
 use crate::resources::{begins_with, read_file};
 use crate::words::shown;
-use crate::{FileError, Folder, Limits, Place, Warning, gltf, obj};
+use crate::{Contents, FileError, Folder, Limits, Place, Warning, gltf, obj};
 use parbake_model::Model;
 use std::ffi::OsString;
 use std::path::Path;
@@ -19,6 +19,8 @@ pub struct Loaded {
     pub warnings: Vec<Warning>,
     /// Bytes of its file and of all others that were read for it.
     pub bytes: u64,
+    /// What those files hold that the model does not tell.
+    pub contents: Contents,
 }
 
 /// Reads an `.obj`, `.gltf` or `.glb` file with all that it refers to.

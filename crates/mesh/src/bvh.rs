@@ -4,9 +4,9 @@
 //! Traversal is our own, since obvhs offers none for closest points, nor for the
 //! hit nearest to the middle of a segment.
 
+use crate::wide_nodes::{WIDTH, WideNode};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::leaf_collapser::collapse;
-use obvhs::bvh2::node::Bvh2Node;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use parbake_model::Mesh;
@@ -15,10 +15,10 @@ use parbake_model::glam::{Vec3, Vec3A};
 /// How far outside a triangle, in barycentric weights, a ray may still hit it.
 const EDGE_TOLERANCE: f32 = 1e-6;
 
-/// A binary tree of boxes over triangles.
+/// A tree of boxes over triangles.
 #[derive(Clone)]
 pub(crate) struct Bvh {
-    nodes: Vec<Bvh2Node>,
+    nodes: Vec<WideNode>,
     /// In the order of the leaves.
     triangles: Vec<Corners>,
     /// Each triangle's index in the mesh.
@@ -72,12 +72,12 @@ impl Bvh {
         Self {
             triangles: tree.primitive_indices.iter().map(|&i| corners[i as usize]).collect(),
             sources: tree.primitive_indices.iter().map(|&i| solid[i as usize]).collect(),
-            nodes: tree.nodes,
+            nodes: WideNode::of(&tree.nodes),
         }
     }
 
     /// All nodes, the root first.
-    pub(crate) fn nodes(&self) -> &[Bvh2Node] {
+    pub(crate) fn nodes(&self) -> &[WideNode] {
         &self.nodes
     }
 
@@ -202,7 +202,7 @@ impl Corners {
     }
 }
 
-/// Nodes still to visit, and how near each is. Deep trees (many triangles in one
+/// Children of nodes still to visit, and how near each is. Deep trees (many triangles in one
 /// place) spill to the heap.
 pub(crate) struct Stack {
     inline: [(u32, f32); 64],
@@ -217,8 +217,30 @@ impl Default for Stack {
 }
 
 impl Stack {
+    /// Puts those children of a node that have a bit on top, the nearest last.
     #[inline]
-    pub(crate) fn push(&mut self, node: u32, distance: f32) {
+    pub(crate) fn push_nearest_last(&mut self, node: u32, distances: [f32; WIDTH], mut bits: u32) {
+        let mut order = [(0u32, 0.0f32); WIDTH];
+        let mut count = 0;
+        while bits != 0 {
+            let k = bits.trailing_zeros();
+            bits &= bits - 1;
+            let own = (node * WIDTH as u32 + k, distances[k as usize]);
+            let mut place = count;
+            while place > 0 && order[place - 1].1 < own.1 {
+                order[place] = order[place - 1];
+                place -= 1;
+            }
+            order[place] = own;
+            count += 1;
+        }
+        for &(child, distance) in &order[..count] {
+            self.push(child, distance);
+        }
+    }
+
+    #[inline]
+    fn push(&mut self, node: u32, distance: f32) {
         if self.used < self.inline.len() {
             self.inline[self.used] = (node, distance);
             self.used += 1;

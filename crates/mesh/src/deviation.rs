@@ -45,7 +45,7 @@ fn one_way(from: &Mesh, to: &HighSurface) -> f64 {
 }
 
 /// The k-th of evenly spread points of a triangle (the sequence R2 of Roberts, 2018, folded).
-fn spread([a, b, c]: [Vec3; 3], k: usize) -> Vec3 {
+pub(crate) fn spread([a, b, c]: [Vec3; 3], k: usize) -> Vec3 {
     let [x, y] = [0.754_877_7, 0.569_840_3].map(|step: f32| (0.5 + step * k as f32).fract());
     let (x, y) = if x + y > 1.0 { (1.0 - x, 1.0 - y) } else { (x, y) };
     a + (b - a) * x + (c - a) * y

@@ -5,7 +5,9 @@
 //! charts, texel_map             which point of the surface a texel shows
 //! projection                    where that point lies on the detailed model
 //! simplify, subdivide, bisect   coarser and finer copies of a mesh
-//! deviation                     how far two surfaces are apart
+//! deviation                     how far two surfaces are apart, for a choice between them
+//! distance                      the same in full: Chamfer, Hausdorff, root mean square
+//! topology                      pieces, holes, handles, and where a surface is none
 //! exposure                      how much of a surface is seen from outside
 //! material_uvs                  texture coordinates as materials read them
 //! weld, vertices, union_find    what these share
@@ -21,6 +23,7 @@ mod bvh;
 pub mod charts;
 pub mod demo;
 pub mod deviation;
+pub mod distance;
 pub mod facing;
 pub mod material_uvs;
 pub mod normals;
@@ -29,14 +32,17 @@ pub mod simplify;
 pub mod subdivide;
 pub mod tangents;
 pub mod texel_map;
-mod union_find;
+pub mod topology;
+pub mod union_find;
 pub mod vertices;
 pub mod visibility;
 pub mod weld;
+mod wide_nodes;
 
 pub use bisect::{Bisected, Piece};
 pub use charts::{charts, texel_charts};
 pub use demo::{demo_low, demo_model, wall_low, wall_model};
+pub use distance::{DistanceOptions, SurfaceDistance, surface_distance};
 pub use facing::face_outwards;
 pub use material_uvs::material_uvs;
 pub use normals::{ensure_normals, smooth_normals};
@@ -45,5 +51,6 @@ pub use simplify::{SimplifyOptions, simplify};
 pub use subdivide::subdivide;
 pub use tangents::compute_tangents;
 pub use texel_map::{TexelMap, texel_map};
+pub use topology::{Component, Topology, topology};
 pub use visibility::visibilities;
 pub use weld::weld_by_position;

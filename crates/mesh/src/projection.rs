@@ -9,9 +9,10 @@
 //! Contract: coordinates are of moderate size, as in the common frame [−1, 1]³.
 //! Triangles without area are left out. Answers do not depend on threads.
 
-use crate::bvh::{Bvh, Near, Stack};
+use crate::bvh::{Bvh, Corners, Near, Stack};
+use crate::wide_nodes::{Line, WIDTH};
 use parbake_model::Mesh;
-use parbake_model::glam::{Vec3, Vec3A};
+use parbake_model::glam::{Vec3, Vec3A, Vec4};
 
 /// A point of the detailed surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,7 +42,14 @@ impl HighSurface {
     /// the surface. The direction may have any length but zero; distances are in
     /// the mesh's unit.
     pub fn cast(&self, origin: Vec3, direction: Vec3, max_distance: f32) -> Option<SurfacePoint> {
-        self.along_line::<false>(origin, direction.try_normalize()?, max_distance, None)
+        self.along_line::<false, false>(origin, direction.try_normalize()?, max_distance, |_, _| true)
+    }
+
+    /// Whether a ray meets anything within `max_distance`, on either side of the surface: what
+    /// [`cast`](Self::cast) would find, without asking what comes first.
+    pub fn blocks(&self, origin: Vec3, direction: Vec3, max_distance: f32) -> bool {
+        let Some(direction) = direction.try_normalize() else { return false };
+        self.along_line::<false, true>(origin, direction, max_distance, |_, _| true).is_some()
     }
 
     /// The nearest point of the surface within `max_distance`, which may be
@@ -66,38 +74,29 @@ impl HighSurface {
         let point = Vec3A::from(point);
         let mut best = Near { square: max_distance * max_distance, ..Near::default() };
         let mut found = None;
+        let lanes = point.to_array().map(Vec4::splat);
         let mut stack = Stack::default();
         let nodes = self.bvh.nodes();
         if let Some(root) = nodes.first() {
-            stack.push(0, square_distance(root.aabb().min, root.aabb().max, point));
+            let (squares, bits) = root.near(lanes, best.square);
+            stack.push_nearest_last(0, squares, bits);
         }
-        while let Some((index, square)) = stack.pop() {
+        while let Some((child, square)) = stack.pop() {
             if square > best.square {
                 continue;
             }
-            let node = &nodes[index as usize];
-            if node.is_leaf() {
-                for slot in node.first_index..node.first_index + node.prim_count {
-                    let near = self.bvh.triangle(slot).closest(point);
-                    let nearer = near.square < best.square || (found.is_none() && near.square == best.square);
-                    if nearer && is_meant(slot) {
-                        best = near;
-                        found = Some(slot);
-                    }
-                }
+            let (node, k) = (&nodes[child as usize / WIDTH], child as usize % WIDTH);
+            if node.count[k] == 0 {
+                let (squares, bits) = nodes[node.first[k] as usize].near(lanes, best.square);
+                stack.push_nearest_last(node.first[k], squares, bits);
                 continue;
             }
-            let child = |i: u32| {
-                let aabb = nodes[i as usize].aabb();
-                (i, square_distance(aabb.min, aabb.max, point))
-            };
-            let (mut near, mut far) = (child(node.first_index), child(node.first_index + 1));
-            if far.1 < near.1 {
-                std::mem::swap(&mut near, &mut far);
-            }
-            for (i, square) in [far, near] {
-                if square <= best.square {
-                    stack.push(i, square);
+            for slot in node.first[k]..node.first[k] + node.count[k] {
+                let near = self.bvh.triangle(slot).closest(point);
+                let nearer = near.square < best.square || (found.is_none() && near.square == best.square);
+                if nearer && is_meant(slot) {
+                    best = near;
+                    found = Some(slot);
                 }
             }
         }
@@ -126,79 +125,86 @@ impl HighSurface {
     /// length, and places must face outwards by that too. At rims and creases an interpolated normal looks
     /// along the wall, where either side of it may pass for the outer one.
     pub fn project_facing(&self, point: Vec3, normal: Vec3, side: Vec3, reach: f32) -> Option<SurfacePoint> {
-        let hit = normal.try_normalize().and_then(|n| self.along_line::<true>(point, n, reach, Some(side)));
-        hit.or_else(|| {
-            let any = self.closest(point, f32::INFINITY)?;
-            Some(self.closest_facing(point, side, any.distance + reach).unwrap_or(any))
-        })
+        let side_of_wall = Vec3A::from(side);
+        let is_meant = |triangle: &Corners, ahead: bool| ahead && triangle.normal().dot(side_of_wall) > 0.0;
+        let hit =
+            normal.try_normalize().and_then(|n| self.along_line::<true, false>(point, n, reach, is_meant));
+        hit.or_else(|| self.closest_on_side(point, side, reach))
+    }
+
+    /// The same, but of all places on the segment the outermost: what a ray meets first that comes from
+    /// outside, at `point + reach · normal`. Parts that float over the surface hide what is under them.
+    pub fn project_from_outside(
+        &self,
+        point: Vec3,
+        normal: Vec3,
+        side: Vec3,
+        reach: f32,
+    ) -> Option<SurfacePoint> {
+        let side_of_wall = Vec3A::from(side);
+        let is_meant = |triangle: &Corners, ahead: bool| !ahead && triangle.normal().dot(side_of_wall) > 0.0;
+        let hit = normal.try_normalize().and_then(|n| {
+            let hit = self.along_line::<false, false>(point + reach * n, -n, 2.0 * reach, is_meant)?;
+            Some(SurfacePoint { distance: (reach - hit.distance).abs(), ..hit })
+        });
+        hit.or_else(|| self.closest_on_side(point, side, reach))
+    }
+
+    /// The closest point that faces along `side`, up to `reach` farther than the closest of all, else that
+    /// one. `None` only for a surface without any area.
+    pub fn closest_on_side(&self, point: Vec3, side: Vec3, reach: f32) -> Option<SurfacePoint> {
+        let any = self.closest(point, f32::INFINITY)?;
+        Some(self.closest_facing(point, side, any.distance + reach).unwrap_or(any))
     }
 
     /// The hit nearest to the origin on a line: only ahead of it or, if
-    /// `BOTH_WAYS`, behind it too. Optionally only of triangles whose normals are
-    /// within 90° of the direction and of another one.
-    fn along_line<const BOTH_WAYS: bool>(
+    /// `BOTH_WAYS`, behind it too; or, if `ANY`, the first that is come across. Only of
+    /// triangles that are meant, which are told whether their normals are within 90° of the
+    /// direction.
+    fn along_line<const BOTH_WAYS: bool, const ANY: bool>(
         &self,
         origin: Vec3,
         direction: Vec3,
         max_distance: f32,
-        facing: Option<Vec3>,
+        is_meant: impl Fn(&Corners, bool) -> bool,
     ) -> Option<SurfacePoint> {
-        let side = facing.map(Vec3A::from);
         let (origin, direction) = (Vec3A::from(origin), Vec3A::from(direction));
-        // A zero component would make ∞ · 0 in the slab test.
-        let inverse = Vec3A::from_array(
-            direction.to_array().map(|d| 1.0 / if d.abs() < 1e-12 { 1e-12f32.copysign(d) } else { d }),
-        );
+        let line = Line::new(origin, direction);
         let nodes = self.bvh.nodes();
-        let enter = |index: u32| {
-            let aabb = nodes[index as usize].aabb();
-            let low = (aabb.min - origin) * inverse;
-            let high = (aabb.max - origin) * inverse;
-            let (start, end) = (low.min(high).max_element(), low.max(high).min_element());
-            if start > end || (!BOTH_WAYS && end < 0.0) {
-                f32::INFINITY
-            } else if BOTH_WAYS {
-                start.max(-end).max(0.0)
-            } else {
-                start.max(0.0)
-            }
-        };
         let mut best = max_distance;
         let mut found = None;
         let mut stack = Stack::default();
-        if !nodes.is_empty() {
-            stack.push(0, enter(0));
+        if let Some(root) = nodes.first() {
+            let (distances, bits) = root.enter::<BOTH_WAYS>(&line, best);
+            stack.push_nearest_last(0, distances, bits);
         }
-        while let Some((index, distance)) = stack.pop() {
-            if distance > best || distance == f32::INFINITY {
+        while let Some((child, distance)) = stack.pop() {
+            if distance > best {
                 continue;
             }
-            let node = &nodes[index as usize];
-            if node.is_leaf() {
-                for slot in node.first_index..node.first_index + node.prim_count {
-                    let triangle = self.bvh.triangle(slot);
-                    let Some((t, barycentric, ahead)) = triangle.intersect(origin, direction) else {
-                        continue;
-                    };
-                    let distance = if BOTH_WAYS { t.abs() } else { t };
-                    let nearer = distance < best || (found.is_none() && distance == best);
-                    let is_meant = || side.is_none_or(|side| ahead && triangle.normal().dot(side) > 0.0);
-                    if distance >= 0.0 && nearer && is_meant() {
-                        best = distance;
-                        found = Some((slot, barycentric));
+            let (node, k) = (&nodes[child as usize / WIDTH], child as usize % WIDTH);
+            if node.count[k] == 0 {
+                let (distances, bits) = nodes[node.first[k] as usize].enter::<BOTH_WAYS>(&line, best);
+                stack.push_nearest_last(node.first[k], distances, bits);
+                continue;
+            }
+            for slot in node.first[k]..node.first[k] + node.count[k] {
+                let triangle = self.bvh.triangle(slot);
+                let Some((t, barycentric, ahead)) = triangle.intersect(origin, direction) else {
+                    continue;
+                };
+                let distance = if BOTH_WAYS { t.abs() } else { t };
+                let nearer = distance < best || (found.is_none() && distance == best);
+                if distance >= 0.0 && nearer && is_meant(triangle, ahead) {
+                    best = distance;
+                    found = Some((slot, barycentric));
+                    if ANY {
+                        break;
                     }
                 }
-                continue;
             }
-            let (left, right) = (node.first_index, node.first_index + 1);
-            let (mut near, mut far) = ((left, enter(left)), (right, enter(right)));
-            if far.1 < near.1 {
-                std::mem::swap(&mut near, &mut far);
-            }
-            for (i, distance) in [far, near] {
-                if distance <= best {
-                    stack.push(i, distance);
-                }
+            if ANY && found.is_some() {
+                break;
             }
         }
         found.map(|(slot, barycentric)| SurfacePoint {
@@ -207,11 +213,6 @@ impl HighSurface {
             distance: best,
         })
     }
-}
-
-#[inline]
-fn square_distance(min: Vec3A, max: Vec3A, point: Vec3A) -> f32 {
-    (point - point.clamp(min, max)).length_squared()
 }
 
 #[cfg(test)]

@@ -2,18 +2,18 @@
 //! the result does not depend on the order of the unions.
 
 /// Sets over 0 … n − 1.
-pub(crate) struct UnionFind {
+pub struct UnionFind {
     parent: Vec<u32>,
 }
 
 impl UnionFind {
     /// Every element alone.
-    pub(crate) fn new(count: usize) -> Self {
+    pub fn new(count: usize) -> Self {
         Self { parent: (0..count as u32).collect() }
     }
 
     /// The smallest element of this one's set.
-    pub(crate) fn find(&mut self, mut element: u32) -> u32 {
+    pub fn find(&mut self, mut element: u32) -> u32 {
         while self.parent[element as usize] != element {
             let grandparent = self.parent[self.parent[element as usize] as usize];
             self.parent[element as usize] = grandparent;
@@ -23,7 +23,7 @@ impl UnionFind {
     }
 
     /// Makes one set of two.
-    pub(crate) fn union(&mut self, a: u32, b: u32) {
+    pub fn union(&mut self, a: u32, b: u32) {
         let (a, b) = (self.find(a), self.find(b));
         self.parent[a.max(b) as usize] = a.min(b);
     }

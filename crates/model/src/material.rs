@@ -148,6 +148,26 @@ impl Material {
         self.texture_slots().chain(others.into_iter().flatten()).chain(extensions)
     }
 
+    /// Visits every index into `Model::images`, those of a parallax map included.
+    pub fn for_each_image(&mut self, mut visit: impl FnMut(&mut usize)) {
+        let own = [
+            &mut self.base_color_texture,
+            &mut self.normal_texture,
+            &mut self.metallic_roughness_texture,
+            &mut self.occlusion_texture,
+            &mut self.emissive_texture,
+        ];
+        let extensions = self.extensions.textures_mut().into_iter().map(|(slot, _)| slot);
+        own.into_iter().chain(extensions).flatten().for_each(|slot| visit(&mut slot.image));
+        if let Some(parallax) = &mut self.parallax {
+            let slots = [&mut parallax.base_color_texture, &mut parallax.normal_texture];
+            slots.into_iter().flatten().for_each(|slot| visit(&mut slot.image));
+            parallax.images.iter_mut().for_each(&mut visit);
+            parallax.depth.iter_mut().for_each(|depth| visit(&mut depth.image));
+            parallax.cutout.iter_mut().flat_map(|cutout| &mut cutout.images).for_each(visit);
+        }
+    }
+
     /// Whether shading needs tangents.
     pub fn has_normal_map(&self) -> bool {
         let own = self.parallax.as_ref().is_some_and(|p| p.normal_texture.is_some());

@@ -14,6 +14,7 @@ use crate::error::BakeError;
 use crate::geometry::{Geometry, move_geometry};
 use crate::look::Look;
 use crate::lost::lost;
+use crate::low_poly::low_poly;
 use crate::options::{BakeOptions, Shading, UvMode};
 use crate::plan::Plan;
 use crate::report::{BakeReport, Work, layout_warning};
@@ -83,6 +84,24 @@ pub fn prepare_high_poly(high: &Model, options: &BakeOptions) -> Result<HighPoly
     Ok(prepare(high, options)?.keeping_views())
 }
 
+/// Makes a low-poly of at most `triangles` triangles, chosen by its pictures, and bakes the high-poly's look onto
+/// it. [`Baked::ray_cast`] has the same triangles.
+///
+/// # Errors
+/// An option out of range; a model without extent; charts that do not fit into the texture.
+pub fn bake_to_triangles(
+    high: &Model,
+    triangles: usize,
+    options: &BakeOptions,
+    watcher: &dyn Watcher,
+) -> Result<Baked, BakeError> {
+    options.check()?;
+    let begin = Instant::now();
+    let prepared = prepare(high, options)?;
+    let (low, _) = low_poly(&prepared, high, None, triangles, options.preset, watcher);
+    run(&prepared, &low, Work::Level, options, watcher, begin)
+}
+
 /// Bakes a prepared high-poly's look onto a low-poly; the result is that of [`bake`].
 ///
 /// # Errors
@@ -93,11 +112,22 @@ pub fn bake_prepared(
     options: &BakeOptions,
     watcher: &dyn Watcher,
 ) -> Result<Baked, BakeError> {
+    bake_as(Work::Bake, high, low, options, watcher)
+}
+
+/// The same as a work of this kind.
+pub(crate) fn bake_as(
+    work: Work,
+    high: &HighPoly,
+    low: &Model,
+    options: &BakeOptions,
+    watcher: &dyn Watcher,
+) -> Result<Baked, BakeError> {
     options.check()?;
     if high.conventions != conventions(options) {
         return Err(BakeError::OtherConventions { model: high.name.clone() });
     }
-    run(high, low, Work::Bake, options, watcher, Instant::now())
+    run(high, low, work, options, watcher, Instant::now())
 }
 
 /// Bakes a model onto itself, triangle by triangle.
@@ -111,7 +141,7 @@ pub(crate) fn bake_onto_itself(
     run(&prepare(model, options)?, model, Work::Compress, options, watcher, begin)
 }
 
-fn conventions(options: &BakeOptions) -> Conventions {
+pub(crate) fn conventions(options: &BakeOptions) -> Conventions {
     Conventions {
         interpretation: options.convention.interpretation(),
         display: options.convention.display(),
@@ -159,17 +189,19 @@ fn run(
     watcher.message(Message::Plan(stage_weights(options)));
     let mut clock = Clock::new(begin);
     let mut warnings = Warnings::new(watcher);
-    warnings.tell((!same).then(|| swapped(high, low)).flatten());
+    warnings.tell((work == Work::Bake).then(|| swapped(high, low)).flatten());
     // One model twice keeps its vertices, whatever their normals are like.
     let turned = (!same).then(|| lit(low));
     let low = turned.as_ref().map_or(low, |(model, _)| model);
     let delivered = low;
-    warnings.tell(turned.iter().flat_map(|(_, of_normals)| of_normals.clone()));
+    // Of a low-poly that was made here there is nothing that its maker should mend.
+    let is_given = work != Work::Level;
+    warnings.tell(turned.iter().filter(|_| is_given).flat_map(|(_, of_normals)| of_normals.clone()));
     let Geometry { uv_stage, shape, map } = move_geometry(low, work, high, options, &scope, &mut clock)?;
     let low = uv_stage.as_ref().map_or(low, |u| &u.model);
     let prepared = LowPoly::new(low, &high.frame, size)?;
     warnings.tell(prepared.warnings.iter().cloned());
-    let repaired = uv_stage.iter().flat_map(|u| &u.report.repaired);
+    let repaired = uv_stage.iter().filter(|_| is_given).flat_map(|u| &u.report.repaired);
     warnings.tell(repaired.map(|done| format!("{}: {done}", low.name)));
     clock.lap(Stage::Prepare);
 
@@ -238,6 +270,6 @@ fn run(
 }
 
 /// Maps as files hold them.
-fn images(maps: &MapSet, srgb: bool) -> Vec<(MapKind, Image)> {
+pub(crate) fn images(maps: &MapSet, srgb: bool) -> Vec<(MapKind, Image)> {
     maps.iter().map(|(kind, map)| (kind, to_image(kind, map, srgb))).collect()
 }

@@ -45,7 +45,11 @@ pub fn move_geometry<W: Watcher>(
     clock: &mut Clock,
 ) -> Result<Geometry, BakeError> {
     let same = work == Work::Compress;
-    let shape_plan = options.shape_plan().filter(|_| !same);
+    let mut shape_plan = options.shape_plan().filter(|_| !same);
+    if let Some(plan) = shape_plan.as_mut().filter(|_| work == Work::Level) {
+        // There is no artist's shape to keep.
+        plan.fit.worth_moving = 1.0;
+    }
     let paper_joint_plan = options.paper_joint_plan().filter(|_| !same);
     let mut geometry = Geometry::default();
     if options.uv == UvMode::Keep && shape_plan.is_none() && paper_joint_plan.is_none() {

@@ -18,7 +18,7 @@
 //! ```
 //!
 //! * **Options** are plain structs with a documented default for each field: [`BakeOptions`] for
-//!   [`bake`] and [`compress`], [`ImageOptions`] for [`bake_image`], [`EvaluateOptions`] for
+//!   [`bake`] and [`compress`], [`RaycastOptions`] for [`raycast()`], [`ImageOptions`] for [`bake_image`], [`EvaluateOptions`] for
 //!   [`evaluate()`]. They are the same for library, command line and options file.
 //! * **Several low-polys** of one high-poly: [`prepare_high_poly`] once, then [`bake_prepared`] for each.
 //! * **Warnings and progress** come as [`Message`]s to the [`Watcher`] that is the last argument, which
@@ -38,21 +38,26 @@ mod geometry;
 mod image;
 mod image_options;
 mod kept;
+pub mod lod;
 mod look;
 mod lost;
+mod low_poly;
 mod memory;
 mod models;
 mod normal_y;
 mod options;
 mod plan;
+mod raycast;
+mod raycast_options;
 mod report;
+mod stats;
 pub mod studio;
 mod texels;
 mod textures;
 mod threads;
 mod warnings;
 
-pub use bake::{Baked, bake, bake_prepared, prepare_high_poly};
+pub use bake::{Baked, bake, bake_prepared, bake_to_triangles, prepare_high_poly};
 pub use budget::check_budget;
 pub use comparison::{
     BACKGROUNDS, BeforeAndAfter, COMPARED_VIEWS, Comparison, Detail, OnBackground, OnChannel, compare_bake,
@@ -64,6 +69,9 @@ pub use evaluate::channels::{Channel, ChannelFigures};
 pub use evaluate::options::EvaluateOptions;
 pub use evaluate::{Evaluation, ViewFigures, evaluate, evaluate_on};
 pub use image::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
+pub use lod::options::LodOptions;
+pub use lod::{Level, LevelReport, make_levels};
+pub use low_poly::low_poly;
 pub use memory::peak_memory;
 pub use models::{demo_pair, laid_out, simplified, subdivided, wall_pair, with_tangents};
 pub use normal_y::{NormalY, with_normal_y};
@@ -74,21 +82,33 @@ pub use options::{
 };
 pub use parbake_atlas::{LayoutCheck, ModelCheck, UvCheck, check_mesh, check_model};
 pub use parbake_files::{
-    DEFAULT_TEXTURE_QUALITY, FileError, Limits, Loaded, MeshCompression, TextureFormat, Warning, WarningKind,
-    WriteOptions, Written, WrittenMesh, WrittenTexture, encode_png, read_image, read_model,
-    write_atomically as write_file, write_glb, write_glb_with, write_obj,
+    Contents, DEFAULT_TEXTURE_QUALITY, FileError, Limits, Loaded, MeshCompression, PictureFormat,
+    StoredPicture, TextureFormat, Warning, WarningKind, WriteOptions, Written, WrittenMesh, WrittenTexture,
+    encode_png, read_image, read_model, write_atomically as write_file, write_glb, write_glb_with,
+    write_lod_glb, write_obj,
 };
 pub use parbake_fit::parallax_maps::ParallaxReport;
+pub use parbake_mesh::distance::{OneWay, SurfaceDistance};
+pub use parbake_mesh::topology::{Component, Topology};
 pub use parbake_model::{Image as Picture, Model};
 pub use parbake_progress::{Estimate, Message, ProgressScope, Stage, StageTime, Watcher};
+pub use parbake_raycast::{Encoded, GeometryMap};
 pub use parbake_shape::stage::ShapeReport;
+pub use parbake_simplify::{LayerReport, Start, StartReport};
 pub use parbake_uv::convergence::Convergence;
 pub use parbake_uv::moves::UvMoves;
 pub use parbake_uv::surface::UvStageReport;
 pub use parbake_views::PrepareError;
 pub use parbake_views::high_poly::HighPoly;
 pub use plan::Plan;
+pub use raycast::{
+    Match, RayNormals, Raycast, RaycastOptions, RaycastReport, RaycastUv, ShapeMapReport, ShapePicture,
+    raycast,
+};
 pub use report::{BakeReport, LossStep, Work};
+pub use stats::{
+    FileStats, LayoutStats, ModelStats, StatsOptions, TexelDensity, TextureStats, model_distance, model_stats,
+};
 pub use studio::{Shot, Studio, Subject};
 pub use texels::parse_texels;
 pub use threads::{MOST_THREADS, join, with_threads};

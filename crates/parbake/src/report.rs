@@ -53,6 +53,8 @@ pub enum Work {
     /// A high-poly's look on a low-poly.
     #[default]
     Bake,
+    /// A high-poly's look on a low-poly that was made for it.
+    Level,
     /// A model with a smaller texture.
     Compress,
 }
@@ -62,6 +64,7 @@ impl Work {
     pub fn command(self) -> &'static str {
         match self {
             Self::Bake => "bake HIGH LOW",
+            Self::Level => "lod MODEL",
             Self::Compress => "compress MODEL",
         }
     }

@@ -10,6 +10,8 @@ pub enum Stage {
     Read,
     /// Normals, tangents, charts, the search structure of the high-poly.
     Prepare,
+    /// Choosing the triangles of a low-poly.
+    Simplify,
     /// Moving vertices.
     Shape,
     /// Repairing, unwrapping and moving texture coordinates.
@@ -42,6 +44,7 @@ impl Stage {
         match self {
             Stage::Read => "reading files",
             Stage::Prepare => "preparing",
+            Stage::Simplify => "choosing triangles",
             Stage::Shape => "moving vertices",
             Stage::Uv => "moving texture coordinates",
             Stage::Reference => "rendering the high-poly",

@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "lowercase")]
 #[cfg_attr(feature = "clap", value(rename_all = "lowercase"))]
 pub enum Exhibit {
+    /// What the models are like.
+    Table5,
     /// Low-polys close to their high-polys.
     Table8,
     /// Low-polys at moderate distance.
@@ -24,6 +26,10 @@ pub enum Exhibit {
     Table3,
     /// What it costs.
     Table2,
+    /// Distances of low-polys from their high-polys.
+    Figure4,
+    /// What the models are like, all together.
+    Figure5,
     /// Gains by level and texture size.
     Figure6,
     /// Levels side by side.
@@ -53,7 +59,10 @@ pub enum Exhibit {
 impl Exhibit {
     /// All, in the order in which they are made: what most others build on comes first, what takes
     /// longest last.
-    pub const ALL: [Exhibit; 20] = [
+    pub const ALL: [Exhibit; 23] = [
+        Exhibit::Table5,
+        Exhibit::Figure4,
+        Exhibit::Figure5,
         Exhibit::Table10,
         Exhibit::Table6,
         Exhibit::Table7,
@@ -85,12 +94,15 @@ impl Exhibit {
         match self {
             Exhibit::Table2 => "Table 2",
             Exhibit::Table3 => "Table 3",
+            Exhibit::Table5 => "Table 5",
             Exhibit::Table6 => "Table 6",
             Exhibit::Table7 => "Table 7",
             Exhibit::Table8 => "Table 8",
             Exhibit::Table9 => "Table 9",
             Exhibit::Table10 => "Table 10",
             Exhibit::Table11 => "Table 11",
+            Exhibit::Figure4 => "Figure 4",
+            Exhibit::Figure5 => "Figure 5",
             Exhibit::Figure6 => "Figure 6",
             Exhibit::Figure7 => "Figure 7",
             Exhibit::Figure8 => "Figure 8",

@@ -1,4 +1,4 @@
-//! The paper's own figures (Knodt et al. 2023, Tables 2, 3, 6, 7, 8, 10, 11), as far as our copy of
+//! The paper's own figures (Knodt et al. 2023, Tables 2, 3, 5, 6, 7, 8, 10, 11, Figure 5), as far as our copy of
 //! it is legible: PSNR in dB and MS-SSIM over 48 views.
 //!
 //! `paper.tsv` has a line for each: table, model as the paper calls it, texture size, method.
@@ -47,6 +47,49 @@ pub fn figure(table: u8, name: &str, size: usize, method: &str) -> Option<PaperF
         .find(|l| l.table == table && l.size == size && l.method == method && is_called(name, l.model))
         .map(|l| l.figure)
 }
+
+/// What the paper counts of a model (Table 5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PaperCounts {
+    /// Pieces of the mesh that share vertices.
+    pub components: usize,
+    /// Vertices, split at seams of the texture.
+    pub vertices: usize,
+    /// Triangles.
+    pub faces: usize,
+}
+
+/// Table 5: what the paper counts of a model of ours; `level` is 1, 2 or 3, and 0 for the high-poly. In our copy the
+/// names of LOD-3's first seven rows are one row off; its figures are in the order of the other columns, which the
+/// files of the hand fan confirm.
+pub fn counts(name: &str, level: u8) -> Option<PaperCounts> {
+    include_str!("paper_dataset.tsv").lines().skip(1).find_map(|line| {
+        let parts: Vec<&str> = line.split('\t').collect();
+        let number = |k: usize| parts.get(k)?.parse::<usize>().ok();
+        (number(1)? == usize::from(level) && is_called(name, parts[0])).then_some(PaperCounts {
+            components: number(2)?,
+            vertices: number(3)?,
+            faces: number(4)?,
+        })
+    })
+}
+
+/// The table of Figure 5: high-polys, then levels from fine to coarse; components, vertices and faces, manifold
+/// models, genus, holes. Three numbers are the least, the median and the greatest.
+pub const DATASET: [[&str; 7]; 4] = [
+    [
+        "High-poly",
+        "8 / 225 / 2k",
+        "502 / 8k / 70k",
+        "723 / 9k / 0.1M",
+        "5 of 26",
+        "0 / 0 / 0",
+        "0 / 29 / 174",
+    ],
+    ["LOD-1", "1 / 41 / 312", "244 / 1k / 5k", "306 / 1k / 5k", "24 of 26", "0 / 3 / 39", "0"],
+    ["LOD-2", "1 / 19 / 82", "43 / 354 / 1k", "64 / 406 / 1k", "26 of 26", "0 / 2 / 28", "0"],
+    ["LOD-3", "1 / 6 / 40", "28 / 114 / 349", "32 / 137 / 368", "26 of 26", "0 / 0 / 12", "0"],
+];
 
 /// Table 2: the paper's method, texture size, milliseconds an iteration, iterations.
 pub const TIMINGS: [(&str, usize, f64, f64); 7] = [
@@ -106,5 +149,11 @@ mod tests {
         assert_eq!(psnr(3, "cloud512", 64, "without"), Some(32.19));
         assert_eq!(psnr(10, "my_own_model", 512, "Ours"), None);
         assert_eq!(psnr(10, "mask", 1024, "Ours"), None);
+        let counted = |name, level| counts(name, level).map(|c| (c.components, c.vertices, c.faces));
+        assert_eq!(counted("mask", 0), Some((102, 3165, 4082)));
+        assert_eq!(counted("chinese_hand_fan", 3), Some((2, 31, 34)));
+        assert_eq!(counted("chinese_chess", 2), Some((19, 269, 270)));
+        assert_eq!(counted("my_own_model", 0), None);
+        assert_eq!(include_str!("paper_dataset.tsv").lines().count(), 1 + 26 * 4);
     }
 }

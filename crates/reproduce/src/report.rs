@@ -37,6 +37,10 @@ impl Facts<'_> {
         let evaluate = self.scope.options.evaluate();
         let seconds: f64 = self.results.all().map(|o| o.seconds_in_all).sum();
         let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+        if self.planned == 0 {
+            let measured = "What was asked for measures the data; no experiment was needed.".to_string();
+            return std::iter::once(measured).chain(self.scope.catalogue.left_out.iter().cloned()).collect();
+        }
         let mut all = vec![format!(
             "{} of {} experiments in {} on {cores} cores; figures are means of {} views of {}².",
             count(made),

@@ -15,6 +15,8 @@ pub enum Cell {
     Gain(f64),
     /// The paper's gain in dB.
     PaperGain(f64),
+    /// The paper's number, with so many decimals.
+    PaperNumber(f64, usize),
     /// Any number with so many decimals.
     Number(f64, usize),
     /// Words.
@@ -38,7 +40,9 @@ impl Cell {
             },
             Cell::Paper(psnr, ssim) => format!("{}/{}", decimal(*psnr, 2), decimal(*ssim, 3)),
             Cell::Gain(gain) | Cell::PaperGain(gain) => change(*gain, 2),
-            Cell::Number(number, decimals) => decimal(*number, *decimals),
+            Cell::Number(number, decimals) | Cell::PaperNumber(number, decimals) => {
+                decimal(*number, *decimals)
+            }
             Cell::Text(text) => text.clone(),
             Cell::Missing => NOTHING.into(),
         }
@@ -46,7 +50,7 @@ impl Cell {
 
     fn class(&self) -> &'static str {
         match self {
-            Cell::Paper(..) | Cell::PaperGain(_) => "paper",
+            Cell::Paper(..) | Cell::PaperGain(_) | Cell::PaperNumber(..) => "paper",
             Cell::Gain(gain) => verdict(*gain, 2, true),
             _ => "",
         }
@@ -76,7 +80,9 @@ impl Table {
 
     /// Appends a row, unless all of its cells are missing.
     pub fn push(&mut self, name: &str, cells: Vec<Cell>) {
-        if cells.iter().any(|cell| !matches!(cell, Cell::Missing | Cell::Paper(..) | Cell::PaperGain(_))) {
+        let is_papers =
+            |cell: &Cell| matches!(cell, Cell::Paper(..) | Cell::PaperGain(_) | Cell::PaperNumber(..));
+        if cells.iter().any(|cell| *cell != Cell::Missing && !is_papers(cell)) {
             self.rows.push((name.into(), cells));
         }
     }

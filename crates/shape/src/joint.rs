@@ -70,6 +70,9 @@ pub struct ShapeOptions {
     pub reach: f32,
     /// Weight of the Laplacian term (`laplacian.rs`); 0 leaves it out.
     pub laplacian: f32,
+    /// Vertices stay where they are unless outlines differ by this share or less of what they differed before: those
+    /// that agree hardly better are not worth another shape than the artist's. 0 to 1.
+    pub worth_moving: f64,
     /// What is behind the model.
     pub background: Background,
     /// Chooses views' order and backgrounds.
@@ -90,6 +93,7 @@ impl Default for ShapeOptions {
             overhang_discount: 0.0,
             reach: 8.0,
             laplacian: 0.0,
+            worth_moving: 0.9,
             background: Background::Random,
             seed: 0,
         }
@@ -145,9 +149,6 @@ const MEASURED: usize = 48;
 const WIDE_GAP: f64 = 1.0;
 /// The shortest distance that is told from rounding, in pixels.
 const LEAST_GAP: f64 = 0.02;
-
-/// Outlines that agree hardly better than before are not worth another shape.
-const WORTH_MOVING: f64 = 0.9;
 
 /// Fits the positions of a mesh to `references`, pictures of `size`² pixels that were
 /// rendered without jitter.
@@ -219,7 +220,7 @@ pub fn fit_shape(
     fit.views = fine;
     let mut after = fit.look(moving.at(), &provisional.texture, &measured).outline;
     let cost = |outline: &Outline| f64::from(1.0 - discount) * outline.overhang + outline.underhang;
-    if cost(&after) > WORTH_MOVING * cost(&before.outline) {
+    if cost(&after) > options.worth_moving * cost(&before.outline) {
         moving.reset();
         after = before.outline;
     }

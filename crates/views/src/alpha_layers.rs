@@ -114,6 +114,18 @@ pub fn layer_kinds(low: &Mesh, delivered: &Model, high: &HighPoly) -> Vec<LayerK
         .collect()
 }
 
+/// The triangles of each kind that a high-poly has, in the order in which kinds are drawn.
+pub fn high_layers(high: &HighPoly) -> Vec<(LayerKind, Vec<u32>)> {
+    let of = |kind: LayerKind| {
+        (0..high.triangles as u32).filter(|&t| high_kind(high, t as usize) == kind).collect()
+    };
+    KINDS
+        .map(|kind| (kind, of(kind)))
+        .into_iter()
+        .filter(|(_, triangles): &(_, Vec<u32>)| !triangles.is_empty())
+        .collect()
+}
+
 /// The layers of two models.
 pub fn alpha_layers(kinds: &[LayerKind], high: &HighPoly) -> Vec<AlphaLayer> {
     let of = |kind: LayerKind| AlphaLayer {

@@ -13,6 +13,7 @@ use crate::gutter;
 use crate::high_poly::HighPoly;
 use crate::low_poly::LowPoly;
 use parbake_image::{Domain, FloatImage, MapKind, MapSet, MapValues};
+use parbake_mesh::SurfacePoint;
 use parbake_model::Mesh;
 use parbake_model::glam::{Mat3, Vec3, Vec4};
 use parbake_render::interpolate::interpolate;
@@ -31,62 +32,147 @@ pub struct ProjectedMaps {
 /// What a texel finds where neither it nor a neighbour finds anything.
 const NOTHING_FOUND: Vec4 = Vec4::new(0.5, 0.5, 0.5, 1.0);
 
+/// Which point of the high-poly a point of the low-poly shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Search {
+    /// Along the ray the nearest one, to either side ([`parbake_mesh::HighSurface::project_facing`]).
+    #[default]
+    Nearest,
+    /// Along the ray the outermost one ([`parbake_mesh::HighSurface::project_from_outside`]).
+    Outermost,
+    /// The closest one in space, whatever the direction.
+    ClosestPoint,
+}
+
+/// Finds what a high-poly shows at points of a low-poly.
+pub struct Projector<'a> {
+    low: &'a Mesh,
+    high: &'a HighPoly,
+    search: Search,
+    /// V directions of rays, of any length; none for the low-poly's own normals.
+    directions: Option<Vec<Vec3>>,
+    /// How wide one sample is on each triangle, in the common frame.
+    widths: Vec<f32>,
+}
+
+/// What a point of the low-poly finds; all of it in the common frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Found {
+    /// The point of the low-poly.
+    pub point: Vec3,
+    /// The unit direction along which it looked, outwards.
+    pub direction: Vec3,
+    /// Tangent, bitangent and normal of the low-poly, interpolated and not of unit length.
+    pub frame: Mat3,
+    /// The high-poly's point.
+    pub hit: SurfacePoint,
+    /// The high-poly's unit normal there, with its normal map, on the side that the low-poly shows.
+    pub normal: Vec3,
+    /// The high-poly's maps there; the normal is in the low-poly's tangent frame.
+    pub values: MapValues,
+}
+
+impl<'a> Projector<'a> {
+    /// For samples each of which stands for 1 / `samples` of a texel.
+    pub fn new(low: &'a LowPoly, high: &'a HighPoly, search: Search, samples: usize) -> Self {
+        let narrower = 1.0 / (samples.max(1) as f32).sqrt();
+        let widths = texel_widths(&low.placed, low.map.size).iter().map(|width| width * narrower).collect();
+        Self { low: &low.placed, high, search, directions: None, widths }
+    }
+
+    /// With rays along these V directions instead of the low-poly's own normals.
+    pub fn along(self, directions: Vec<Vec3>) -> Self {
+        Self { directions: Some(directions), ..self }
+    }
+
+    /// What the point at these weights of corners 1 and 2 of a triangle finds; nothing where there is no such
+    /// triangle, or no high-poly.
+    pub fn find(&self, triangle: usize, [second, third]: [f32; 2]) -> Option<Found> {
+        let Self { low, high, .. } = self;
+        let HighPoly { scene, surface, .. } = high;
+        let corners = low.triangles.get(triangle)?.map(|i| i as usize);
+        let reach = high.conventions.max_distance;
+        let weights = [1.0 - second - third, second, third];
+        let point = interpolate(corners.map(|i| low.positions[i]), weights);
+        let normal = interpolate(corners.map(|i| low.normals[i]), weights);
+        let side = low.area_normal(triangle);
+        let along = match &self.directions {
+            Some(directions) => interpolate(corners.map(|i| directions[i]), weights),
+            None => normal,
+        };
+        let direction = along.normalize_or_zero();
+        let hit = match self.search {
+            Search::Nearest => surface.project_facing(point, direction, side, reach),
+            Search::Outermost => surface.project_from_outside(point, direction, side, reach),
+            Search::ClosestPoint => surface.closest_on_side(point, side, reach),
+        }?;
+        let [b1, b2] = hit.barycentric;
+        let mut values = scene.look(hit.triangle as usize, [1.0 - b1 - b2, b1, b2], self.widths[triangle]);
+        let mut found = values[MapKind::Normal].truncate();
+        // A sheet seen from its back: the side that faces out is meant.
+        if found.dot(normal) < 0.0 {
+            found = -found;
+        }
+        let tangent = interpolate(corners.map(|i| low.tangents[i].truncate()), weights);
+        let bitangent = normal.cross(tangent) * low.tangents[corners[0]].w;
+        let frame = Mat3::from_cols(tangent, bitangent, normal);
+        values[MapKind::Normal] = in_frame(&frame, found).extend(0.0);
+        Some(Found { point, direction, frame, hit, normal: found, values })
+    }
+}
+
+/// A direction of space in a tangent frame, so that `frame` · result is that direction; +Z where the frame is
+/// flat.
+pub fn in_frame(frame: &Mat3, direction: Vec3) -> Vec3 {
+    if frame.determinant().abs() < 1e-6 { Vec3::Z } else { frame.inverse() * direction }
+}
+
 /// Projects the high-poly onto each texel of the map.
 ///
 /// A texel looks [`Conventions::max_distance`](crate::high_poly::Conventions) to either side.
 pub fn project(low: &LowPoly, high: &HighPoly) -> ProjectedMaps {
-    let LowPoly { placed: low, map, atlas, .. } = low;
-    let HighPoly { scene, surface, .. } = high;
+    let LowPoly { map, atlas, .. } = low;
     let reach = high.conventions.max_distance;
-    let size = map.size;
-    let texel_width = texel_widths(low, size);
-    let projected: Vec<Option<(MapValues, f32)>> = (0..size * size)
+    let projector = Projector::new(low, high, Search::Nearest, 1);
+    let projected: Vec<Option<(MapValues, f32)>> = (0..map.size * map.size)
         .into_par_iter()
         .map(|texel| {
-            let triangle = map.triangle[texel] as usize;
-            let corners = low.triangles.get(triangle)?.map(|i| i as usize);
-            let [second, third] = map.barycentric[texel];
-            let weights = [1.0 - second - third, second, third];
-            let point = interpolate(corners.map(|i| low.positions[i]), weights);
-            let normal = interpolate(corners.map(|i| low.normals[i]), weights);
-            let side = low.area_normal(triangle);
-            let hit = surface.project_facing(point, normal.normalize_or_zero(), side, reach)?;
-            let [b1, b2] = hit.barycentric;
-            let mut values =
-                scene.look(hit.triangle as usize, [1.0 - b1 - b2, b1, b2], texel_width[triangle]);
-            let mut found = values[MapKind::Normal].truncate();
-            // A sheet seen from its back: the side that faces out is meant.
-            if found.dot(normal) < 0.0 {
-                found = -found;
-            }
-            let tangent = interpolate(corners.map(|i| low.tangents[i].truncate()), weights);
-            let bitangent = normal.cross(tangent) * low.tangents[corners[0]].w;
-            let frame = Mat3::from_cols(tangent, bitangent, normal);
-            let flat = frame.determinant().abs() < 1e-6;
-            let mapped = if flat { Vec3::Z } else { frame.inverse() * found };
-            values[MapKind::Normal] = mapped.extend(0.0);
-            Some((values, hit.distance))
+            let found = projector.find(map.triangle[texel] as usize, map.barycentric[texel])?;
+            Some((found.values, found.hit.distance))
         })
         .collect();
-    let known: Vec<bool> = projected.iter().map(Option::is_some).collect();
     let missed = (projected.iter().zip(&atlas.covered))
         .filter(|(p, covered)| **covered && p.is_none_or(|(_, distance)| distance > reach))
         .count();
-    let mut maps = MapSet::new(size);
+    let known: Vec<bool> = projected.iter().map(Option::is_some).collect();
+    let mut maps = MapSet::new(map.size);
     for kind in high.kinds() {
-        let domain = kind.spec().domain;
-        let none = if domain == Domain::Hemisphere { kind.spec().neutral } else { NOTHING_FOUND };
-        let of = |(values, _): &(MapValues, f32)| match kind {
-            MapKind::BaseColor if high.is_whole_material => domain.clamp(values[kind]),
-            MapKind::BaseColor => domain.clamp(values[kind].truncate().extend(1.0)),
-            _ => domain.clamp(values[kind].truncate().extend(0.0)),
-        };
-        let texels = projected.iter().map(|p| p.as_ref().map_or(none, of)).collect();
-        let mut map = FloatImage::square(size, texels);
-        gutter::fill(&mut map, &known);
-        maps.insert(kind, map);
+        let value = |texel: usize| projected[texel].as_ref().map(|(values, _)| values[kind]);
+        maps.insert(kind, finished(kind, high, map.size, &known, value));
     }
     ProjectedMaps { maps, missed }
+}
+
+/// A map of what each texel found, brought into its domain; texels that found nothing, which are not `known`,
+/// are filled from those around.
+pub fn finished(
+    kind: MapKind,
+    high: &HighPoly,
+    size: usize,
+    known: &[bool],
+    value: impl Fn(usize) -> Option<Vec4> + Sync,
+) -> FloatImage<Vec4> {
+    let domain = kind.spec().domain;
+    let none = if domain == Domain::Hemisphere { kind.spec().neutral } else { NOTHING_FOUND };
+    let of = |value: Vec4| match kind {
+        MapKind::BaseColor if high.is_whole_material => domain.clamp(value),
+        MapKind::BaseColor => domain.clamp(value.truncate().extend(1.0)),
+        _ => domain.clamp(value.truncate().extend(0.0)),
+    };
+    let texels = (0..size * size).into_par_iter().map(|texel| value(texel).map_or(none, of)).collect();
+    let mut map = FloatImage::square(size, texels);
+    gutter::fill(&mut map, known);
+    map
 }
 
 /// How wide one texel is on each triangle, in the common frame.

@@ -3,14 +3,18 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod batch;
 mod check;
 mod command;
 mod common;
 mod layouts;
+mod lod;
 mod parallax;
+mod raycast;
 mod real_models;
 mod refusals;
 mod reproduce;
 mod schema;
+mod stats;
 mod turntable;
 mod view;

@@ -47,6 +47,7 @@ fn confined_commands_refuse_files_outside() {
     for command in [
         &["check", "in/m.obj"][..],
         &["bake", "in/m.obj", "in/m.obj"],
+        &["raycast", "in/m.obj", "in/m.obj"],
         &["compress", "in/m.obj"],
         &["eval", "in/m.obj", "in/m.obj"],
         &["variants", "in/m.obj", "in/m.obj"],

@@ -101,13 +101,17 @@ fn outputs_keep_to_the_schema() {
     std::fs::write(folder.join("checks.png"), parbake::encode_png(&picture).unwrap()).unwrap();
     let pair = ["demo_high.glb", "demo_low.glb"];
     let small_file = ["--preset", "fast", "--texture-format", "ktx2", "--mesh-compression", "meshopt"];
-    let runs: [(&str, Vec<&str>); 6] = [
+    let runs: [(&str, Vec<&str>); 10] = [
         ("bake", [&pair[..], &SMALL].concat()),
+        ("bake", [&["demo_high.glb", "--triangles", "60", "--preset", "fast"], &SMALL[..]].concat()),
         ("bake", [&pair[..], &SMALL, &["--parallax", "sh", "--preset", "fast"]].concat()),
         ("bake", [&pair[..], &SMALL, &small_file].concat()),
+        ("raycast", [&pair[..], &["--texture-size", "32", "--maps", "height,occlusion"]].concat()),
         ("compress", [&pair[..1], &["--texture-size", "32", "--uv-steps", "2"]].concat()),
         ("image", vec!["checks.png", "--texture-size", "16", "--grid", "8"]),
         ("eval", [&pair[..], &["--views", "2", "--resolution", "64"]].concat()),
+        ("stats", pair[..1].to_vec()),
+        ("stats", vec!["demo_low.glb", "--against", "demo_high.glb", "--samples", "1000"]),
     ];
     for (command, arguments) in runs {
         run(folder, &[&[command, "-q", "--json", "out.json"], &arguments[..]].concat());

@@ -8,6 +8,8 @@
 //!   multiplied by √(texture area / surface area), so that 1 is best.
 //! - area scale: σ₁σ₂, relative to texture area / surface area.
 //! - anisotropy: σ₁/σ₂.
+//! - symmetric Dirichlet energy (Smith and Schaefer, "Bijective Parameterization with Free Boundaries", 2015):
+//!   σ₁² + σ₂² + 1/σ₁² + 1/σ₂², the mean by surface area, of maps that are scaled as above, so that 4 is best.
 
 use super::{Distortion, Quantiles};
 use crate::{Layout, predicates};
@@ -32,19 +34,22 @@ pub(super) fn distortion(layout: &Layout, texture_size: usize) -> Option<Distort
     }
     let mut areas = Vec::with_capacity(scales.len());
     let mut ratios = Vec::with_capacity(scales.len());
-    let (mut squares, mut stretched, mut largest) = (0.0, 0.0, 0.0f64);
+    let (mut squares, mut stretched, mut largest, mut dirichlet) = (0.0, 0.0, 0.0f64, 0.0);
     for Scale { surface, singular: [large, small] } in scales {
         areas.push((large * small / mean, surface));
         if small > 0.0 {
             ratios.push((large / small, surface));
             squares += 0.5 * surface * (large.powi(-2) + small.powi(-2));
             stretched += surface;
+            let grown = (large.powi(2) + small.powi(2)) / mean;
+            dirichlet += surface * (grown + mean * (large.powi(-2) + small.powi(-2)));
             largest = largest.max(1.0 / small);
         }
     }
     Some(Distortion {
         stretch_l2: (squares / stretched * mean).sqrt(),
         stretch_max: largest * mean.sqrt(),
+        symmetric_dirichlet: dirichlet / stretched,
         texels_per_unit: mean.sqrt() * texture_size as f64,
         area_scale: weighted_quantiles(areas)?,
         anisotropy: weighted_quantiles(ratios)?,
@@ -169,6 +174,7 @@ mod tests {
         close(d.texels_per_unit, 64.0 * 2f64.sqrt());
         close(d.stretch_max, 0.5 * 2f64.sqrt());
         close(d.stretch_l2, (0.5 * (0.25 + 0.0625) * 2.0f64).sqrt());
+        close(d.symmetric_dirichlet, (4.0 + 16.0) / 2.0 + 2.0 * (0.25 + 0.0625));
         assert_eq!((d.area_scale.q1, d.area_scale.q50), (0.0, 0.0));
         close(d.area_scale.q95, 4.0);
         assert_eq!((d.anisotropy.q1, d.anisotropy.q99), (2.0, 2.0));

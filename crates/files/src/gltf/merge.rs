@@ -40,6 +40,8 @@ pub(super) struct Merge<'a, 'd> {
     uv_sets: Vec<UvSets>,
     /// Primitives placed so far: even those without triangles take time.
     placed: u64,
+    /// Where the last placing was named: instances of one node follow each other, and are one draw call.
+    drawn: String,
     /// From a primitive's element numbers to vertices; all `UNUSED` between primitives.
     places: Vec<u32>,
 }
@@ -77,8 +79,8 @@ impl<'a, 'd> Merge<'a, 'd> {
             uvs1: uvs(1),
             colors: any(|p| p.attributes.color_0.is_some()),
         };
-        let (mesh, materials, turned, scales, material_ids, placed, places) = Default::default();
-        Self { buffers, mesh, materials, turned, scales, material_ids, has, uv_sets, placed, places }
+        let (mesh, materials, turned, scales, material_ids, placed, drawn, places) = Default::default();
+        Self { buffers, mesh, materials, turned, scales, material_ids, has, uv_sets, placed, drawn, places }
     }
 
     /// Adds one placing of a mesh.
@@ -96,14 +98,20 @@ impl<'a, 'd> Merge<'a, 'd> {
             self.placed,
             limit,
         )?;
+        let is_first = self.drawn != instance.from;
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let here = format!("/meshes/{}/primitives/{i}", instance.mesh);
             if !has_triangles(primitive) {
                 buffers.context.warn("points and lines were left out");
                 continue;
             }
+            let before = self.mesh.triangles.len();
             self.add_primitive(primitive, &here, &instance)?;
+            if is_first && self.mesh.triangles.len() > before {
+                buffers.context.count_draw_calls(1);
+            }
         }
+        self.drawn = instance.from;
         Ok(())
     }
 

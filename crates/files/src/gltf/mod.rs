@@ -18,6 +18,7 @@ mod json;
 mod json_extensions;
 mod json_material;
 mod json_texture;
+mod levels_out;
 mod locate;
 mod material_extensions;
 mod materials;
@@ -25,6 +26,7 @@ mod merge;
 mod meshopt;
 mod meshopt_filter;
 mod meshopt_out;
+mod names;
 mod pack;
 mod parallax;
 mod quantise;
@@ -42,9 +44,10 @@ mod write_material;
 mod write_mesh;
 mod write_parallax;
 
+pub(crate) use names::named_files;
 pub(crate) use pack::pack;
 pub(crate) use write::quick_glb_bytes;
-pub use write::{glb_bytes, write_glb, write_glb_with};
+pub use write::{glb_bytes, write_glb, write_glb_with, write_lod_glb};
 
 use crate::context::{Context, Textures};
 use crate::finish::finish;

@@ -1,19 +1,20 @@
-//! GLB out (glTF 2.0, sections 3 and 4): one mesh; pictures inside the file, as PNG if nothing else is
-//! asked for.
+//! GLB out (glTF 2.0, sections 3 and 4): one mesh, or one for each level of detail (`MSFT_lod`,
+//! `levels_out.rs`); pictures inside the file, as PNG if nothing else is asked for.
 //!
 //! The file passes the Khronos validator without errors, and the same model gives
 //! the same bytes.
 
 use super::binary::Binary;
+use super::levels_out::{self, meshes, nodes, together};
 use super::meshopt_out;
 use super::quantise::Grid;
 use super::write_material::{EMISSIVE_STRENGTH, Materials, UNLIT, purpose_of};
-use super::write_mesh::primitives;
 use crate::texture_out::{Encoded, Purpose, encode_texture};
 use crate::write_options::{
     MeshCompression, TextureFormat, WriteOptions, Written, WrittenMesh, WrittenTexture,
 };
 use crate::{FileError, Place, encode_png, write_atomically};
+use parbake_model::glam::Vec3;
 use parbake_model::{Image, Model};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -37,7 +38,29 @@ pub fn write_glb(path: &Path, model: &Model) -> Result<u64, FileError> {
 /// # Errors
 /// As [`write_glb`].
 pub fn write_glb_with(path: &Path, model: &Model, options: &WriteOptions) -> Result<Written, FileError> {
-    let (bytes, written) = to_bytes(path, model, options, encode_texture)?;
+    let (bytes, written) = to_bytes(path, &[model], None, options, encode_texture)?;
+    write_atomically(path, &bytes)?;
+    Ok(written)
+}
+
+/// Writes several levels of detail of one model as one GLB file, finest first, with `MSFT_lod` and
+/// `MSFT_screencoverage`. `coverages` holds for each level the share of the screen's height that the model spans
+/// where the next level takes its place; that of the last level is 0.
+///
+/// # Errors
+/// As [`write_glb`]; also where there is no level, or not one coverage for each.
+pub fn write_lod_glb(
+    path: &Path,
+    levels: &[&Model],
+    coverages: &[f64],
+    options: &WriteOptions,
+) -> Result<Written, FileError> {
+    if levels.is_empty() || levels.len() != coverages.len() {
+        let reason =
+            format!("{} levels of detail need as many coverages, not {}", levels.len(), coverages.len());
+        return Err(FileError::Invalid { path: path.into(), place: Place::File, reason });
+    }
+    let (bytes, written) = to_bytes(path, levels, Some(coverages), options, encode_texture)?;
     write_atomically(path, &bytes)?;
     Ok(written)
 }
@@ -47,7 +70,7 @@ pub fn write_glb_with(path: &Path, model: &Model, options: &WriteOptions) -> Res
 /// # Errors
 /// When the model breaks its contract.
 pub fn glb_bytes(model: &Model) -> Result<Vec<u8>, FileError> {
-    Ok(to_bytes(Path::new(&model.name), model, &WriteOptions::default(), encode_texture)?.0)
+    Ok(to_bytes(Path::new(&model.name), &[model], None, &WriteOptions::default(), encode_texture)?.0)
 }
 
 /// The same for one look at it: textures are encoded fast instead of small.
@@ -56,21 +79,25 @@ pub(crate) fn quick_glb_bytes(model: &Model) -> Result<Vec<u8>, FileError> {
         let bytes = encode_png(image)?;
         Ok(Encoded { bytes, format: TextureFormat::Png, psnr: None, reason: None })
     };
-    Ok(to_bytes(Path::new(&model.name), model, &WriteOptions::default(), encode)?.0)
+    Ok(to_bytes(Path::new(&model.name), &[model], None, &WriteOptions::default(), encode)?.0)
 }
 
 fn to_bytes(
     path: &Path,
-    model: &Model,
+    levels: &[&Model],
+    coverages: Option<&[f64]>,
     options: &WriteOptions,
     encode_texture: impl Fn(&Image, Purpose, &WriteOptions) -> Result<Encoded, FileError> + Sync,
 ) -> Result<(Vec<u8>, Written), FileError> {
-    crate::model_out::check(path, model)?;
+    for model in levels {
+        crate::model_out::check(path, model)?;
+    }
     let mut binary = Binary::default();
-    let positions = &model.mesh.positions;
-    let grid = (options.mesh_compression != MeshCompression::None).then(|| Grid::of(positions));
+    let positions: Vec<Vec3> = levels.iter().flat_map(|model| model.mesh.positions.iter().copied()).collect();
+    let grid = (options.mesh_compression != MeshCompression::None).then(|| Grid::of(&positions));
+    let model = &together(levels);
     let mut materials = Materials::of(model, grid.map_or(1.0, |grid| grid.unit()));
-    let primitives = primitives(&mut binary, model, &materials.used, grid.as_ref());
+    let meshes = meshes(&mut binary, levels, grid.as_ref());
     let fallback =
         (options.mesh_compression == MeshCompression::Meshopt).then(|| meshopt_out::compress(&mut binary));
     let mesh_bytes = binary.bytes.len() as u64;
@@ -86,10 +113,7 @@ fn to_bytes(
     name_sources(&mut materials.textures, &textures);
     let uses = |extension| textures.iter().any(|texture| extension_of(texture.format) == Some(extension));
     let (uses_webp, uses_ktx2) = (uses(WEBP), uses(KTX2));
-    let mut node = json!({ "mesh": 0, "name": model.name });
-    if let Some(grid) = &grid {
-        grid.place(&mut node);
-    }
+    let nodes = nodes(levels, coverages, grid.as_ref());
     let mut buffers = vec![json!({ "byteLength": binary.bytes.len() })];
     let uses_meshopt = fallback.is_some();
     buffers.extend(fallback);
@@ -97,8 +121,8 @@ fn to_bytes(
         "asset": { "version": "2.0", "generator": concat!("Parbake ", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
-        "nodes": [node],
-        "meshes": [{ "name": model.name, "primitives": primitives }],
+        "nodes": nodes,
+        "meshes": meshes,
         "materials": materials.json,
         "accessors": binary.accessors,
         "bufferViews": binary.views,
@@ -114,6 +138,7 @@ fn to_bytes(
     }
     // Whether it is used, and whether a reader cannot do without it.
     let extensions = [
+        (levels_out::NAME, coverages.is_some(), false),
         (EMISSIVE_STRENGTH, materials.uses_emissive_strength, false),
         (UNLIT, materials.uses_unlit, false),
         ("KHR_texture_transform", materials.uses_transforms, false),
@@ -132,7 +157,7 @@ fn to_bytes(
         }
     }
     let bytes = assemble(path, &document.to_string(), binary.bytes)?;
-    let position_error = grid.map_or(0.0, |grid| grid.error(positions));
+    let position_error = grid.map_or(0.0, |grid| grid.error(&positions));
     let mesh = WrittenMesh { compression: options.mesh_compression, bytes: mesh_bytes, position_error };
     let written = Written { bytes: bytes.len() as u64, mesh, textures };
     Ok((bytes, written))

@@ -5,6 +5,7 @@ mod corner;
 mod lex;
 mod materials;
 mod mtl;
+mod names;
 mod pbr;
 mod polygon;
 mod srgb;
@@ -12,6 +13,7 @@ mod statements;
 mod write;
 mod write_mtl;
 
+pub(crate) use names::{named_libraries, named_pictures};
 pub use write::write_obj;
 
 use crate::context::{Context, Textures};
@@ -53,6 +55,7 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
     let libraries = std::mem::take(&mut statements.libraries);
     let mesh = assemble::assemble(statements, &context)?;
     let (mesh, names) = used_materials(mesh, names);
+    context.count_draw_calls(names.len());
     let (materials, images) = materials::build(&names, &libraries, &context)?;
     check_coordinates(&mesh, &materials, &context);
     let name = path_stem(context.path);

@@ -9,6 +9,7 @@
 //! pictures     Table 6              pictures on a plane
 //! content      Table 3              the content-aware term, with and without
 //! timings      Table 2              seconds
+//! dataset      Table 5, Figures 4, 5 what the models are like, and how far levels are from them
 //! parallax     Table 11             kinds of parallax and of displacement
 //! violins      Figures 6, 9         gains of all models
 //! side_by_side Figures 7, 8         levels and texture sizes to look at
@@ -23,6 +24,7 @@ mod ablation;
 mod compress;
 mod content;
 mod convergence;
+mod dataset;
 pub mod drawn;
 mod layouts;
 mod lods;
@@ -51,10 +53,13 @@ impl Exhibit {
         match self {
             Exhibit::Table2 => timings::LEAD,
             Exhibit::Table3 => content::LEAD,
+            Exhibit::Table5 => dataset::LEAD_EACH,
             Exhibit::Table6 => pictures::LEAD,
             Exhibit::Table7 => compress::LEAD,
             Exhibit::Table8 | Exhibit::Table9 | Exhibit::Table10 => lods::LEAD,
             Exhibit::Table11 => parallax::LEAD,
+            Exhibit::Figure4 => dataset::LEAD_DISTANCES,
+            Exhibit::Figure5 => dataset::LEAD_ALL,
             Exhibit::Figure6 | Exhibit::Figure9 => violins::LEAD,
             Exhibit::Figure7 | Exhibit::Figure8 => side_by_side::LEAD,
             Exhibit::Figure10 => layouts::LEAD_PICTURES,
@@ -73,6 +78,8 @@ impl Exhibit {
         match self {
             Exhibit::Table2 => timings::experiments(scope),
             Exhibit::Table3 => content::experiments(scope),
+            // They measure the data itself.
+            Exhibit::Table5 | Exhibit::Figure4 | Exhibit::Figure5 => Vec::new(),
             Exhibit::Table6 => pictures::experiments(scope),
             Exhibit::Table7 | Exhibit::Figure9 => compress::experiments(scope),
             Exhibit::Table8 => lods::experiments(scope, Level::One),
@@ -101,12 +108,15 @@ impl Exhibit {
         match self {
             Exhibit::Table2 => Ok(timings::draw(scope, results)),
             Exhibit::Table3 => Ok(content::draw(scope, results)),
+            Exhibit::Table5 => Ok(dataset::draw_each(scope)),
             Exhibit::Table6 => Ok(pictures::draw(scope, results)),
             Exhibit::Table7 => Ok(compress::draw(scope, results)),
             Exhibit::Table8 => Ok(lods::draw(scope, results, Level::One, 8)),
             Exhibit::Table9 => Ok(lods::draw(scope, results, Level::Two, 9)),
             Exhibit::Table10 => Ok(lods::draw(scope, results, Level::Three, 10)),
             Exhibit::Table11 => Ok(parallax::draw(scope, results)),
+            Exhibit::Figure4 => Ok(dataset::draw_distances(scope)),
+            Exhibit::Figure5 => Ok(dataset::draw_all(scope)),
             Exhibit::Figure6 => Ok(violins::draw_levels(scope, results)),
             Exhibit::Figure7 => side_by_side::draw_levels(scope, results),
             Exhibit::Figure8 => side_by_side::draw_sizes(scope, results),

@@ -284,11 +284,27 @@ fn instances_are_placed() {
     let rotation = add(&mut document, "VEC4", 5126, 2, &floats(&[0., 0., 0., 1., 0., 0., half, half]));
     document["nodes"][0] = json!({ "mesh": 0, "scale": [1, 1, 4], "extensions": { "EXT_mesh_gpu_instancing": {
         "attributes": { "TRANSLATION": translation, "ROTATION": rotation } } } });
-    let mesh = read_value(&document).unwrap().model.mesh;
+    let loaded = read_value(&document).unwrap();
+    // A card draws all instances of a node at once.
+    assert_eq!(loaded.contents.draw_calls, 1);
+    let mesh = loaded.model.mesh;
     assert_eq!((mesh.triangles.len(), mesh.positions[0], mesh.positions[1]), (2, Vec3::ZERO, Vec3::X));
     assert!(mesh.positions[4].distance(Vec3::new(0.0, 1.0, 4.0)) < 1e-6, "{}", mesh.positions[4]);
     document["accessors"][rotation]["count"] = 1.into();
     assert!(read_value(&document).unwrap_err().contains("differ in number"));
+}
+
+/// Protects the count of draw calls: each primitive with triangles, at each node.
+#[test]
+fn draw_calls_are_primitives_at_nodes() {
+    let mut document = document(&TRIANGLE);
+    let primitive = document["meshes"][0]["primitives"][0].clone();
+    let mut points = primitive.clone();
+    points["mode"] = 0.into();
+    document["meshes"][0]["primitives"] = json!([primitive, points, primitive]);
+    document["nodes"] = json!([{ "mesh": 0 }, { "mesh": 0, "translation": [9, 0, 0] }]);
+    document["scenes"] = json!([{ "nodes": [0, 1] }]);
+    assert_eq!(read_value(&document).unwrap().contents.draw_calls, 4);
 }
 
 /// Protects the time that nodes can cost without adding triangles.

@@ -1,0 +1,69 @@
+//! `parbake lod` and `parbake bake --triangles` as people meet them.
+
+use crate::common::{demo_pair, json, parbake, run, text};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+/// The JSON of a GLB file.
+fn document(path: &Path) -> Value {
+    let bytes = fs::read(path).unwrap();
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    serde_json::from_slice(&bytes[20..20 + length]).unwrap()
+}
+
+/// Protects the chain: each level is a file of its own within its budget, all are in one file as `MSFT_lod`, and
+/// lods.json tells of what is there.
+#[test]
+fn a_chain_is_written_for_engines() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    let levels = ["--screen-size", "48,24", "--triangles", "300,60", "--layout", "three"];
+    run(folder, &[&["lod", "demo_high.glb", "-o", "lods"], &levels[..]].concat());
+    let lods = folder.join("lods");
+    let chain = json(&lods.join("lods.json"));
+    let told = chain["levels"].as_array().unwrap();
+    assert_eq!(told.len(), 2);
+    for (level, most) in told.iter().zip([300, 60]) {
+        let file = lods.join(level["file"].as_str().unwrap());
+        assert_eq!(fs::metadata(&file).unwrap().len(), level["bytes"].as_u64().unwrap());
+        let triangles = level["triangles"].as_u64().unwrap();
+        assert!(triangles <= most && triangles + 4 > most, "{triangles} of {most}");
+        let glb = document(&file);
+        let accessor = glb["meshes"][0]["primitives"][0]["indices"].as_u64().unwrap() as usize;
+        assert_eq!(glb["accessors"][accessor]["count"], 3 * triangles);
+        assert!(level["at_screen_size"]["psnr"].as_f64().unwrap() > 20.0, "{level}");
+    }
+    let all = document(&lods.join(chain["all_levels"].as_str().unwrap()));
+    assert_eq!(all["nodes"][0]["extensions"]["MSFT_lod"]["ids"], serde_json::json!([1]));
+    assert_eq!(all["extensionsUsed"], serde_json::json!(["MSFT_lod"]));
+    let coverages = &all["nodes"][0]["extras"]["MSFT_screencoverage"];
+    assert_eq!(coverages[0], told[0]["min_coverage"]);
+    assert_eq!((coverages[1].as_f64(), coverages[2].as_f64()), (Some(0.0), None));
+    assert!(lods.join("parbake_lods.js").exists());
+    // The file with all levels shows the finest to readers that know no levels.
+    run(folder, &["check", "lods/demo_high_lods.glb"]);
+}
+
+/// Protects who has no low-poly: one is made, within its budget, and it has a sound layout.
+#[test]
+fn a_bake_makes_its_low_poly() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    let small = ["--texture-size", "64", "--preset", "fast", "--views", "24"];
+    run(
+        folder,
+        &[&["bake", "demo_high.glb", "-t", "80", "-o", "out.glb", "--json", "out.json"], &small[..]].concat(),
+    );
+    assert!((76..=80).contains(&json(&folder.join("out.json"))["low_triangles"].as_u64().unwrap()));
+    run(folder, &["check", "out.glb"]);
+    let both = parbake(folder).args(["bake", "demo_high.glb", "demo_low.glb", "-t", "80"]).output().unwrap();
+    assert_eq!(both.status.code(), Some(2));
+    let none = parbake(folder).args(["bake", "demo_high.glb"]).output().unwrap();
+    assert_eq!(none.status.code(), Some(2));
+    assert!(text(&none.stderr).contains("LOW"), "{}", text(&none.stderr));
+    let wrong = parbake(folder).args(["lod", "demo_high.glb", "--screen-size", "50,100"]).output().unwrap();
+    assert!(text(&wrong.stderr).contains("descending"), "{}", text(&wrong.stderr));
+}

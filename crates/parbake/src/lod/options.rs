@@ -1,0 +1,159 @@
+//! Options of a chain of levels of detail.
+
+use crate::error::BakeError;
+use crate::normal_y::NormalY;
+#[cfg(feature = "clap")]
+use crate::options::heading;
+use crate::options::{BakeOptions, Preset, Shading};
+use parbake_files::WriteOptions;
+use serde::{Deserialize, Serialize};
+
+/// Options of a chain of levels of detail: one plain struct for library, command line and file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default, deny_unknown_fields)]
+pub struct LodOptions {
+    /// Size on screen that each level is made for: pixels that the model's longest side spans, 16 to 4096, from large
+    /// to small
+    #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "PIXELS", default_values_t = [300.0, 100.0, 50.0], help_heading = LEVELS))]
+    pub screen_size: Vec<f64>,
+
+    /// Triangles of each level, at most, 4 or more; as many numbers as levels [default: as many as --error needs]
+    #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "COUNT", conflicts_with = "ratio", help_heading = LEVELS))]
+    pub triangles: Vec<usize>,
+
+    /// Triangles of each level as a share of the model's, above 0 to 1; as many numbers as levels
+    #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "SHARE", help_heading = LEVELS))]
+    pub ratio: Vec<f64>,
+
+    /// How far a level's surface may be off, in pixels at the level's size, 0.01 to 10
+    #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", default_value_t = 0.25, help_heading = LEVELS))]
+    pub error: f64,
+
+    /// Largest texture of a level, in texels along a side, 16 to 8192; textures follow the size on screen, with about
+    /// a texel for each pixel
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 2048, value_parser = crate::texels::parse_texels, help_heading = LEVELS))]
+    #[serde(deserialize_with = "crate::texels::texels")]
+    pub max_texture_size: usize,
+
+    /// PSNR in dB from which on a level cannot be told from the one before, 10 to 60; says where levels switch
+    #[cfg_attr(feature = "clap", arg(long, value_name = "DECIBELS", default_value_t = 35.0, help_heading = LEVELS))]
+    pub switch_psnr: f64,
+
+    /// Height in pixels of the screen that coverages are shares of, 100 to 100000
+    #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", default_value_t = 1080.0, help_heading = LEVELS))]
+    pub viewport_height: f64,
+
+    /// Trades time for quality
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Preset::Fast, help_heading = heading::QUALITY))]
+    pub preset: Preset,
+
+    /// What of the model's materials is fitted; pbr is the whole metallic-roughness material
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Shading::Auto, help_heading = heading::QUALITY))]
+    pub shading: Shading,
+
+    /// How files are written
+    #[cfg_attr(feature = "clap", command(flatten))]
+    #[serde(flatten)]
+    pub write: WriteOptions,
+
+    /// Direction of the green channel of the normal maps that are written
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = NormalY::Up, help_heading = heading::ADVANCED))]
+    pub normal_y: NormalY,
+
+    /// Random seed of all views, 0 to 2^64 - 1
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NUMBER", default_value_t = 0, help_heading = heading::ADVANCED))]
+    pub seed: u64,
+
+    /// Number of threads, 0 to 256; 0 is one a core. The result does not depend on it
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 0, help_heading = heading::ADVANCED))]
+    pub threads: usize,
+}
+
+/// Heading in `--help`.
+#[cfg(feature = "clap")]
+const LEVELS: &str = "Levels";
+
+impl Default for LodOptions {
+    fn default() -> Self {
+        Self {
+            screen_size: vec![300.0, 100.0, 50.0],
+            triangles: Vec::new(),
+            ratio: Vec::new(),
+            error: 0.25,
+            max_texture_size: 2048,
+            switch_psnr: 35.0,
+            viewport_height: 1080.0,
+            preset: Preset::Fast,
+            shading: Shading::Auto,
+            write: WriteOptions::default(),
+            normal_y: NormalY::Up,
+            seed: 0,
+            threads: 0,
+        }
+    }
+}
+
+/// Most levels of a chain: Unity reads no more.
+const MOST_LEVELS: usize = 8;
+
+impl LodOptions {
+    /// Checks every range and combination.
+    ///
+    /// # Errors
+    /// [`BakeError::Option`].
+    pub fn check(&self) -> Result<(), BakeError> {
+        let refuse = |option: &'static str, value: String, range: &str| {
+            Err(BakeError::Option { option, value, range: range.into() })
+        };
+        let listed = |values: &[f64]| values.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        let sizes = &self.screen_size;
+        if sizes.is_empty() || sizes.len() > MOST_LEVELS || !sizes.iter().all(|s| (16.0..=4096.0).contains(s))
+        {
+            return refuse("screen-size", listed(sizes), "1 to 8 numbers of 16 to 4096 pixels");
+        }
+        if sizes.windows(2).any(|pair| pair[0] <= pair[1]) {
+            return refuse("screen-size", listed(sizes), "in descending order, as 300,100,50");
+        }
+        let count = format!("{} numbers, one for each --screen-size", sizes.len());
+        if !self.triangles.is_empty() && self.triangles.len() != sizes.len() {
+            let given: Vec<String> = self.triangles.iter().map(usize::to_string).collect();
+            return refuse("triangles", given.join(","), &count);
+        }
+        if let Some(few) = self.triangles.iter().find(|&&count| count < 4) {
+            return refuse("triangles", few.to_string(), "4 or more");
+        }
+        if !self.ratio.is_empty() && self.ratio.len() != sizes.len() {
+            return refuse("ratio", listed(&self.ratio), &count);
+        }
+        if let Some(share) = self.ratio.iter().find(|&&share| !(share > 0.0 && share <= 1.0)) {
+            return refuse("ratio", share.to_string(), "above 0, up to 1");
+        }
+        let ranges = [
+            ("error", self.error, 0.01, 10.0),
+            ("max-texture-size", self.max_texture_size as f64, 16.0, 8192.0),
+            ("switch-psnr", self.switch_psnr, 10.0, 60.0),
+            ("viewport-height", self.viewport_height, 100.0, 1e5),
+        ];
+        for (option, value, low, high) in ranges {
+            if !(low..=high).contains(&value) {
+                return refuse(option, value.to_string(), &format!("{low} to {high}"));
+            }
+        }
+        self.bake(self.max_texture_size).check()
+    }
+
+    /// The options of a level's bake.
+    pub fn bake(&self, texture_size: usize) -> BakeOptions {
+        BakeOptions {
+            texture_size,
+            preset: self.preset,
+            shading: self.shading,
+            normal_y: self.normal_y,
+            seed: self.seed,
+            threads: self.threads,
+            write: self.write,
+            ..BakeOptions::default()
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Where a level may take the place of the one before: the largest size on screen at which nobody can tell the two,
+//! found by rendering both at that size.
+//!
+//! Both are photographed from some directions, by the whole material under the built-in light where there is one, on
+//! grey. The figure is the PSNR over whole pictures in which the model's longest side spans five sevenths of the
+//! width, the mean over the directions. Sizes are tried in steps of a fifth from the one that the level was made for;
+//! the largest that passes before one does not counts.
+//!
+//! Contract: deterministic, and the same for the same models, whatever the bake was.
+
+use crate::error::BakeError;
+use crate::evaluate::options::{EvaluateOptions, GREY};
+use crate::options::Shading;
+use crate::studio::Studio;
+pub use crate::studio::Subject;
+use parbake_metric::Rgb;
+use parbake_model::Model;
+use parbake_render::camera::fibonacci_sphere;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// Directions that models are seen from.
+const VIEWS: usize = 6;
+/// Pixels that samples are enough for at small sizes, where thin parts flicker with fewer, and samples along a side of
+/// a pixel at least and at most.
+const SAMPLED: f64 = 480.0;
+const SAMPLES: [f64; 2] = [2.0, 6.0];
+/// Pixels of a picture for each that the model spans, as cameras stand (3.5 from the middle, half a width of 0.4).
+const PICTURE: f64 = 1.4;
+/// From one size to the next.
+const STEP: f64 = 1.2;
+/// The least and the largest size that is tried, in pixels.
+const SIZES: [f64; 2] = [12.0, 2048.0];
+/// Steps from the level's own size at most, to larger ones, which cost more and more, and to smaller ones.
+const MOST_STEPS: [usize; 2] = [3, 16];
+
+/// Figures of two models at one size.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct AtSize {
+    /// Pixels that the model's longest side spans.
+    pub pixels: f64,
+    /// PSNR in dB.
+    pub psnr: f64,
+    /// MS-SSIM, 0 to 1; none where pictures are too small for it.
+    pub ms_ssim: Option<f64>,
+    /// FLIP, 0 to 1, lower is better.
+    pub flip: Option<f64>,
+}
+
+/// Models in front of cameras.
+pub struct Lineup {
+    original: Model,
+    options: EvaluateOptions,
+}
+
+impl Lineup {
+    /// Around the original.
+    pub fn new(original: &Model, shading: Shading) -> Self {
+        let options = EvaluateOptions { shading, ..EvaluateOptions::default() };
+        Self { original: original.clone(), options }
+    }
+
+    fn studio(&self, pixels: f64) -> Result<Studio, BakeError> {
+        let resolution = (PICTURE * pixels).round().max(16.0) as usize;
+        let supersample = (SAMPLED / pixels).clamp(SAMPLES[0], SAMPLES[1]) as usize;
+        Studio::new(&self.original, &EvaluateOptions { resolution, supersample, ..self.options.clone() })
+    }
+
+    /// Makes a model ready for pictures.
+    ///
+    /// # Errors
+    /// Where the original has no extent.
+    pub fn subject(&self, model: &Model) -> Result<Subject, BakeError> {
+        Ok(self.studio(SIZES[0])?.subject(model))
+    }
+
+    /// Compares two models at a size; FLIP and MS-SSIM only if asked for.
+    ///
+    /// # Errors
+    /// Where the original has no extent.
+    pub fn compare(
+        &self,
+        a: &Subject,
+        b: &Subject,
+        pixels: f64,
+        with_all: bool,
+    ) -> Result<AtSize, BakeError> {
+        let studio = self.studio(pixels)?;
+        let views: Vec<_> = fibonacci_sphere(VIEWS, 0.0)
+            .into_par_iter()
+            .map(|direction| {
+                let [a, b]: [Rgb; 2] =
+                    [a, b].map(|subject| studio.develop(&studio.shot(subject, direction), [GREY; 3]));
+                if with_all {
+                    return crate::evaluate::compare(&a, &b, true);
+                }
+                crate::ViewFigures { psnr: psnr(&a, &b), ms_ssim: None, flip: None }
+            })
+            .collect();
+        let mean = crate::evaluate::mean(&views);
+        Ok(AtSize { pixels, psnr: mean.psnr, ms_ssim: mean.ms_ssim, flip: mean.flip })
+    }
+
+    /// The largest size at which `level` agrees with all of `others` by `same` decibels, searched from `start` on;
+    /// none where it does not even at the least size.
+    ///
+    /// # Errors
+    /// Where the original has no extent.
+    pub fn largest_same(
+        &self,
+        level: &Subject,
+        others: &[&Subject],
+        start: f64,
+        same: f64,
+    ) -> Result<Option<f64>, BakeError> {
+        let passes = |pixels: f64| -> Result<bool, BakeError> {
+            let studio = self.studio(pixels)?;
+            let errors: Vec<Vec<f64>> = fibonacci_sphere(VIEWS, 0.0)
+                .into_par_iter()
+                .map(|direction| {
+                    let picture =
+                        |subject: &Subject| studio.develop(&studio.shot(subject, direction), [GREY; 3]);
+                    let own = picture(level);
+                    others.iter().map(|other| psnr(&picture(other), &own)).collect()
+                })
+                .collect();
+            let mean = |other: usize| errors.iter().map(|of| of[other]).sum::<f64>() / VIEWS as f64;
+            Ok((0..others.len()).all(|other| mean(other) >= same))
+        };
+        let mut pixels = start.clamp(SIZES[0], SIZES[1]);
+        let goes_up = passes(pixels)?;
+        for _ in 0..MOST_STEPS[usize::from(!goes_up)] {
+            let next = if goes_up { pixels * STEP } else { pixels / STEP };
+            if !(SIZES[0]..=SIZES[1]).contains(&next) {
+                break;
+            }
+            match (goes_up, passes(next)?) {
+                (true, true) | (false, false) => pixels = next,
+                (true, false) => return Ok(Some(pixels)),
+                (false, true) => return Ok(Some(next)),
+            }
+        }
+        Ok(goes_up.then_some(pixels))
+    }
+}
+
+fn psnr(a: &Rgb, b: &Rgb) -> f64 {
+    parbake_metric::psnr_from_mse(parbake_metric::mean_squared_error(a, b).unwrap_or(f64::NAN))
+}

@@ -1,0 +1,68 @@
+//! A low-poly for a high-poly: triangles chosen by its pictures (`parbake-simplify`).
+
+use crate::options::Preset;
+use parbake_model::{AlphaMode, Material, MaterialExtensions, Model};
+use parbake_progress::Watcher;
+use parbake_simplify::polish::PolishOptions;
+use parbake_simplify::{ChooseOptions, LayerReport, choose_triangles};
+use parbake_views::high_poly::HighPoly;
+
+/// A low-poly of at most so many triangles, without texture coordinates, in the high-poly's own space. `model` is
+/// what the high-poly was prepared from; `before` is a finer low-poly that it may start from. Also returns how the
+/// triangles of each layer were found.
+pub fn low_poly(
+    high: &HighPoly,
+    model: &Model,
+    before: Option<&Model>,
+    triangles: usize,
+    preset: Preset,
+    watcher: &dyn Watcher,
+) -> (Model, Vec<LayerReport>) {
+    let before = before.map(|low| {
+        let mut mesh = low.mesh.clone();
+        high.frame.apply(&mut mesh);
+        mesh
+    });
+    let options = choose_options(triangles, preset);
+    let chosen = choose_triangles(high, before.as_ref(), &options, &watcher);
+    let mut mesh = chosen.mesh;
+    for point in &mut mesh.positions {
+        *point = *point / high.frame.scale + high.frame.centre;
+    }
+    let materials = model.materials.iter().map(layer_only).collect();
+    (Model { name: model.name.clone(), mesh, materials, images: Vec::new() }, chosen.layers)
+}
+
+/// Of a material what says in which layer it is drawn.
+fn layer_only(material: &Material) -> Material {
+    let transmission =
+        material.extensions.transmission.map(|t| parbake_model::Transmission { texture: None, ..t });
+    Material {
+        name: material.name.clone(),
+        alpha_mode: material.alpha_mode,
+        alpha_cutoff: if material.alpha_mode == AlphaMode::Mask { material.alpha_cutoff } else { 0.5 },
+        double_sided: material.double_sided,
+        extensions: MaterialExtensions { transmission, ..MaterialExtensions::default() },
+        ..Material::default()
+    }
+}
+
+/// Views follow the number of triangles: few large ones need many directions, many small ones need pixels. What one
+/// triangle is worth falls with their number, what it costs does not: many are chosen by quadrics alone.
+fn choose_options(triangles: usize, preset: Preset) -> ChooseOptions {
+    let own = PolishOptions::default();
+    let (room, views, view_size, rounds, sweeps) = match triangles {
+        0..=150 => (3, 64, 128, 2 * own.rounds, own.sweeps),
+        151..=400 => (3, 48, 128, own.rounds, own.sweeps),
+        401..=1000 => (3, 32, 160, own.rounds / 2, own.sweeps),
+        1001..=2500 => (2, 24, 192, own.rounds / 4, 1),
+        _ => (1, 16, 160, 0, 0),
+    };
+    let rounds = match preset {
+        Preset::Fast => rounds / 2,
+        Preset::Balanced => rounds,
+        Preset::Best => 2 * rounds,
+    };
+    let polish = PolishOptions { rounds, sweeps, ..own };
+    ChooseOptions { triangles, room, views, view_size, polish, seed: 0 }
+}

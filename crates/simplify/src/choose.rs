@@ -1,0 +1,188 @@
+//! The triangles of a coarse mesh: surfaces to begin with are collapsed to the wanted number, the best of them by its
+//! pictures is polished.
+//!
+//! ```text
+//! high-poly ─ targets (depth, contrast, outline of many views) ───────┬───────────────┐
+//!    └ starts (start.rs), the level before ─ surface ─ collapse.rs ─ error ─ best ─ polish.rs ─ mesh
+//! ```
+//!
+//! What is opaque, cut out, blended or transmits light are layers (`views/alpha_layers.rs`), and each is chosen by
+//! itself: through glass one sees what is behind it, so that nothing of it is hidden. Layers share the triangles as
+//! edge collapses of the whole model share them.
+//!
+//! Contract: the result lies in the high-poly's common frame, has at most the wanted number of triangles (but one at
+//! least in each layer), smooth normals and no texture coordinates; its materials are the high-poly's by index. It
+//! depends on the arguments alone, not on the number of threads.
+
+use crate::collapse::collapse_to;
+use crate::pictures::Pictures;
+use crate::polish::{PolishOptions, polish};
+use crate::start::{Start, quadrics};
+use crate::surface::Surface;
+use crate::target::{BACKGROUNDS, Target};
+use parbake_mesh::smooth_normals;
+use parbake_model::Mesh;
+use parbake_progress::Watcher;
+use parbake_views::alpha_layers::{LayerKind, high_layers};
+use parbake_views::high_poly::HighPoly;
+use parbake_views::pool::{View, view_pool};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// How triangles are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChooseOptions {
+    /// Triangles of the result, at most.
+    pub triangles: usize,
+    /// Triangles of a start for each that is wanted, 1 or more: those that are too many collapse by the pictures.
+    pub room: usize,
+    /// Views that errors are measured in.
+    pub views: usize,
+    /// Side of a view in pixels.
+    pub view_size: usize,
+    /// What is done with the best start.
+    pub polish: PolishOptions,
+    /// Random seed of the views.
+    pub seed: u64,
+}
+
+/// How a start did.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StartReport {
+    /// Which.
+    pub start: Start,
+    /// Triangles it came to.
+    pub triangles: usize,
+    /// Mean squared display error of its pictures as far as it can be told without a texture, all backgrounds alike.
+    pub error: f64,
+}
+
+/// How the triangles of a layer were found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LayerReport {
+    /// Triangles.
+    pub triangles: usize,
+    /// All starts that were tried; the first is the one that was taken.
+    pub starts: Vec<StartReport>,
+    /// Mean squared display error of its pictures before and after polishing, each background weighed by the
+    /// reciprocal of its own error.
+    pub error: [f64; 2],
+}
+
+/// What was chosen.
+#[derive(Clone, Debug)]
+pub struct Chosen {
+    /// In the common frame.
+    pub mesh: Mesh,
+    /// In the order in which layers are drawn.
+    pub layers: Vec<LayerReport>,
+}
+
+/// Views that tell one collapse from another well enough.
+const FEW: usize = 24;
+
+/// Chooses the triangles; `before` is the level before in the common frame, if there is one.
+pub fn choose_triangles(
+    high: &HighPoly,
+    before: Option<&Mesh>,
+    options: &ChooseOptions,
+    watcher: &impl Watcher,
+) -> Chosen {
+    let mesh = high.scene.mesh();
+    let start = quadrics(mesh, options.room * options.triangles);
+    let layers = high_layers(high);
+    let mut chosen = Chosen { mesh: Mesh::default(), layers: Vec::new() };
+    if let [_] = layers[..] {
+        let starts = [Some((Start::Quadrics, start)), before.map(|mesh| (Start::Level, mesh.clone()))];
+        chosen.add(layer(high, None, starts, options, watcher));
+        return chosen;
+    }
+    let kind_of_material = kinds_of_materials(high, &layers);
+    let own = |mesh: &Mesh, kind: usize| of_kind(mesh, kind, &kind_of_material);
+    let all = start.triangles.len().max(1);
+    for (kind, (_, triangles)) in layers.iter().enumerate() {
+        let start = own(&start, kind);
+        let share = (options.triangles * start.triangles.len() / all).max(1);
+        let options = ChooseOptions { triangles: share, ..*options };
+        // A layer of which edge collapses left nothing begins as it is.
+        let start = if start.triangles.is_empty() { own(mesh, kind) } else { start };
+        let starts = [Some((Start::Quadrics, start)), before.map(|mesh| (Start::Level, own(mesh, kind)))];
+        chosen.add(layer(high, Some(triangles), starts, &options, watcher));
+    }
+    chosen
+}
+
+/// For each material the place of its layer; that of the first for one that no triangle has.
+fn kinds_of_materials(high: &HighPoly, layers: &[(LayerKind, Vec<u32>)]) -> Vec<usize> {
+    let materials = &high.scene.mesh().triangle_materials;
+    let mut kinds = vec![0; materials.iter().max().map_or(0, |&last| last as usize + 1)];
+    for (kind, (_, triangles)) in layers.iter().enumerate() {
+        triangles.iter().for_each(|&t| kinds[materials[t as usize] as usize] = kind);
+    }
+    kinds
+}
+
+/// The triangles of a mesh whose materials are of this kind.
+fn of_kind(mesh: &Mesh, kind: usize, kind_of_material: &[usize]) -> Mesh {
+    let triangles = mesh.triangles.iter().zip(&mesh.triangle_materials);
+    let own = triangles.filter(|(_, material)| kind_of_material.get(**material as usize) == Some(&kind));
+    let (triangles, triangle_materials) = own.unzip();
+    Mesh { positions: mesh.positions.clone(), triangles, triangle_materials, ..Mesh::default() }
+}
+
+impl Chosen {
+    fn add(&mut self, (mesh, report): (Mesh, LayerReport)) {
+        let first = self.mesh.positions.len() as u32;
+        // Smooth within the layer alone: a pane does not bend with its frame.
+        self.mesh.normals.extend(smooth_normals(&mesh));
+        self.mesh.positions.extend(mesh.positions);
+        self.mesh.triangles.extend(mesh.triangles.iter().map(|t| t.map(|v| v + first)));
+        self.mesh.triangle_materials.extend(mesh.triangle_materials);
+        self.layers.push(report);
+    }
+}
+
+/// Chooses the triangles of one layer, the high-poly's `triangles`, or of all.
+fn layer(
+    high: &HighPoly,
+    triangles: Option<&[u32]>,
+    starts: [Option<(Start, Mesh)>; 2],
+    options: &ChooseOptions,
+    watcher: &impl Watcher,
+) -> (Mesh, LayerReport) {
+    let cameras = view_pool(options.views, &high.conventions.rig, options.seed);
+    let target = |view: &View| Target::new(high, triangles, view.camera, options.view_size);
+    let mut targets: Vec<Target> = cameras.par_iter().map(target).collect();
+    let mut tried: Vec<(StartReport, Surface)> = Vec::new();
+    for (start, mesh) in starts.into_iter().flatten().filter(|(_, mesh)| !mesh.triangles.is_empty()) {
+        let mut pictures = Pictures::new(&targets[..targets.len().min(FEW)], Surface::new(&mesh));
+        collapse_to(&mut pictures, options.triangles, watcher);
+        let report = StartReport { start, triangles: pictures.surface.count(), error: pictures.error() };
+        tried.push((report, pictures.surface));
+    }
+    tried.sort_by(|a, b| a.0.error.total_cmp(&b.0.error));
+    let starts = tried.iter().map(|(report, _)| *report).collect();
+    let surface = tried.into_iter().next().map(|(_, surface)| surface).unwrap_or_default();
+    weigh_backgrounds(&mut targets, &surface);
+    let mut pictures = Pictures::new(&targets, surface);
+    let before = pictures.error();
+    polish(&mut pictures, high, &options.polish, watcher);
+    let mesh = pictures.surface.to_mesh();
+    let report = LayerReport { triangles: mesh.triangles.len(), starts, error: [before, pictures.error()] };
+    (mesh, report)
+}
+
+/// Lets backgrounds count by the reciprocals of their errors: as people count in decibels, a tenth less is as much on
+/// one as on another.
+fn weigh_backgrounds(targets: &mut [Target], surface: &Surface) {
+    let mut weights = [0.0; BACKGROUNDS.len()];
+    for background in 0..weights.len() {
+        let mut only = [0.0; BACKGROUNDS.len()];
+        only[background] = 1.0;
+        targets.par_iter_mut().for_each(|target| target.weigh(only));
+        weights[background] = 1.0 / Pictures::new(targets, surface.clone()).error().max(1e-9);
+    }
+    let sum: f64 = weights.iter().sum();
+    let weights = weights.map(|weight| (weight / sum) as f32);
+    targets.par_iter_mut().for_each(|target| target.weigh(weights));
+}

@@ -1,0 +1,16 @@
+//! Triangles of a coarse mesh, chosen by how its pictures would differ from the detailed model's.
+//!
+//! `choose.rs` is the order; `target.rs` has the error, `pictures.rs` what a change would do to it.
+
+pub mod change;
+pub mod choose;
+pub mod collapse;
+pub mod pictures;
+pub mod polish;
+pub mod raster;
+pub mod start;
+pub mod surface;
+pub mod target;
+
+pub use choose::{ChooseOptions, Chosen, LayerReport, StartReport, choose_triangles};
+pub use start::Start;

@@ -1,0 +1,246 @@
+//! The same number of triangles, better placed: points move, edges flip, and triangles go from where they show
+//! nothing to where the error is.
+//!
+//! Every trial is a change (`change.rs`) that is judged by the pictures. A sweep evaluates all trials against one
+//! state, on all cores, then makes them in the order of their gains, each only if it still gains.
+//!
+//! Contract: the error never grows, nor does the number of triangles. Deterministic.
+
+use crate::change::Change;
+use crate::collapse::{collapse_to, least_squares};
+use crate::pictures::{Pictures, Scratch};
+use crate::surface::Surface;
+use glam::Vec3;
+use parbake_progress::{Message, Watcher};
+use parbake_render::interpolate::interpolate;
+use parbake_views::high_poly::HighPoly;
+use rayon::prelude::*;
+
+/// How much is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PolishOptions {
+    /// Times that triangles are exchanged.
+    pub rounds: usize,
+    /// Sweeps over all points in each round; three times as many at the beginning and at the end.
+    pub sweeps: usize,
+    /// Share of the triangles that the first round exchanges at most; later rounds fewer.
+    pub exchanged: f64,
+}
+
+impl Default for PolishOptions {
+    fn default() -> Self {
+        Self { rounds: 8, sweeps: 2, exchanged: 0.12 }
+    }
+}
+
+/// Rounds in a row without a gain after which no more follow.
+const PATIENCE: usize = 3;
+
+/// Polishes a surface. `high` is what new points are put on.
+pub fn polish(pictures: &mut Pictures, high: &HighPoly, options: &PolishOptions, watcher: &impl Watcher) {
+    let target = pictures.surface.count();
+    let mut steps = Steps::default();
+    settle(pictures, &mut steps, 3 * options.sweeps, watcher);
+    let mut without = 0;
+    for round in 0..options.rounds {
+        if watcher.stopped() || without == PATIENCE {
+            break;
+        }
+        let left = 1.0 - round as f64 / options.rounds as f64;
+        let count = ((options.exchanged * left * target as f64) as usize).max(1);
+        let (mut trial, mut own) = (pictures.clone(), steps.clone());
+        split_worst(&mut trial, high, count);
+        settle(&mut trial, &mut own, 1, watcher);
+        collapse_to(&mut trial, target, &Quietly(watcher));
+        settle(&mut trial, &mut own, options.sweeps, watcher);
+        if trial.error() < pictures.error() && trial.surface.count() <= target {
+            (*pictures, steps) = (trial, own);
+            without = 0;
+        } else {
+            without += 1;
+        }
+    }
+    settle(pictures, &mut steps, 3 * options.sweeps, watcher);
+}
+
+/// Passes on that a run should stop, and no progress: a round is a part of the whole.
+struct Quietly<'a, W>(&'a W);
+
+impl<W: Watcher> Watcher for Quietly<'_, W> {
+    fn message(&self, _: Message) {}
+
+    fn stopped(&self) -> bool {
+        self.0.stopped()
+    }
+}
+
+/// How far each point goes at a time (a pattern search with a step of its own for each point): farther after a
+/// gain, less far after none.
+#[derive(Clone, Debug, Default)]
+struct Steps {
+    of_point: Vec<f32>,
+    sweeps: u64,
+}
+
+/// First step of a point, as a share of the mean length of its edges.
+const FIRST_STEP: f32 = 0.25;
+/// Steps that are shorter than this show nothing.
+const LEAST_STEP: f32 = 0.01;
+
+impl Steps {
+    fn of(&self, point: u32) -> f32 {
+        self.of_point.get(point as usize).copied().unwrap_or(FIRST_STEP)
+    }
+
+    fn note(&mut self, points: &[u32], before: &[Vec3], surface: &Surface) {
+        self.of_point.resize(surface.points.len(), FIRST_STEP);
+        for (&point, &before) in points.iter().zip(before) {
+            let has_moved = surface.points[point as usize] != before;
+            let step = &mut self.of_point[point as usize];
+            *step =
+                if has_moved { (1.3 * *step).min(2.0 * FIRST_STEP) } else { (0.55 * *step).max(LEAST_STEP) };
+        }
+        self.sweeps += 1;
+    }
+}
+
+/// Moves points and flips edges.
+fn settle(pictures: &mut Pictures, steps: &mut Steps, sweeps: usize, watcher: &impl Watcher) {
+    for _ in 0..sweeps {
+        if watcher.stopped() {
+            return;
+        }
+        let points = points(&pictures.surface);
+        let before: Vec<Vec3> = points.iter().map(|&point| pictures.surface.points[point as usize]).collect();
+        sweep(pictures, points.clone(), |surface, &point| {
+            moves(surface, point, steps.of(point), steps.sweeps)
+        });
+        steps.note(&points, &before, &pictures.surface);
+        if steps.sweeps.is_multiple_of(2) {
+            let flips =
+                |surface: &Surface, &[a, b]: &[u32; 2]| Change::flip(surface, a, b).into_iter().collect();
+            sweep(pictures, pictures.surface.edges(), flips);
+        }
+    }
+}
+
+fn points(surface: &Surface) -> Vec<u32> {
+    (0..surface.points.len() as u32).filter(|&point| !surface.around(point).is_empty()).collect()
+}
+
+/// Trials of all places, then the best of each, in the order of gains.
+fn sweep<T: Sync + Send>(
+    pictures: &mut Pictures,
+    places: Vec<T>,
+    trials: impl Fn(&Surface, &T) -> Vec<Change> + Sync,
+) {
+    let best = |place: &T, pictures: &Pictures, scratch: &mut Scratch| {
+        let trials = trials(&pictures.surface, place).into_iter();
+        pictures.best_of(trials, scratch).filter(|(gain, _)| *gain > 0.0)
+    };
+    let mut order: Vec<(f64, usize, Change)> = places
+        .par_iter()
+        .enumerate()
+        .map_init(Scratch::default, |scratch, (index, place)| {
+            best(place, pictures, scratch).map(|(gain, change)| (gain, index, change))
+        })
+        .flatten()
+        .collect();
+    order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let mut scratch = Scratch::default();
+    let mut is_changed = vec![false; pictures.surface.points.len()];
+    for (_, index, change) in order {
+        let points = |change: &Change, surface: &Surface| -> Vec<u32> {
+            change.removed.iter().filter_map(|&t| surface.get(t)).flat_map(|t| t.corners).collect()
+        };
+        let around = points(&change, &pictures.surface);
+        let is_stale =
+            around.len() < 3 * change.removed.len() || around.iter().any(|&p| is_changed[p as usize]);
+        let change = if is_stale {
+            best(&places[index], pictures, &mut scratch).map(|best| best.1)
+        } else {
+            Some(change)
+        };
+        if let Some(change) = change {
+            points(&change, &pictures.surface)
+                .into_iter()
+                .for_each(|point| is_changed[point as usize] = true);
+            pictures.apply(&change);
+        }
+    }
+}
+
+/// Where a point may go: along its normal and across, in other directions in each sweep, and to where the planes
+/// around it meet.
+fn moves(surface: &Surface, point: u32, step: f32, sweep: u64) -> Vec<Change> {
+    let at = surface.points[point as usize];
+    let neighbours = surface.neighbours(point);
+    let mean = neighbours.iter().map(|&other| surface.points[other as usize].distance(at)).sum::<f32>()
+        / neighbours.len().max(1) as f32;
+    let around =
+        || surface.around(point).iter().filter_map(|&t| surface.get(t)).map(|t| surface.corners(t.corners));
+    let normal: Vec3 = around().map(|[a, b, c]| (b - a).cross(c - a)).sum();
+    let normal = normal.normalize_or(Vec3::Z);
+    let (x, y) = normal.any_orthonormal_pair();
+    // Golden angles never repeat.
+    let (sin, cos) = (2.4 * sweep as f32 + point as f32).sin_cos();
+    let (across, along) = (cos * x + sin * y, cos * y - sin * x);
+    let ways = [normal, -normal, across, -across, along, -along];
+    let places = ways.into_iter().map(|way| at + way * (step * mean));
+    let meet = least_squares(around(), at).filter(|place| place.distance(at) < mean);
+    places.chain(meet).filter_map(|place| Change::shift(surface, point, place)).collect()
+}
+
+/// Splits the edges from which most is to be hoped, until at least `count` triangles came.
+fn split_worst(pictures: &mut Pictures, high: &HighPoly, count: usize) {
+    let edges = pictures.surface.edges();
+    let trials = |surface: &Surface, &[a, b]: &[u32; 2]| -> Vec<Change> {
+        let [p, q] = [a, b].map(|point| surface.points[point as usize]);
+        let middle = 0.5 * (p + q);
+        let reach = 0.5 * p.distance(q);
+        let on_high = closest(high, middle, reach);
+        [Some(middle), on_high]
+            .into_iter()
+            .flatten()
+            .filter_map(|at| Change::split(surface, a, b, at))
+            .collect()
+    };
+    let best = |edge: &[u32; 2], pictures: &Pictures, scratch: &mut Scratch| {
+        pictures.best_of(trials(&pictures.surface, edge).into_iter(), scratch)
+    };
+    let errors = pictures.errors_by_triangle();
+    let mut order: Vec<(f64, usize)> = edges
+        .par_iter()
+        .enumerate()
+        .map_init(Scratch::default, |scratch, (index, edge)| {
+            let (gain, change) = best(edge, pictures, scratch)?;
+            // What is wrong there may be mended once the new point has moved.
+            let hope: f64 = change.removed.iter().map(|&t| errors[t as usize]).sum();
+            Some((gain + 0.1 * hope / pictures.pixels(), index))
+        })
+        .flatten()
+        .collect();
+    order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let mut scratch = Scratch::default();
+    let mut added = 0;
+    for (_, index) in order {
+        if added >= count {
+            break;
+        }
+        let [a, b] = edges[index];
+        if pictures.surface.at_edge(a, b).is_empty() {
+            continue;
+        }
+        if let Some((_, change)) = best(&edges[index], pictures, &mut scratch) {
+            added += change.added.len() - change.removed.len();
+            pictures.apply(&change);
+        }
+    }
+}
+
+/// The nearest point of the high-poly within a distance.
+fn closest(high: &HighPoly, point: Vec3, reach: f32) -> Option<Vec3> {
+    let hit = high.surface.closest(point, reach)?;
+    let [second, third] = hit.barycentric;
+    Some(interpolate(high.scene.mesh().corners(hit.triangle as usize), [1.0 - second - third, second, third]))
+}

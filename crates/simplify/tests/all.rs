@@ -1,0 +1,198 @@
+//! Choosing triangles, on tiny scenes.
+
+use glam::Vec3;
+use parbake_image::display::{Curve, Display};
+use parbake_model::{AlphaMode, Material, Mesh, Model};
+use parbake_render::camera::Projection;
+use parbake_render::interpretation::Interpretation;
+use parbake_simplify::change::Change;
+use parbake_simplify::collapse::collapse_to;
+use parbake_simplify::pictures::{Pictures, Scratch};
+use parbake_simplify::polish::PolishOptions;
+use parbake_simplify::surface::Surface;
+use parbake_simplify::target::Target;
+use parbake_simplify::{ChooseOptions, choose_triangles};
+use parbake_views::high_poly::{Conventions, HighPoly};
+use parbake_views::pool::{Rig, view_pool};
+
+const RIG: Rig = Rig { radius: 3.5, projection: Projection::Perspective(0.4) };
+
+/// A sphere within another one, which has the next material.
+fn nested(outer: usize, inner: usize) -> Mesh {
+    let (mut mesh, inner) = (sphere(outer), sphere(inner));
+    let first = mesh.positions.len() as u32;
+    mesh.positions.extend(inner.positions.iter().map(|p| 0.3 * *p));
+    mesh.triangles.extend(inner.triangles.iter().map(|t| t.map(|v| v + first)));
+    mesh.triangle_materials.fill(1);
+    mesh.triangle_materials.resize(mesh.triangles.len(), 0);
+    mesh
+}
+
+/// A sphere of `rows` × 2 `rows` quadrilaterals, around +Y.
+fn sphere(rows: usize) -> Mesh {
+    let columns = 2 * rows;
+    let point = |row: usize, column: usize| {
+        let polar = std::f32::consts::PI * row as f32 / rows as f32;
+        let turn = std::f32::consts::TAU * (column % columns) as f32 / columns as f32;
+        Vec3::new(polar.sin() * turn.cos(), polar.cos(), polar.sin() * turn.sin())
+    };
+    let mut mesh = Mesh::default();
+    for (row, column) in (0..rows).flat_map(|r| (0..columns).map(move |c| (r, c))) {
+        let [a, b, c, d] = [(row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)]
+            .map(|(r, c)| point(r, c));
+        for corners in [[a, b, c], [a, c, d]] {
+            if (corners[1] - corners[0]).cross(corners[2] - corners[0]).length() < 1e-6 {
+                continue;
+            }
+            let first = mesh.positions.len() as u32;
+            mesh.positions.extend(corners);
+            mesh.triangles.push([first, first + 1, first + 2]);
+        }
+    }
+    // Poles and seams are made of sines: one point each.
+    mesh.positions.iter_mut().for_each(|p| *p = (*p * 4096.0).round() / 4096.0);
+    mesh.triangle_materials = vec![0; mesh.triangles.len()];
+    mesh
+}
+
+fn prepared(mesh: Mesh) -> HighPoly {
+    prepared_of(mesh, vec![Material::default()])
+}
+
+fn prepared_of(mesh: Mesh, materials: Vec<Material>) -> HighPoly {
+    let model = Model { name: "high".into(), mesh, materials, images: Vec::new() };
+    let conventions = Conventions {
+        interpretation: Interpretation { decode_srgb: true, trilinear: true, parallax: true },
+        display: Display { gain: 1.0, curve: Curve::Srgb },
+        rig: RIG,
+        whole_material: None,
+        max_distance: 0.1,
+    };
+    HighPoly::new(&model, conventions).unwrap_or_else(|error| unreachable!("{error}"))
+}
+
+fn targets(high: &HighPoly, count: usize, size: usize) -> Vec<Target> {
+    view_pool(count, &RIG, 0).iter().map(|view| Target::new(high, None, view.camera, size)).collect()
+}
+
+/// Protects the one figure that everything is judged by: what a change is said to gain is what it gains, whether
+/// points move, edges collapse, flip or split, or parts go.
+#[test]
+fn gains_are_what_changes_do() {
+    let high = prepared(sphere(12));
+    let targets = targets(&high, 6, 48);
+    let mut pictures = Pictures::new(&targets, Surface::new(&sphere(6)));
+    let start = pictures.error();
+    assert!(start > 0.0 && pictures.surface.count() == 6 * 12 * 2 - 24);
+    let mut scratch = Scratch::default();
+    let mut kinds = [0; 4];
+    for step in 0..60u32 {
+        let edges = pictures.surface.edges();
+        let [a, b] = edges[(step as usize * 37) % edges.len()];
+        let surface = &pictures.surface;
+        let middle = 0.5 * (surface.points[a as usize] + surface.points[b as usize]);
+        let change = match step % 4 {
+            0 => Change::collapse(surface, b, a, middle),
+            1 => Change::flip(surface, a, b),
+            2 => Change::split(surface, a, b, middle.normalize()),
+            _ => Change::shift(surface, a, 1.03 * surface.points[a as usize]),
+        };
+        let Some(change) = change else { continue };
+        kinds[step as usize % 4] += 1;
+        let (before, said) = (pictures.error(), pictures.gain_of(&change, &mut scratch));
+        pictures.apply(&change);
+        let anew = Pictures::new(&targets, pictures.surface.clone()).error();
+        assert!((pictures.error() - anew).abs() < 1e-7, "what is kept is what is drawn: {step}");
+        assert!((before - said - anew).abs() < 2e-5, "{step}: {said} {}", before - anew);
+    }
+    assert!(kinds.iter().all(|&count| count > 2), "{kinds:?}");
+}
+
+/// Protects topology and the budget: a closed surface stays closed, whatever is asked for.
+#[test]
+fn closed_surfaces_stay_closed() {
+    let high = prepared(sphere(12));
+    let targets = targets(&high, 6, 48);
+    for wanted in [200, 60, 8] {
+        let mut pictures = Pictures::new(&targets, Surface::new(&sphere(12)));
+        collapse_to(&mut pictures, wanted, &());
+        let surface = &pictures.surface;
+        assert!((wanted - 1..=wanted).contains(&surface.count()), "{} of {wanted}", surface.count());
+        assert!(surface.edges().iter().all(|&[a, b]| surface.at_edge(a, b).len() == 2));
+    }
+}
+
+/// Protects budgets from what is hidden: of a sphere within another one little is left.
+#[test]
+fn what_is_never_seen_goes_first() {
+    let mut mesh = nested(10, 6);
+    mesh.triangle_materials.fill(0);
+    let high = prepared(mesh.clone());
+    let targets = targets(&high, 8, 48);
+    let mut pictures = Pictures::new(&targets, Surface::new(&mesh));
+    let error = pictures.error();
+    collapse_to(&mut pictures, sphere(10).triangles.len(), &());
+    let left = pictures.surface.to_mesh().positions.iter().filter(|p| p.length() < 0.9).count();
+    // Triangles at the poles of the outer one are too small to be seen as well.
+    assert!(3 * left < Surface::new(&sphere(6)).points.len(), "{left} points of the inner one are left");
+    assert!(pictures.error() <= error + 1e-6);
+}
+
+/// Protects the choice: within its budget it is better than equal triangles all over, it ends, and threads do not
+/// change it.
+#[test]
+fn chosen_triangles_fit_and_are_the_same_for_any_threads() {
+    let high = prepared(sphere(24));
+    let options = ChooseOptions {
+        triangles: 96,
+        room: 3,
+        views: 12,
+        view_size: 64,
+        polish: PolishOptions { rounds: 2, ..PolishOptions::default() },
+        seed: 0,
+    };
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap_or_else(|e| unreachable!("{e}"));
+        pool.install(|| choose_triangles(&high, None, &options, &()))
+    };
+    let (one, three) = (on(1), on(3));
+    assert_eq!(one.mesh, three.mesh);
+    assert!(one.mesh.triangles.len() <= 96 && one.mesh.triangles.len() >= 94);
+    let [layer] = &one.layers[..] else { panic!("one layer") };
+    assert!(layer.error[1] < layer.error[0]);
+    let test = targets(&high, 10, 96);
+    let error = |mesh: &Mesh| Pictures::new(&test, Surface::new(mesh)).error();
+    let even = sphere(5);
+    assert!(even.triangles.len() >= 80);
+    assert!(error(&one.mesh) < 0.6 * error(&even), "{} {}", error(&one.mesh), error(&even));
+}
+
+/// Protects what is behind glass: it is a layer of its own and keeps its share, though the pane is before it from
+/// every side.
+#[test]
+fn what_is_behind_glass_is_kept() {
+    let mesh = nested(10, 8);
+    let glass = Material { alpha_mode: AlphaMode::Blend, ..Material::default() };
+    let high = prepared_of(mesh, vec![Material::default(), glass]);
+    let options = ChooseOptions {
+        triangles: 120,
+        room: 2,
+        views: 6,
+        view_size: 48,
+        polish: PolishOptions { rounds: 0, sweeps: 1, ..PolishOptions::default() },
+        seed: 0,
+    };
+    let chosen = choose_triangles(&high, None, &options, &());
+    let is_inner = |t: &&[u32; 3]| t.iter().all(|&v| chosen.mesh.positions[v as usize].length() < 0.6);
+    let inner = chosen.mesh.triangles.iter().filter(is_inner).count();
+    assert!(
+        inner >= 12 && chosen.mesh.triangles.len() > inner + 24,
+        "{inner} of {}",
+        chosen.mesh.triangles.len()
+    );
+    assert!(chosen.mesh.triangles.len() <= 120);
+    assert_eq!(chosen.layers.len(), 2);
+}
