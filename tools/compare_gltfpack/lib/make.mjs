@@ -45,6 +45,18 @@ export function bakeOurs(model, folder, { parbake, triangles, textureSize, bakeO
   });
 }
 
+/** Our levels of detail in `ours/`: `{ seconds, warnings, bytes }` (of lods.json), or `{ refused }`. */
+export function makeLevels(model, folder, { parbake, lodOptions, reuse, seconds }) {
+  const output = path.join(folder, 'ours');
+  const lod = ['lod', model, '-o', output, ...lodOptions];
+  return made(path.join(output, 'lods.json'), { model, lod }, reuse, async () => {
+    await mkdir(output, { recursive: true });
+    const done = await run(parbake, lod, { seconds });
+    if (done.code !== 0) return { refused: `lod: ${reason(done)}` };
+    return { seconds: done.seconds, warnings: warnings(done) };
+  });
+}
+
 /** gltfpack's: `{ triangles, ratio, note, bytes }`, or `{ refused }`. */
 export function makeGltfpacks(model, folder, { triangles, reuse }) {
   const output = path.join(folder, 'gltfpack.glb');

@@ -34,6 +34,14 @@ export function findChromium() {
   return places.find((place) => place && existsSync(place)) ?? null;
 }
 
+// The camera of lib/page.js: its distance, and the tangent of half its angle of view.
+const [DISTANCE, HALF_ANGLE] = [3.5, 0.4];
+
+/** Side of the picture in which a model, whose longest side is 2 units long there, spans so many pixels. */
+export function pictureSize(pixels) {
+  return Math.round(pixels * DISTANCE * HALF_ANGLE);
+}
+
 /** A running browser with its server. Close it when done. */
 export class Viewer {
   #server;
