@@ -63,6 +63,8 @@ fn choose_options(triangles: usize, preset: Preset) -> ChooseOptions {
         Preset::Balanced => rounds,
         Preset::Best => 2 * rounds,
     };
+    // Many small triangles are no better for it.
+    let sets = if triangles <= 400 { 4 } else { 1 };
     let polish = PolishOptions { rounds, sweeps, ..own };
-    ChooseOptions { triangles, room, views, view_size, polish, seed: 0 }
+    ChooseOptions { triangles, room, views, sets, view_size, polish, seed: 0 }
 }

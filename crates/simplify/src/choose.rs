@@ -38,6 +38,9 @@ pub struct ChooseOptions {
     pub room: usize,
     /// Views that errors are measured in.
     pub views: usize,
+    /// Sets of so many views that points are moved by in turn, 1 or more. With one alone they come to lie where its
+    /// pixels do not see what is wrong.
+    pub sets: usize,
     /// Side of a view in pixels.
     pub view_size: usize,
     /// What is done with the best start.
@@ -150,9 +153,12 @@ fn layer(
     options: &ChooseOptions,
     watcher: &impl Watcher,
 ) -> (Mesh, LayerReport) {
-    let cameras = view_pool(options.views, &high.conventions.rig, options.seed);
     let target = |view: &View| Target::new(high, triangles, view.camera, options.view_size);
-    let mut targets: Vec<Target> = cameras.par_iter().map(target).collect();
+    let set =
+        |seed: u64| view_pool(options.views, &high.conventions.rig, seed).par_iter().map(target).collect();
+    let mut sets: Vec<Vec<Target>> =
+        (0..options.sets as u64).map(|index| set(options.seed + index)).collect();
+    let targets = &sets[0];
     let mut tried: Vec<(StartReport, Surface)> = Vec::new();
     for (start, mesh) in starts.into_iter().flatten().filter(|(_, mesh)| !mesh.triangles.is_empty()) {
         let mut pictures = Pictures::new(&targets[..targets.len().min(FEW)], Surface::new(&mesh));
@@ -163,10 +169,11 @@ fn layer(
     tried.sort_by(|a, b| a.0.error.total_cmp(&b.0.error));
     let starts = tried.iter().map(|(report, _)| *report).collect();
     let surface = tried.into_iter().next().map(|(_, surface)| surface).unwrap_or_default();
-    weigh_backgrounds(&mut targets, &surface);
-    let mut pictures = Pictures::new(&targets, surface);
+    weigh_backgrounds(&mut sets, &surface);
+    let mut pictures = Pictures::new(&sets[0], surface);
     let before = pictures.error();
-    polish(&mut pictures, high, &options.polish, watcher);
+    polish(&mut pictures, &sets, high, &options.polish, watcher);
+    pictures.look_from(&sets[0]);
     let mesh = pictures.surface.to_mesh();
     let report = LayerReport { triangles: mesh.triangles.len(), starts, error: [before, pictures.error()] };
     (mesh, report)
@@ -174,15 +181,15 @@ fn layer(
 
 /// Lets backgrounds count by the reciprocals of their errors: as people count in decibels, a tenth less is as much on
 /// one as on another.
-fn weigh_backgrounds(targets: &mut [Target], surface: &Surface) {
+fn weigh_backgrounds(sets: &mut [Vec<Target>], surface: &Surface) {
     let mut weights = [0.0; BACKGROUNDS.len()];
     for background in 0..weights.len() {
         let mut only = [0.0; BACKGROUNDS.len()];
         only[background] = 1.0;
-        targets.par_iter_mut().for_each(|target| target.weigh(only));
-        weights[background] = 1.0 / Pictures::new(targets, surface.clone()).error().max(1e-9);
+        sets[0].par_iter_mut().for_each(|target| target.weigh(only));
+        weights[background] = 1.0 / Pictures::new(&sets[0], surface.clone()).error().max(1e-9);
     }
     let sum: f64 = weights.iter().sum();
     let weights = weights.map(|weight| (weight / sum) as f32);
-    targets.par_iter_mut().for_each(|target| target.weigh(weights));
+    sets.par_iter_mut().flatten().for_each(|target| target.weigh(weights));
 }

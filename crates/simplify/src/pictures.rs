@@ -68,6 +68,13 @@ impl<'a> Pictures<'a> {
         Self { targets, views, surface }
     }
 
+    /// Looks at the surface from other cameras from now on.
+    pub fn look_from(&mut self, targets: &'a [Target]) {
+        if !std::ptr::eq(self.targets, targets) {
+            *self = Self::new(targets, std::mem::take(&mut self.surface));
+        }
+    }
+
     /// The mean error of a pixel.
     pub fn error(&self) -> f64 {
         let sum: f64 = self.views.iter().map(|view| view.error).sum();

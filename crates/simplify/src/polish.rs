@@ -4,12 +4,16 @@
 //! Every trial is a change (`change.rs`) that is judged by the pictures. A sweep evaluates all trials against one
 //! state, on all cores, then makes them in the order of their gains, each only if it still gains.
 //!
-//! Contract: the error never grows, nor does the number of triangles. Deterministic.
+//! Sweeps look from several sets of views in turn: moved by one set alone, points come to lie where its pixels do not
+//! see what is wrong.
+//!
+//! Contract: the number of triangles never grows, nor, with one set of views, the error. Deterministic.
 
 use crate::change::Change;
 use crate::collapse::{collapse_to, least_squares};
 use crate::pictures::{Pictures, Scratch};
 use crate::surface::Surface;
+use crate::target::Target;
 use glam::Vec3;
 use parbake_progress::{Message, Watcher};
 use parbake_render::interpolate::interpolate;
@@ -36,11 +40,18 @@ impl Default for PolishOptions {
 /// Rounds in a row without a gain after which no more follow.
 const PATIENCE: usize = 3;
 
-/// Polishes a surface. `high` is what new points are put on.
-pub fn polish(pictures: &mut Pictures, high: &HighPoly, options: &PolishOptions, watcher: &impl Watcher) {
+/// Polishes a surface. `high` is what new points are put on. Each sweep looks from the next of the `sets` of views.
+pub fn polish<'a>(
+    pictures: &mut Pictures<'a>,
+    sets: &'a [Vec<Target>],
+    high: &HighPoly,
+    options: &PolishOptions,
+    watcher: &impl Watcher,
+) {
     let target = pictures.surface.count();
     let mut steps = Steps::default();
-    settle(pictures, &mut steps, 3 * options.sweeps, watcher);
+    let mut sets = Sets { sets, next: 0 };
+    settle(pictures, &mut sets, &mut steps, 3 * options.sweeps, watcher);
     let mut without = 0;
     for round in 0..options.rounds {
         if watcher.stopped() || without == PATIENCE {
@@ -50,9 +61,13 @@ pub fn polish(pictures: &mut Pictures, high: &HighPoly, options: &PolishOptions,
         let count = ((options.exchanged * left * target as f64) as usize).max(1);
         let (mut trial, mut own) = (pictures.clone(), steps.clone());
         split_worst(&mut trial, high, count);
-        settle(&mut trial, &mut own, 1, watcher);
+        settle(&mut trial, &mut sets, &mut own, 1, watcher);
         collapse_to(&mut trial, target, &Quietly(watcher));
-        settle(&mut trial, &mut own, options.sweeps, watcher);
+        settle(&mut trial, &mut sets, &mut own, options.sweeps, watcher);
+        // Judged from where neither was fitted to last.
+        let views = sets.next();
+        pictures.look_from(views);
+        trial.look_from(views);
         if trial.error() < pictures.error() && trial.surface.count() <= target {
             (*pictures, steps) = (trial, own);
             without = 0;
@@ -60,7 +75,20 @@ pub fn polish(pictures: &mut Pictures, high: &HighPoly, options: &PolishOptions,
             without += 1;
         }
     }
-    settle(pictures, &mut steps, 3 * options.sweeps, watcher);
+    settle(pictures, &mut sets, &mut steps, 3 * options.sweeps, watcher);
+}
+
+/// Sets of views that take turns, so that points do not settle on the pixels of one.
+struct Sets<'a> {
+    sets: &'a [Vec<Target>],
+    next: usize,
+}
+
+impl<'a> Sets<'a> {
+    fn next(&mut self) -> &'a [Target] {
+        self.next += 1;
+        &self.sets[self.next % self.sets.len()]
+    }
 }
 
 /// Passes on that a run should stop, and no progress: a round is a part of the whole.
@@ -105,11 +133,18 @@ impl Steps {
 }
 
 /// Moves points and flips edges.
-fn settle(pictures: &mut Pictures, steps: &mut Steps, sweeps: usize, watcher: &impl Watcher) {
+fn settle<'a>(
+    pictures: &mut Pictures<'a>,
+    sets: &mut Sets<'a>,
+    steps: &mut Steps,
+    sweeps: usize,
+    watcher: &impl Watcher,
+) {
     for _ in 0..sweeps {
         if watcher.stopped() {
             return;
         }
+        pictures.look_from(sets.next());
         let points = points(&pictures.surface);
         let before: Vec<Vec3> = points.iter().map(|&point| pictures.surface.points[point as usize]).collect();
         sweep(pictures, points.clone(), |surface, &point| {
