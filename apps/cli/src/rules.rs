@@ -15,7 +15,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Options of a bake that do nothing where a model's own texture is replaced: the surface stays.
-pub const NOT_IN_COMPRESS: [&str; 10] = [
+pub const NOT_IN_COMPRESS: [&str; 11] = [
     "shape",
     "silhouette_background",
     "silhouette",
@@ -26,6 +26,7 @@ pub const NOT_IN_COMPRESS: [&str; 10] = [
     "cutout_order",
     "cutout_size",
     "max_distance",
+    "importance",
 ];
 
 /// Options that act in `compress` only on models with a normal map or with more to their materials than

@@ -12,6 +12,7 @@ use crate::baseline::other_baseline;
 use crate::budget::{at_the_end, check_budget, stage_weights};
 use crate::error::BakeError;
 use crate::geometry::{Geometry, move_geometry};
+use crate::importance::importances;
 use crate::look::Look;
 use crate::lost::lost;
 use crate::low_poly::low_poly;
@@ -155,7 +156,9 @@ pub(crate) fn conventions(options: &BakeOptions) -> Conventions {
 }
 
 fn prepare(high: &Model, options: &BakeOptions) -> Result<HighPoly, BakeError> {
-    Ok(HighPoly::new(high, conventions(options))?)
+    let mut prepared = HighPoly::new(high, conventions(options))?;
+    prepared.importances = importances(high, &options.importance)?;
+    Ok(prepared)
 }
 
 /// What is to be done.

@@ -106,7 +106,7 @@ fn plain(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<
     let stored = Source {
         scene: &scene,
         surface: None,
-        visibilities: &visibilities,
+        importances: &visibilities,
         max_distance: 0.0,
         brightened: 0.0,
         normals: false,

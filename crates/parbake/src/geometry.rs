@@ -10,6 +10,7 @@
 
 use crate::budget::shares;
 use crate::error::BakeError;
+use crate::importance::importances_of;
 use crate::options::{BakeOptions, UvMode};
 use crate::report::Work;
 use parbake_model::Model;
@@ -63,10 +64,16 @@ pub fn move_geometry<W: Watcher>(
         geometry.shape = Some(shape(&low.name, &mut low.mesh, high, plan, options.seed, &share)?);
         clock.lap(Stage::Shape);
     }
+    let mut placed = low.mesh.clone();
+    high.frame.apply(&mut placed);
+    let importances = importances_of(&placed, high);
+    if options.uv != UvMode::Keep {
+        low.weigh_charts(&importances, &uv_options)?;
+    }
     let source = Source {
         scene: &high.scene,
         surface: (!same).then_some(&high.surface),
-        visibilities: &[],
+        importances: &importances,
         max_distance: high.conventions.max_distance,
         brightened: if high.conventions.srgb() { 1.0 } else { 0.0 },
         normals: true,

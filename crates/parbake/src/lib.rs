@@ -37,6 +37,7 @@ pub mod evaluate;
 mod geometry;
 mod image;
 mod image_options;
+pub mod importance;
 mod kept;
 pub mod lod;
 mod look;

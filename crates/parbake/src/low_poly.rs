@@ -23,7 +23,11 @@ pub fn low_poly(
         high.frame.apply(&mut mesh);
         mesh
     });
-    let options = choose_options(triangles, preset);
+    let mut options = choose_options(triangles, preset);
+    if !high.importances.is_empty() {
+        // Quadrics do not know what counts: there must be something to choose from.
+        options.room = options.room.max(2);
+    }
     let chosen = choose_triangles(high, before.as_ref(), &options, &watcher);
     let mut mesh = chosen.mesh;
     for point in &mut mesh.positions {

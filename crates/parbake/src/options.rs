@@ -3,6 +3,7 @@
 //! or other options decide.
 
 use crate::error::BakeError;
+use crate::importance::Importance;
 use crate::normal_y::NormalY;
 #[cfg(feature = "clap")]
 use crate::texels::parse_texels;
@@ -252,6 +253,11 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::QUALITY))]
     pub rounds: Option<usize>,
 
+    /// How much a material of the high-poly counts, 0.01 to 100, for texels and, with --triangles, for triangles; the others
+    /// have 1. NAME may hold * and ?. May be given several times
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME=WEIGHT", help_heading = heading::QUALITY))]
+    pub importance: Vec<Importance>,
+
     /// Seconds after which the best textures so far are written, 0 to 1e9, reading of files included. Below 8
     /// vertices stay and UVs are only repaired [default: no limit]
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "SECONDS", help_heading = heading::QUALITY))]
@@ -334,6 +340,7 @@ impl Default for BakeOptions {
             views: None,
             view_size: None,
             rounds: None,
+            importance: Vec::new(),
             seed: 0,
             threads: 0,
             time_budget: None,

@@ -95,6 +95,8 @@ struct Look {
     shift: f32,
     color: Vec3,
     is_front: bool,
+    /// How much what is seen counts.
+    importance: f32,
 }
 
 impl Target {
@@ -157,7 +159,8 @@ fn look_at(
         let (is_front, geometric) = (side >= 0.0, side.abs());
         let slant = (geometric * (1.0 - geometric * geometric).max(0.0).sqrt()).max(LEAST_SHIFT);
         let color = Vec3::from(light.to_array().map(|x| encode_srgb(x.clamp(0.0, 1.0))));
-        Some(Look { depth, shift: slant * pixels_per_unit(camera, depth, size), color, is_front })
+        let importance = high.importances.get(triangle).copied().unwrap_or(1.0);
+        Some(Look { depth, shift: slant * pixels_per_unit(camera, depth, size), color, is_front, importance })
     };
     seen.triangle.iter().enumerate().map(look).collect()
 }
@@ -182,7 +185,10 @@ fn outlines(looks: &[Option<Look>]) -> Vec<[f32; BACKGROUNDS.len()]> {
         outside.iter_mut().zip(on).for_each(|(sum, error)| *sum += error / count);
     }
     outside[0] *= LEARNT;
-    looks.iter().map(|look| look.map_or(outside, |look| before(look.color))).collect()
+    looks
+        .iter()
+        .map(|look| look.map_or(outside, |look| before(look.color).map(|e| e * look.importance)))
+        .collect()
 }
 
 /// Errors within outlines, from what is seen around each pixel.
@@ -220,9 +226,9 @@ fn inside(looks: &[Option<Look>], size: usize) -> Vec<TargetPixel> {
         Some(look) => TargetPixel {
             depth: look.depth,
             shift: look.shift,
-            most: 2.0 * variance(pixel),
+            most: 2.0 * variance(pixel) * look.importance,
             outline: 0.0,
-            other_side,
+            other_side: other_side * look.importance,
             front: u32::from(look.is_front),
         },
     };

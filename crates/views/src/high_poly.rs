@@ -96,6 +96,8 @@ pub struct HighPoly {
     pub emissive_strength: f32,
     /// What its materials' extensions say.
     pub extensions: ExtensionSource,
+    /// How much each triangle counts, for texels and for triangles of a low-poly; empty where all count alike.
+    pub importances: Vec<f32>,
     /// Rendered view sets that are kept; none where they are not to be.
     kept: Option<Mutex<Vec<KeptViews>>>,
 }
@@ -134,6 +136,7 @@ impl HighPoly {
             is_whole_material,
             emissive_strength,
             extensions,
+            importances: Vec::new(),
             kept: None,
         })
     }

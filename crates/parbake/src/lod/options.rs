@@ -1,6 +1,7 @@
 //! Options of a chain of levels of detail.
 
 use crate::error::BakeError;
+use crate::importance::Importance;
 use crate::normal_y::NormalY;
 #[cfg(feature = "clap")]
 use crate::options::heading;
@@ -52,6 +53,11 @@ pub struct LodOptions {
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Shading::Auto, help_heading = heading::QUALITY))]
     pub shading: Shading,
 
+    /// How much a material of the model counts, 0.01 to 100, for texels and triangles; the others have 1. NAME may hold *
+    /// and ?. May be given several times
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME=WEIGHT", help_heading = heading::QUALITY))]
+    pub importance: Vec<Importance>,
+
     /// How files are written
     #[cfg_attr(feature = "clap", command(flatten))]
     #[serde(flatten)]
@@ -86,6 +92,7 @@ impl Default for LodOptions {
             viewport_height: 1080.0,
             preset: Preset::Fast,
             shading: Shading::Auto,
+            importance: Vec::new(),
             write: WriteOptions::default(),
             normal_y: NormalY::Up,
             seed: 0,
@@ -149,6 +156,7 @@ impl LodOptions {
             texture_size,
             preset: self.preset,
             shading: self.shading,
+            importance: self.importance.clone(),
             normal_y: self.normal_y,
             seed: self.seed,
             threads: self.threads,

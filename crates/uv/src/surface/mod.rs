@@ -34,7 +34,8 @@ use crate::signal::Signal;
 use crate::triangle_batches::TriangleBatches;
 use crate::trilinear_error::trilinear_errors;
 use parbake_atlas::{
-    AtlasError, Layout, PackOptions, RepairOptions, TutteOptions, UnwrapOptions, check, repair, tutte, unwrap,
+    AtlasError, ChartScale, Layout, PackOptions, RepairOptions, TutteOptions, UnwrapOptions, check, pack,
+    repair, tutte, unwrap,
 };
 use parbake_image::FloatImage;
 use parbake_mesh::{Bisected, Piece, ensure_normals, material_uvs};
@@ -161,6 +162,32 @@ pub struct RepairedLowPoly {
     pub mesh: Mesh,
     /// What was done, a sentence each.
     pub repaired: Vec<String>,
+}
+
+impl RepairedLowPoly {
+    /// Packs charts anew, each with as many times the area as its triangles count on average; nothing where all count
+    /// alike.
+    ///
+    /// # Errors
+    /// Where charts do not fit into the texture with the gutter asked for.
+    pub fn weigh_charts(&mut self, importances: &[f32], options: &UvStageOptions) -> Result<(), AtlasError> {
+        if importances.is_empty() {
+            return Ok(());
+        }
+        let layout = Layout::new(&self.mesh);
+        let charts = layout.charts.iter().max().map_or(0, |&last| last as usize + 1);
+        let mut sums = vec![[0.0, 0.0]; charts];
+        for (t, (&chart, &weight)) in layout.charts.iter().zip(importances).enumerate() {
+            let area = layout.rest_area(t);
+            let [weighed, all] = &mut sums[chart as usize];
+            *weighed += area * f64::from(weight);
+            *all += area;
+        }
+        let scale = |[weighed, all]: &[f64; 2]| if *all > 0.0 { (weighed / all).sqrt() } else { 1.0 };
+        let chart_scale = ChartScale::Given(sums.iter().map(scale).collect());
+        self.mesh.uvs = pack(&layout, &PackOptions { chart_scale, ..packing(options) })?.uvs();
+        Ok(())
+    }
 }
 
 /// Makes a low-poly's coordinates sound, as the mode asks.

@@ -23,8 +23,9 @@ pub struct Source<'a> {
     /// Its surface to project on; None where the low-poly is the high-poly itself, with the
     /// same triangles.
     pub surface: Option<&'a HighSurface>,
-    /// How much of each triangle is seen (`parbake_mesh::visibilities`); empty where all counts alike.
-    pub visibilities: &'a [f32],
+    /// How much each triangle counts, for instance how much of it is seen (`parbake_mesh::visibilities`); empty where
+    /// all count alike.
+    pub importances: &'a [f32],
     /// How far projection looks to either side, in the common frame.
     pub max_distance: f32,
     /// How far dark colours are brightened before they are compared, as strong light does: 0 for stored
@@ -105,7 +106,7 @@ fn signal_scale(mesh: &Mesh, rest: &[DMat2], source: &Source, size: &Size, spaci
             if has_area(r, total) { count as usize } else { 0 }
         })
         .collect();
-    let counted = |t: usize| source.visibilities.get(t).map_or(1.0, |seen| seen.max(HIDDEN));
+    let counted = |t: usize| source.importances.get(t).map_or(1.0, |weight| weight.max(HIDDEN));
     let all: f64 = counts.iter().enumerate().map(|(t, n)| *n as f64 * f64::from(counted(t))).sum();
     let unit = (size.share / all.max(f64::MIN_POSITIVE)) as f32;
     let samples: Vec<(u32, Sample)> = (counts.par_iter().enumerate())
@@ -204,7 +205,7 @@ mod tests {
             let source = Source {
                 scene: &scene,
                 surface: None,
-                visibilities: &[],
+                importances: &[],
                 max_distance: 0.0,
                 brightened,
                 normals,

@@ -55,20 +55,8 @@ fn sheet() -> Model {
     }
 }
 
-fn stage(model: &Model, mode: UvMode) -> UvStageResult {
-    let frame = common_frame(model).expect("it has an extent");
-    let interpretation = Interpretation { decode_srgb: false, ..Interpretation::default() };
-    let scene = Scene::new(placed(model, &frame), &model.materials, &model.images, interpretation);
-    let source = Source {
-        scene: &scene,
-        surface: None,
-        visibilities: &[],
-        max_distance: 0.0,
-        brightened: 0.0,
-        normals: false,
-        pixel: 0.01,
-    };
-    let options = UvStageOptions {
+fn options(mode: UvMode) -> UvStageOptions {
+    UvStageOptions {
         mode,
         method: Method::Fit,
         guide: Guide::ContentAware,
@@ -78,9 +66,27 @@ fn stage(model: &Model, mode: UvMode) -> UvStageResult {
         parallax_size: None,
         steps: 12,
         more_triangles: 0,
+    }
+}
+
+fn delivered(model: &Model) -> RepairedLowPoly {
+    RepairedLowPoly { name: model.name.clone(), mesh: model.mesh.clone(), repaired: Vec::new() }
+}
+
+fn stage(model: &Model, mode: UvMode) -> UvStageResult {
+    let frame = common_frame(model).expect("it has an extent");
+    let interpretation = Interpretation { decode_srgb: false, ..Interpretation::default() };
+    let scene = Scene::new(placed(model, &frame), &model.materials, &model.images, interpretation);
+    let source = Source {
+        scene: &scene,
+        surface: None,
+        importances: &[],
+        max_distance: 0.0,
+        brightened: 0.0,
+        normals: false,
+        pixel: 0.01,
     };
-    let low = RepairedLowPoly { name: model.name.clone(), mesh: model.mesh.clone(), repaired: Vec::new() };
-    optimise_uvs(low, &frame, &source, &options, &())
+    optimise_uvs(delivered(model), &frame, &source, &options(mode), &())
 }
 
 /// Protects coordinates that are to be kept, or are sound and need no repair: they stay to the bit.
@@ -92,6 +98,30 @@ fn kept_coordinates_stay() {
         assert_eq!(kept.model.mesh.uvs, model.mesh.uvs);
         assert!(kept.moves.is_none() && kept.report.relative_error == [1.0; 2]);
     }
+}
+
+/// Protects what counts more: its chart gets as many times the area, the layout stays sound, and without weights
+/// nothing is packed.
+#[test]
+fn charts_get_the_area_that_they_count() {
+    let model = sheet();
+    let half = model.mesh.triangles.len() / 2;
+    let area = |mesh: &Mesh, from: usize| -> f32 {
+        let of = |t: usize| {
+            let [a, b, c] = mesh.corner_uvs(t);
+            0.5 * (b - a).perp_dot(c - a).abs()
+        };
+        (from..from + half).map(of).sum()
+    };
+    let mut low = delivered(&model);
+    low.weigh_charts(&[], &options(UvMode::Optimize)).expect("nothing to do");
+    assert_eq!(low.mesh.uvs, model.mesh.uvs);
+    let weights: Vec<f32> = (0..2 * half).map(|t| if t < half { 4.0 } else { 0.5 }).collect();
+    low.weigh_charts(&weights, &options(UvMode::Optimize)).expect("both fit");
+    let [first, second] = [0, half].map(|from| area(&low.mesh, from) / area(&model.mesh, from));
+    assert!((first / second - 8.0).abs() < 0.1, "{first} {second}");
+    let found = check(&parbake_atlas::Layout::new(&low.mesh), 64);
+    assert_eq!((found.overlaps.pairs, found.orientations.outside.count), (0, 0));
 }
 
 /// Protects pictures: grids from coarse to fine show the corner with all details better than a plain plane does,
