@@ -4,14 +4,15 @@
 //! Every trial is a change (`change.rs`) that is judged by the pictures. A sweep evaluates all trials against one
 //! state, on all cores, then makes them in the order of their gains, each only if it still gains.
 //!
-//! Contract: the error never grows, nor does the number of triangles. Deterministic.
+//! Contract: the error never grows, nor does the number of triangles. Deterministic, unless the watcher has no seconds
+//! left.
 
 use crate::change::Change;
 use crate::collapse::{collapse_to, least_squares};
 use crate::pictures::{Pictures, Scratch};
 use crate::surface::Surface;
 use glam::Vec3;
-use parbake_progress::{Message, Watcher};
+use parbake_progress::{Message, Stage, Watcher};
 use parbake_render::interpolate::interpolate;
 use parbake_views::high_poly::HighPoly;
 use rayon::prelude::*;
@@ -43,7 +44,8 @@ pub fn polish(pictures: &mut Pictures, high: &HighPoly, options: &PolishOptions,
     settle(pictures, &mut steps, 3 * options.sweeps, watcher);
     let mut without = 0;
     for round in 0..options.rounds {
-        if watcher.stopped() || without == PATIENCE {
+        watcher.progress(Stage::Simplify, round + 1, options.rounds + 2);
+        if is_over(watcher) || without == PATIENCE {
             break;
         }
         let left = 1.0 - round as f64 / options.rounds as f64;
@@ -63,6 +65,11 @@ pub fn polish(pictures: &mut Pictures, high: &HighPoly, options: &PolishOptions,
     settle(pictures, &mut steps, 3 * options.sweeps, watcher);
 }
 
+/// Whether to go no further: what there is may be kept at any time, so an end of time that is known ends it too.
+fn is_over(watcher: &impl Watcher) -> bool {
+    watcher.stopped() || watcher.seconds_left().is_some_and(|left| left <= 0.0)
+}
+
 /// Passes on that a run should stop, and no progress: a round is a part of the whole.
 struct Quietly<'a, W>(&'a W);
 
@@ -71,6 +78,10 @@ impl<W: Watcher> Watcher for Quietly<'_, W> {
 
     fn stopped(&self) -> bool {
         self.0.stopped()
+    }
+
+    fn seconds_left(&self) -> Option<f64> {
+        self.0.seconds_left()
     }
 }
 
@@ -107,7 +118,7 @@ impl Steps {
 /// Moves points and flips edges.
 fn settle(pictures: &mut Pictures, steps: &mut Steps, sweeps: usize, watcher: &impl Watcher) {
     for _ in 0..sweeps {
-        if watcher.stopped() {
+        if is_over(watcher) {
             return;
         }
         let points = points(&pictures.surface);

@@ -44,7 +44,7 @@ mod write_mesh;
 mod write_parallax;
 
 pub(crate) use names::named_files;
-pub use write::{glb_bytes, write_glb, write_glb_with, write_lod_glb};
+pub use write::{glb_bytes, glb_bytes_with, write_glb, write_glb_with, write_lod_glb};
 
 use crate::context::{Context, Textures};
 use crate::finish::finish;

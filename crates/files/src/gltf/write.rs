@@ -70,7 +70,15 @@ pub fn write_lod_glb(
 /// # Errors
 /// When the model breaks its contract.
 pub fn glb_bytes(model: &Model) -> Result<Vec<u8>, FileError> {
-    Ok(to_bytes(Path::new(&model.name), &[model], None, &WriteOptions::default())?.0)
+    Ok(glb_bytes_with(model, &WriteOptions::default())?.0)
+}
+
+/// As [`glb_bytes`], with textures and mesh as the options say; also what the file holds.
+///
+/// # Errors
+/// As [`glb_bytes`].
+pub fn glb_bytes_with(model: &Model, options: &WriteOptions) -> Result<(Vec<u8>, Written), FileError> {
+    to_bytes(Path::new(&model.name), &[model], None, options)
 }
 
 fn to_bytes(
