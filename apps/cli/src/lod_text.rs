@@ -10,11 +10,14 @@ pub fn line(report: &LevelReport, bytes: u64) -> String {
         }
         _ => "can be told from the one before at every size".into(),
     };
+    let texels = match report.texture_size {
+        0 => "no textures".into(),
+        size => format!("{size}² texels"),
+    };
     format!(
-        "level {}: {} triangles, {}² texels, {:.1} kB; {:.1} dB at {:.0} pixels; {switch}",
+        "level {}: {} triangles, {texels}, {:.1} kB; {:.1} dB at {:.0} pixels; {switch}",
         report.level,
         report.triangles,
-        report.texture_size,
         bytes as f64 / 1e3,
         report.at_screen_size.psnr,
         report.screen_size,

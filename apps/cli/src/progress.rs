@@ -195,6 +195,7 @@ impl Watcher for Console {
         match message {
             Message::Plan(_) => {}
             Message::Part { name, .. } => {
+                self.bar.set_length(100);
                 self.bar.set_message(name.clone());
                 *part = Some(name);
             }

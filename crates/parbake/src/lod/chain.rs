@@ -7,7 +7,7 @@
 
 use super::options::LodOptions;
 use super::search::MOST_BAKES;
-use crate::budget::{at_the_end, check_budget, stage_weights};
+use crate::budget::{check_budget, stage_weights};
 use crate::options::BakeOptions;
 use parbake_progress::{Message, Stage, Watcher};
 use std::time::{Duration, Instant};
@@ -97,11 +97,18 @@ impl<'a> Chain<'a> {
 pub(crate) fn hurried(mut options: BakeOptions, until: Option<Instant>) -> BakeOptions {
     let Some(until) = until else { return options };
     let left = until.saturating_duration_since(Instant::now()).as_secs_f64();
-    options.time_budget = Some((left * (1.0 - SHARES[1]) - at_the_end(options.texture_size)).max(0.0));
+    options.time_budget = Some(left * (1.0 - SHARES[1]));
     while check_budget(&options).is_err() && options.texture_size > 32 {
         options.texture_size /= 2;
     }
     options
+}
+
+impl<'a> LevelWatcher<'a> {
+    /// The same once the triangles are chosen; a bake's options hold its own budget.
+    pub fn after_triangles(&self) -> LevelWatcher<'a> {
+        Self { watcher: self.watcher, until: None }
+    }
 }
 
 impl Watcher for LevelWatcher<'_> {
@@ -162,6 +169,8 @@ mod tests {
         assert!((left(until) - 50.0).abs() < 1.0, "{}", left(until));
         let first = chain.bake(0, 0, until);
         assert!(first.seconds_left().is_some_and(|left| (left - 17.5).abs() < 1.0));
+        // A bake is not over when the triangles have to be chosen.
+        assert_eq!(first.after_triangles().seconds_left(), None);
         first.message(Message::Plan(Vec::new()));
         chain.bake(1, 0, chain.level_until(1));
         let parts: Vec<[f64; 3]> = notes.0.lock().map_or(Vec::new(), |notes| {

@@ -204,7 +204,7 @@ impl<'a> Maker<'a> {
         let chosen = begin.elapsed().as_secs_f64();
         let own = || self.texture_size(&low, self.options.screen_size[level]);
         let options = hurried(self.options.bake(texture_size.unwrap_or_else(own)), until);
-        let baked = bake_as(Work::Level, &self.high, &low, &options, &watcher)?;
+        let baked = bake_as(Work::Level, &self.high, &low, &options, &watcher.after_triangles())?;
         let seconds = [chosen, begin.elapsed().as_secs_f64() - chosen];
         Ok(Some(Draft { low, layers, baked, seconds }))
     }

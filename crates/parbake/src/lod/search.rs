@@ -24,10 +24,16 @@ pub const WINDOW: f64 = 0.5;
 const AIM: f64 = 0.15;
 /// A plan that saves less of the best file is not worth a bake.
 const LEAST_GAIN: f64 = 0.03;
+/// Of what halved maps add to the error, what a bake of that size adds: charts are laid out and fitted for it.
+const DIRECT: f64 = 0.7;
 /// Power of the triangles with which their error falls, before two bakes have told it.
 const FALL: f64 = 1.4;
 /// The same as measured, at least and at most.
-const FALLS: [f64; 2] = [0.1, 5.0];
+const FALLS: [f64; 2] = [0.4, 4.0];
+/// Logarithm of the ratio of triangles from which on two bakes tell it.
+const APART: f64 = 0.25;
+/// Share of a bake's error that its triangles are for, at least.
+const LEAST_SHARE: f64 = 0.2;
 /// Triangle counts that differ by less give the same.
 const SAME: f64 = 0.02;
 /// Reductions of a bake that are measured with what they come to together, at most.
@@ -308,10 +314,17 @@ impl Search {
                     error = error_of(own.psnr) - baking.error;
                     bytes = own.bytes.saturating_sub(baking.mesh_bytes);
                 }
+                if size != baking.plan.texture_size {
+                    error *= DIRECT;
+                }
                 let Some(triangles) = self.triangles_for(baking, wanted - error) else { continue };
+                let plan = Plan { triangles, texture_size: size };
+                if self.is_hopeless(plan) {
+                    continue;
+                }
                 let share = triangles as f64 / baking.plan.triangles as f64;
                 let bytes = bytes as f64 + baking.mesh_bytes as f64 * share;
-                plans.push((bytes, Plan { triangles, texture_size: size }));
+                plans.push((bytes, plan));
             }
         }
         plans
@@ -334,41 +347,46 @@ impl Search {
         Some((high.exp().ceil() as usize).clamp(self.least_triangles, self.most.triangles))
     }
 
-    /// The error of a bake with this one's texture and so many triangles.
+    /// The error of a bake with this one's texture and so many triangles: its triangles' part falls by a power of them,
+    /// which the bakes next to there tell.
     fn error_at(&self, baking: &Baking, triangles: f64) -> f64 {
-        let size = baking.plan.texture_size;
-        let mut same: Vec<&Baking> = self.bakings.iter().filter(|b| b.plan.texture_size == size).collect();
-        let far = |b: &Baking| (triangles / b.plan.triangles as f64).ln().abs();
-        same.sort_by(|a, b| far(a).total_cmp(&far(b)));
-        match same[..] {
-            [a, b, ..] if a.plan.triangles != b.plan.triangles => {
-                let fall = fall([a, b]);
-                a.error * (triangles / a.plan.triangles as f64).powf(-fall)
-            }
-            _ => {
-                // Of its error, what a bake with more texels would have too is the triangles'.
-                let own = self.share_of_triangles(baking).min(baking.error);
-                let left = (triangles / baking.plan.triangles as f64).powf(-FALL);
-                baking.error - own + own * left
-            }
-        }
+        let own = self.error_of_triangles(baking);
+        let far = |from: f64, other: &Baking| (other.plan.triangles as f64 / from).ln().abs();
+        let at = baking.plan.triangles as f64;
+        let others = self.bakings.iter().filter(|other| far(at, other) > APART);
+        let nearest = others.min_by(|a, b| far(triangles, a).total_cmp(&far(triangles, b)));
+        let fall = nearest.map_or(FALL, |other| {
+            let fallen = (self.error_of_triangles(other) / own).ln();
+            (-fallen / (other.plan.triangles as f64 / at).ln()).clamp(FALLS[0], FALLS[1])
+        });
+        baking.error - own + own * (triangles / at).powf(-fall)
     }
 
-    /// The error at a bake's triangles with as many texels as there were in any.
-    fn share_of_triangles(&self, baking: &Baking) -> f64 {
-        let finest = self.bakings.iter().max_by_key(|b| b.plan.texture_size).unwrap_or(baking);
-        finest.error * (baking.plan.triangles as f64 / finest.plan.triangles as f64).powf(-FALL)
+    /// What of a bake's error its triangles are for: what a bake of as many texels as there were in any would have left.
+    fn error_of_triangles(&self, baking: &Baking) -> f64 {
+        let finest = self.bakings.iter().rev().max_by_key(|b| b.plan.texture_size).unwrap_or(baking);
+        let size = baking.plan.texture_size;
+        let of_map = |steps: &Vec<Step>| {
+            let halved = steps.iter().take_while(|step| step.size > 0);
+            halved.take_while(|step| step.size >= size).last().map_or(0.0, |step| step.error)
+        };
+        let of_texels = DIRECT * finest.maps.iter().map(of_map).sum::<f64>();
+        (baking.error - of_texels).max(LEAST_SHARE * baking.error)
+    }
+
+    /// Whether a bake with no less of anything did not reach the target.
+    fn is_hopeless(&self, plan: Plan) -> bool {
+        let wanted = error_of(self.target);
+        let has_more = |own: Plan| {
+            own.texture_size >= plan.texture_size
+                && own.triangles as f64 >= (1.0 - SAME) * plan.triangles as f64
+        };
+        self.bakings.iter().any(|baking| has_more(baking.plan) && baking.error > wanted)
     }
 }
 
 /// Texels along a side of a bake, at least.
 pub const LEAST_TEXTURE: usize = 16;
-
-/// The power with which the error falls between two bakes.
-fn fall([a, b]: [&Baking; 2]) -> f64 {
-    let triangles = (b.plan.triangles as f64 / a.plan.triangles as f64).ln();
-    (-(b.error / a.error).ln() / triangles).clamp(FALLS[0], FALLS[1])
-}
 
 #[cfg(test)]
 #[path = "search_tests.rs"]

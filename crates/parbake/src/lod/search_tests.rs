@@ -92,6 +92,20 @@ fn the_smallest_file_is_found() {
     }
 }
 
+/// Protects time: few triangles whose error falls steeply do not send the search through all sizes.
+#[test]
+fn few_bakes_are_enough() {
+    let all =
+        [(1e3, 2.4, [0.2, 0.01]), (1e2, 2.0, [1.0, 0.3]), (0.3, 1.0, [0.1, 2.0]), (30.0, 1.8, [0.02, 0.02])];
+    let bakes = all.map(|(first, fall, texels)| {
+        let fake = Fake { triangles: (first, fall), texels, floor: 0.0, noise: 0.1 };
+        let search = fake.run(34.0, MOST);
+        assert_eq!(search.verdict(false), Verdict::Reached);
+        search.bakes()
+    });
+    assert!(bakes.iter().sum::<usize>() <= 5 * bakes.len(), "{bakes:?}");
+}
+
 /// Protects the bound on bakes and the target itself where measurements are not smooth.
 #[test]
 fn noise_does_not_mislead() {

@@ -26,6 +26,8 @@ use std::time::Instant;
 const USUAL: f64 = 42.0;
 /// Pixels that a level's surface may be off where more triangles show nothing.
 const NOTHING: f64 = 0.05;
+/// Texels along a side for each that a level has as a rule, about one a pixel, beyond which more show nothing.
+const MORE_TEXELS: usize = 4;
 /// Triangles of a level, at least.
 const LEAST_TRIANGLES: usize = 4;
 /// Reductions that miss the target by so many decibels are not followed further.
@@ -163,7 +165,8 @@ fn bounds(maker: &Maker, level: usize, finer: Option<&Model>, target: f64) -> (P
     let most = within(NOTHING).clamp(LEAST_TRIANGLES.min(all), all);
     let first = within(0.25 * 10f64.powf((USUAL - target) / 20.0)).min(most);
     let texture_size = maker.texture_size(maker.model, pixels);
-    let most = Plan { triangles: most, texture_size: options.max_texture_size };
+    let most =
+        Plan { triangles: most, texture_size: (MORE_TEXELS * texture_size).min(options.max_texture_size) };
     (Plan { triangles: first, texture_size }, most)
 }
 

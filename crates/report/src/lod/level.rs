@@ -38,7 +38,7 @@ pub fn level(
         out,
         concat!(
             "<h3>At its size: {} pixels</h3>{}<h3>From close by</h3>",
-            r#"<p class="note">Nobody is meant to see it from here. Point at the level, or tap it, to see the original in its place.</p>{}"#
+            r#"<p class="note">Nobody is meant to see it from here. Decibels below pictures are of these very pictures, on dark grey. Point at the level, or tap it, to see the original in its place.</p>{}"#
         ),
         decimal(report.screen_size, 0),
         looks.own,

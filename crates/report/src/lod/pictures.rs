@@ -16,7 +16,7 @@ const PICTURE: f64 = 1.4;
 /// Samples along a side of a pixel of a small picture, where thin parts flicker with fewer.
 const SMALL_SAMPLES: usize = 4;
 /// Pixels along a side of an own-size picture that needs no enlargement.
-const LARGE: usize = 320;
+const LARGE: usize = 200;
 
 /// All models in front of one camera.
 pub struct Gallery {

@@ -77,7 +77,7 @@ fn maps(trial: &Trial) -> String {
 fn table(trials: &[Trial]) -> String {
     let mut out = String::from(concat!(
         r#"<table class="numbers-table"><caption>Files that were measured</caption><thead><tr><th scope="col">bake</th>"#,
-        r#"<th scope="col">triangles</th><th scope="col">file</th><th scope="col">PSNR</th><th scope="col">maps</th></tr></thead><tbody>"#
+        r#"<th scope="col">triangles</th><th scope="col">file</th><th scope="col">PSNR</th><th scope="col" class="words">maps</th></tr></thead><tbody>"#
     ));
     for trial in trials {
         let class = match (trial.chosen, trial.reached) {
