@@ -84,7 +84,7 @@ pub struct LevelReport {
     /// Whether a time budget or a signal ended a step early.
     #[serde(default)]
     pub stopped_early: bool,
-    /// Seconds that triangles, bake and figures took.
+    /// Seconds that triangles, bake and figures took; of a search for a PSNR those of all its bakes.
     pub seconds: [f64; 3],
 }
 
@@ -125,7 +125,7 @@ pub fn make_levels<E: From<BakeError>>(
         let subject =
             maker.lineup.subject(&as_written(&draft.baked.model, &write, options.normal_y)?.model)?;
         let figures = maker.figures(index, &subject, before.as_ref().map(|(_, subject)| subject))?;
-        let Draft { low, layers, baked, seconds: [chosen, fitted] } = draft;
+        let Draft { low, layers, baked, seconds: [chosen, fitted, compared] } = draft;
         let report = LevelReport {
             level: index,
             screen_size: options.screen_size[index],
@@ -140,7 +140,7 @@ pub fn make_levels<E: From<BakeError>>(
             against_before: figures.against_before,
             target,
             stopped_early: baked.report.stopped_early,
-            seconds: [chosen, fitted, begin.elapsed().as_secs_f64()],
+            seconds: [chosen, fitted, compared + begin.elapsed().as_secs_f64()],
         };
         before = Some((low, subject));
         count += 1;
@@ -165,8 +165,8 @@ pub(crate) struct Draft {
     pub low: Model,
     pub layers: Vec<LayerReport>,
     pub baked: Baked,
-    /// That choosing triangles and baking took.
-    pub seconds: [f64; 2],
+    /// That choosing triangles, baking and pictures took, those of bakes that were not taken included.
+    pub seconds: [f64; 3],
 }
 
 /// What pictures say of a level.
@@ -205,7 +205,7 @@ impl<'a> Maker<'a> {
         let own = || self.texture_size(&low, self.options.screen_size[level]);
         let options = hurried(self.options.bake(texture_size.unwrap_or_else(own)), until);
         let baked = bake_as(Work::Level, &self.high, &low, &options, &watcher.after_triangles())?;
-        let seconds = [chosen, begin.elapsed().as_secs_f64() - chosen];
+        let seconds = [chosen, begin.elapsed().as_secs_f64() - chosen, 0.0];
         Ok(Some(Draft { low, layers, baked, seconds }))
     }
 

@@ -26,6 +26,8 @@ const AIM: f64 = 0.15;
 const LEAST_GAIN: f64 = 0.03;
 /// Of what halved maps add to the error, what a bake of that size adds: charts are laid out and fitted for it.
 const DIRECT: f64 = 0.7;
+/// Share of the smallest file by which one may be larger that ends within the window, where that does not.
+const FOR_WINDOW: f64 = 0.03;
 /// Power of the triangles with which their error falls, before two bakes have told it.
 const FALL: f64 = 1.4;
 /// The same as measured, at least and at most.
@@ -231,13 +233,20 @@ impl Search {
         self.bakings.push(baking);
     }
 
-    /// The smallest file that reaches the target, else the one that comes closest.
+    /// The smallest file that reaches the target, or one that is hardly larger and closer to it; else the one that comes closest.
     pub fn best(&self) -> Option<usize> {
-        let reached = (0..self.outcomes.len()).filter(|&k| self.outcomes[k].psnr >= self.target);
         let all = 0..self.outcomes.len();
-        reached.min_by_key(|&k| (self.outcomes[k].bytes, k)).or_else(|| {
-            all.max_by(|&a, &b| self.outcomes[a].psnr.total_cmp(&self.outcomes[b].psnr).then(b.cmp(&a)))
-        })
+        let reached = || all.clone().filter(|&k| self.outcomes[k].psnr >= self.target);
+        let smallest = |k: &usize| (self.outcomes[*k].bytes, *k);
+        if let Some(best) = reached().min_by_key(smallest) {
+            let limit = self.outcomes[best].bytes as f64 * (1.0 + FOR_WINDOW);
+            let ends_well = |k: &usize| {
+                let own = &self.outcomes[*k];
+                own.psnr <= self.target + WINDOW && own.bytes as f64 <= limit
+            };
+            return reached().filter(ends_well).min_by_key(smallest).or(Some(best));
+        }
+        all.max_by(|&a, &b| self.outcomes[a].psnr.total_cmp(&self.outcomes[b].psnr).then(b.cmp(&a)))
     }
 
     /// How it ended; `stopped` says that there would have been more to try.
@@ -261,7 +270,7 @@ impl Search {
         let best = self.best().map(|best| &self.outcomes[best]).filter(|best| best.psnr >= self.target);
         let limit = match best {
             None => f64::INFINITY,
-            Some(best) if best.psnr > self.target + WINDOW => best.bytes as f64,
+            Some(best) if best.psnr > self.target + WINDOW => best.bytes as f64 * (1.0 + FOR_WINDOW),
             Some(best) => best.bytes as f64 * (1.0 - LEAST_GAIN),
         };
         let mut plans = self.plans();

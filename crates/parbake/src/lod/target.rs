@@ -102,7 +102,7 @@ pub(crate) fn find(
     let original = maker.lineup.pictures(&maker.original, pixels)?;
     let until = chain.level_until(level);
     let mut tried: Vec<Tried> = Vec::new();
-    let (mut stopped, mut longest) = (false, 0f64);
+    let (mut stopped, mut longest, mut spent) = (false, 0f64, [0.0; 3]);
     while let Some(plan) = search.next() {
         let begin = Instant::now();
         let left = until.map_or(f64::INFINITY, |until| until.saturating_duration_since(begin).as_secs_f64());
@@ -122,11 +122,15 @@ pub(crate) fn find(
             stopped = true;
             break;
         };
+        let spent_now = draft.seconds;
+        (0..2).for_each(|k| spent[k] += spent_now[k]);
         let own = Tried::new(draft, options);
         let (baking, measured) = own.measure(&maker.lineup, &original, target, plan)?;
         search.note(baking, measured);
         tried.push(own);
-        longest = longest.max(begin.elapsed().as_secs_f64());
+        let all = begin.elapsed().as_secs_f64();
+        spent[2] += all - spent_now[0] - spent_now[1];
+        longest = longest.max(all);
     }
     let (verdict, best) = (search.verdict(stopped), search.best());
     let Some(best) = best.filter(|_| verdict != Verdict::Stopped || !chain.stopped()) else {
@@ -150,6 +154,7 @@ pub(crate) fn find(
     };
     let outcome = &search.outcomes[best];
     let Tried { mut draft, maps, qualities, write, .. } = tried.swap_remove(outcome.bake);
+    draft.seconds = spent;
     draft.baked.model = with_reductions(&draft.baked.model, &maps, &reductions(&maps, &outcome.choice));
     let texture_quality = qualities[outcome.choice.get(maps.len()).copied().unwrap_or(0)];
     Ok(Some(Found { draft, write: WriteOptions { texture_quality, ..write }, report }))
