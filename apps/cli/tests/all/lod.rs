@@ -82,8 +82,9 @@ fn a_level_is_the_smallest_file_of_a_psnr() {
     assert_eq!(chosen[0]["triangles"], found["triangles"]);
     let psnr = [chosen[0], &found["at_screen_size"]].map(|of| of["psnr"].as_f64().unwrap());
     assert!(psnr[0] >= 26.0 && (psnr[0] - psnr[1]).abs() < 1e-6, "{psnr:?}");
-    let smaller =
-        |trial: &&Value| trial["reached"] == true && trial["bytes"].as_u64() < found["bytes"].as_u64();
+    // One that ends closer to the target may be a little larger.
+    let bytes = |of: &Value| of["bytes"].as_u64().unwrap();
+    let smaller = |trial: &&Value| trial["reached"] == true && 103 * bytes(trial) < 100 * bytes(&found);
     assert_eq!(trials.iter().filter(smaller).count(), 0);
     assert!(found["target"]["bakes"].as_u64().unwrap() <= 8);
     let glb = document(&folder.join("found").join(found["file"].as_str().unwrap()));
