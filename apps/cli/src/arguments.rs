@@ -175,7 +175,7 @@ pub struct BakeCommand {
 #[command(
     after_help = "Each level is written as soon as it is finished. Ctrl-C keeps those that are. lods.json says for each level \
 how many triangles, texels and bytes it has, what it looks like at its size, and below which size on screen it cannot \
-be told from the one before."
+be told from the one before. With --target-psnr the exit code is 4 where a level cannot reach it; the closest is written."
 )]
 pub struct LodCommand {
     /// The model: .obj, .gltf or .glb
@@ -188,6 +188,10 @@ pub struct LodCommand {
     /// Engine whose names and helper files are written
     #[arg(long, value_enum, default_value_t = Layout::Files, help_heading = IO)]
     pub layout: Layout,
+
+    /// Write a report in HTML: pictures and figures of all levels, and how they were found
+    #[arg(long, value_name = "FILE", help_heading = IO)]
+    pub report: Option<PathBuf>,
 
     /// How to make them
     #[command(flatten)]

@@ -14,6 +14,8 @@ pub enum Ending {
     Problems,
     /// `reproduce` found gains that fell below the record: 4.
     Fallen,
+    /// `lod` found no file that reaches `--target-psnr`; the best is written: 4.
+    Missed,
     /// Ctrl-C: the best state so far was written: 130.
     Interrupted,
 }
@@ -24,7 +26,7 @@ impl Ending {
         match self {
             Ending::Finished => ExitCode::SUCCESS,
             Ending::Problems => ExitCode::from(3),
-            Ending::Fallen => ExitCode::from(4),
+            Ending::Fallen | Ending::Missed => ExitCode::from(4),
             Ending::Interrupted => ExitCode::from(130),
         }
     }

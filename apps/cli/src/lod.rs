@@ -3,13 +3,15 @@
 use crate::arguments::LodCommand;
 use crate::bake::read;
 use crate::failure::{Ending, Failure};
-use crate::outputs::check_not_input;
+use crate::lod_text::{line, target_lines};
+use crate::outputs::{check_beside, check_not_input};
 use crate::progress::{Console, interrupted};
 use parbake::lod::document::{LodDocument, coverages};
 use parbake::{
-    Level, LevelReport, Model, make_levels, with_normal_y, with_threads, write_file, write_glb_with,
-    write_lod_glb,
+    Level, LevelReport, Model, Verdict, WriteOptions, make_levels, with_normal_y, with_threads, write_file,
+    write_glb_with, write_lod_glb,
 };
+use parbake_report::lod_report;
 use std::fs::create_dir_all;
 use std::path::Path;
 
@@ -28,7 +30,8 @@ pub fn run(command: &LodCommand) -> Result<Ending, Failure> {
     for file in files.chain([all_file.clone(), DOCUMENT.into()]) {
         check_not_input(&command.output.join(file), &[&command.model])?;
     }
-    let console = Console::for_levels(command.talk).confined(command.reading);
+    check_beside(None, None, command.report.as_ref(), &[&command.model])?;
+    let console = Console::for_levels(command.talk, options.time_budget).confined(command.reading);
     with_threads(options.threads, || {
         let mut model = read(&command.model, &console)?.model;
         if model.name.is_empty() {
@@ -36,13 +39,23 @@ pub fn run(command: &LodCommand) -> Result<Ending, Failure> {
         }
         let mut written: Vec<(String, u64, LevelReport)> = Vec::new();
         let mut levels: Vec<Model> = Vec::new();
+        // All in one file have the textures' quality of the best.
+        let mut write = WriteOptions { texture_quality: 1, ..options.write };
         let on_level = |level: Level| -> Result<(), Failure> {
-            let Level { baked, report } = level;
+            let Level { baked, write: own, mut report } = level;
             let file = command.layout.level_file(&name, report.level);
-            let mut model = with_normal_y(&baked.model, options.normal_y).into_owned();
+            let mut model = baked.model;
             model.name = format!("{name}_LOD{}", report.level);
-            let bytes = write_glb_with(&command.output.join(&file), &model, &options.write)?.bytes;
+            let bytes =
+                write_glb_with(&command.output.join(&file), &with_normal_y(&model, options.normal_y), &own)?
+                    .bytes;
+            // The level's name is longer than the trial's.
+            for trial in report.target.iter_mut().flat_map(|target| &mut target.trials).filter(|t| t.chosen) {
+                trial.bytes = bytes;
+            }
             console.say(&line(&report, bytes));
+            target_lines(&report).iter().for_each(|line| console.say(line));
+            write.texture_quality = write.texture_quality.max(own.texture_quality);
             levels.push(model);
             written.push((file, bytes, report));
             Ok(())
@@ -54,8 +67,9 @@ pub fn run(command: &LodCommand) -> Result<Ending, Failure> {
             return Ok(Ending::Interrupted);
         }
         let reports: Vec<LevelReport> = written.iter().map(|(_, _, report)| report.clone()).collect();
-        let all: Vec<&Model> = levels.iter().collect();
-        write_lod_glb(&command.output.join(&all_file), &all, &coverages(&reports), &options.write)?;
+        let turned: Vec<_> = levels.iter().map(|level| with_normal_y(level, options.normal_y)).collect();
+        let all: Vec<&Model> = turned.iter().map(AsRef::as_ref).collect();
+        write_lod_glb(&command.output.join(&all_file), &all, &coverages(&reports), &write)?;
         let document = LodDocument::new(&model, options, all_file.clone(), written);
         let json =
             serde_json::to_string_pretty(&document).map_err(|e| Failure::Output(format!("no JSON: {e}")))?;
@@ -65,16 +79,29 @@ pub fn run(command: &LodCommand) -> Result<Ending, Failure> {
             path.parent().map_or(Ok(()), make_folder)?;
             write_file(&path, text.as_bytes())?;
         }
+        if let Some(path) = &command.report {
+            write_file(path, lod_report(&model, &document, &levels, options, &console)?.as_bytes())?;
+        }
         console.finish();
         console.say(&format!(
             "{}: {} levels, {all_file}, {DOCUMENT}; {:.1} s",
             command.output.display(),
-            all.len(),
+            levels.len(),
             console.seconds()
         ));
-        let is_cut_short = interrupted() && all.len() < options.screen_size.len();
-        Ok(if is_cut_short { Ending::Interrupted } else { Ending::Finished })
+        Ok(ending(&reports, options.screen_size.len()))
     })?
+}
+
+/// Interrupted where a level is missing for that; a level that is no file of the target is told, too.
+fn ending(reports: &[LevelReport], wanted: usize) -> Ending {
+    let is_missed =
+        |report: &LevelReport| report.target.as_ref().is_some_and(|t| t.verdict == Verdict::Missed);
+    match () {
+        () if interrupted() && reports.len() < wanted => Ending::Interrupted,
+        () if reports.iter().any(is_missed) => Ending::Missed,
+        () => Ending::Finished,
+    }
 }
 
 fn make_folder(path: &Path) -> Result<(), Failure> {
@@ -84,23 +111,4 @@ fn make_folder(path: &Path) -> Result<(), Failure> {
             path.display()
         ))
     })
-}
-
-/// What people want to know of a level.
-fn line(report: &LevelReport, bytes: u64) -> String {
-    let switch = match (report.switch_pixels, report.switch_coverage) {
-        (Some(pixels), Some(coverage)) => {
-            format!("takes over below {pixels:.0} pixels ({:.1} % of the screen)", 100.0 * coverage)
-        }
-        _ => "can be told from the one before at every size".into(),
-    };
-    format!(
-        "level {}: {} triangles, {}² texels, {:.0} kB; {:.1} dB at {:.0} pixels; {switch}",
-        report.level,
-        report.triangles,
-        report.texture_size,
-        bytes as f64 / 1e3,
-        report.at_screen_size.psnr,
-        report.screen_size,
-    )
 }

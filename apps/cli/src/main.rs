@@ -14,6 +14,7 @@ mod formats;
 mod image;
 mod leash;
 mod lod;
+mod lod_text;
 mod options_file;
 mod outputs;
 mod pictures;

@@ -36,7 +36,18 @@ pub struct Console {
     deadline: Option<Instant>,
     begin: Instant,
     bar: ProgressBar,
-    state: Mutex<(Option<Stage>, Estimate)>,
+    state: Mutex<State>,
+    /// Whether work ends at the deadline by itself, and is told of nothing but of interrupts.
+    keeps_time: bool,
+}
+
+/// What the bar shows.
+#[derive(Default)]
+struct State {
+    stage: Option<Stage>,
+    /// Of a longer run, as a chain of levels; the bar is then that of the run.
+    part: Option<String>,
+    estimate: Estimate,
 }
 
 /// Kept back from a time budget for encoding and writing, as a share and at least
@@ -67,10 +78,16 @@ impl Console {
         Self::with_deadline(talk, time_budget)
     }
 
-    /// For levels of detail, which Ctrl-C ends with those that are finished.
-    pub fn for_levels(talk: Talk) -> Self {
+    /// For levels of detail, which Ctrl-C ends with those that are finished. Begins the clock of the time budget,
+    /// which they share among them.
+    pub fn for_levels(talk: Talk, time_budget: Option<f64>) -> Self {
         catch_interrupts("the level in hand is finished quickly, no further one begins");
-        Self::with_deadline(talk, None)
+        let console = Self { keeps_time: true, ..Self::with_deadline(talk, time_budget) };
+        if let Ok(style) = ProgressStyle::with_template("{msg:52} {bar:30} {pos:>3} %{prefix}") {
+            console.bar.set_style(style);
+        }
+        console.bar.set_length(100);
+        console
     }
 
     /// For a film, of which a part is no use: Ctrl-C ends without a file, not even a temporary one.
@@ -126,7 +143,15 @@ impl Console {
         if let Ok(style) = ProgressStyle::with_template("{msg:24} {bar:30} {pos}/{len}{prefix}") {
             bar.set_style(style);
         }
-        Self { talk, limits: Limits::default(), deadline, begin, bar, state: Mutex::default() }
+        Self {
+            talk,
+            limits: Limits::default(),
+            deadline,
+            begin,
+            bar,
+            state: Mutex::default(),
+            keeps_time: false,
+        }
     }
 
     /// A line for people, unless they asked for quiet.
@@ -165,24 +190,38 @@ fn minutes(seconds: f64) -> String {
 impl Watcher for Console {
     fn message(&self, message: Message) {
         let Ok(mut state) = self.state.lock() else { return };
-        let (current, estimate) = &mut *state;
+        let State { stage: current, part, estimate } = &mut *state;
         estimate.note(&message);
         match message {
             Message::Plan(_) => {}
+            Message::Part { name, .. } => {
+                self.bar.set_length(100);
+                self.bar.set_message(name.clone());
+                *part = Some(name);
+            }
             Message::Warning(text) => self.say(&format!("warning: {text}")),
             Message::Progress { stage, done, total } => {
-                if *current != Some(stage) {
-                    *current = Some(stage);
-                    self.bar.reset();
-                    self.bar.set_message(stage.label());
-                }
-                self.bar.set_length(total as u64);
-                self.bar.set_position(done as u64);
                 // Of the whole run where its stages are known, else of this stage.
-                let left = match estimate.done() {
-                    Some(_) => estimate.seconds_left(self.seconds()),
-                    None => Some(self.bar.eta().as_secs_f64()),
+                let (left, place) = match (estimate.done(), &*part) {
+                    (Some(share), Some(part)) => {
+                        self.bar.set_message(format!("{part}: {}", stage.label()));
+                        let own = estimate.seconds_left(self.seconds());
+                        let most =
+                            self.deadline.map(|d| d.saturating_duration_since(Instant::now()).as_secs_f64());
+                        (own.into_iter().chain(most).reduce(f64::min), (100.0 * share) as u64)
+                    }
+                    (share, _) => {
+                        if *current != Some(stage) {
+                            *current = Some(stage);
+                            self.bar.reset();
+                            self.bar.set_message(stage.label());
+                        }
+                        self.bar.set_length(total as u64);
+                        let own = || Some(self.bar.eta().as_secs_f64());
+                        (share.map_or_else(own, |_| estimate.seconds_left(self.seconds())), done as u64)
+                    }
                 };
+                self.bar.set_position(place);
                 let left = left.map_or(String::new(), |left| format!(", {} left", minutes(left)));
                 self.bar.set_prefix(left);
             }
@@ -190,7 +229,7 @@ impl Watcher for Console {
     }
 
     fn stopped(&self) -> bool {
-        interrupted() || self.deadline.is_some_and(|d| Instant::now() >= d)
+        interrupted() || (!self.keeps_time && self.deadline.is_some_and(|d| Instant::now() >= d))
     }
 
     fn seconds_left(&self) -> Option<f64> {

@@ -14,6 +14,7 @@ pub mod material_maps;
 pub mod mip;
 pub mod pyramid;
 pub mod quantise;
+pub mod reduced;
 pub mod slopes;
 
 pub use float_image::{FloatImage, Texel};

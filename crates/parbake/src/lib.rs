@@ -71,6 +71,8 @@ pub use evaluate::options::EvaluateOptions;
 pub use evaluate::{Evaluation, ViewFigures, evaluate, evaluate_on};
 pub use image::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
 pub use lod::options::LodOptions;
+pub use lod::search::Verdict;
+pub use lod::target::{TargetReport, Trial, TrialMap};
 pub use lod::{Level, LevelReport, make_levels};
 pub use low_poly::low_poly;
 pub use memory::peak_memory;

@@ -2,7 +2,8 @@
 //! rule, and scaled by what those so far have taken.
 //!
 //! With W the weight of all stages, w that of what is done and t the time since the run began, the rest
-//! takes t·(W − w)/w.
+//! takes t·(W − w)/w. A run of several parts, as a chain of levels, has their work for weights; the stages of a part
+//! share its own.
 
 use crate::message::Message;
 use crate::stage::Stage;
@@ -19,13 +20,16 @@ pub struct Estimate {
     current: usize,
     /// How much of it is done, 0 to 1.
     share: f64,
+    /// Of a longer run the work before this part, this part's, and all; none where there are no parts.
+    part: Option<[f64; 3]>,
 }
 
 impl Estimate {
     /// Takes note of a message.
     pub fn note(&mut self, message: &Message) {
         match message {
-            Message::Plan(plan) => *self = Self { plan: plan.clone(), ..Self::default() },
+            Message::Plan(plan) => *self = Self { plan: plan.clone(), part: self.part, ..Self::default() },
+            Message::Part { work, .. } => *self = Self { part: Some(*work), ..Self::default() },
             Message::Progress { stage, done, total } => {
                 // A stage that reports in several runs never goes back.
                 let Some(place) = self.plan.iter().position(|(own, _)| own == stage) else { return };
@@ -43,7 +47,9 @@ impl Estimate {
         let all: f64 = self.plan.iter().map(|(_, weight)| weight).sum();
         let before: f64 = self.plan.iter().take(self.current).map(|(_, weight)| weight).sum();
         let own = self.plan.get(self.current).map_or(0.0, |(_, weight)| weight * self.share);
-        (all > 0.0).then(|| (before + own) / all)
+        let of_plan = (all > 0.0).then(|| (before + own) / all);
+        let Some([before, own, all]) = self.part else { return of_plan };
+        (all > 0.0).then(|| ((before + own * of_plan.unwrap_or(0.0)) / all).clamp(0.0, 1.0))
     }
 
     /// Seconds until the end of a run that began so many seconds ago; none where it is too early to tell.
@@ -76,5 +82,23 @@ mod tests {
         estimate.note(&at(Stage::Shape, 2));
         estimate.note(&at(Stage::Read, 1));
         assert_eq!(estimate.done(), Some(0.75));
+    }
+
+    /// Protects the time that is shown of a chain: plans of its parts do not begin it anew, and a part without a plan
+    /// counts once it is over.
+    #[test]
+    fn parts_share_one_estimate() {
+        let mut estimate = Estimate::default();
+        let part = |work| Message::Part { name: "level".into(), work };
+        estimate.note(&part([0.0, 3.0, 4.0]));
+        assert_eq!(estimate.done(), Some(0.0));
+        estimate.note(&Message::Plan(vec![(Stage::Simplify, 1.0), (Stage::Solve, 1.0)]));
+        estimate.note(&Message::Progress { stage: Stage::Simplify, done: 2, total: 2 });
+        assert_eq!(estimate.seconds_left(6.0), Some(10.0));
+        estimate.note(&part([3.0, 1.0, 4.0]));
+        assert_eq!(estimate.seconds_left(9.0), Some(3.0));
+        // What was to come may turn out to be less.
+        estimate.note(&part([4.0, 0.0, 4.0]));
+        assert_eq!(estimate.done(), Some(1.0));
     }
 }

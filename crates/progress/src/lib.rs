@@ -7,11 +7,13 @@
 mod clock;
 mod estimate;
 mod message;
+mod portion;
 mod scope;
 mod stage;
 
 pub use clock::{Clock, StageTime};
 pub use estimate::Estimate;
 pub use message::{Message, Watcher};
+pub use portion::Portion;
 pub use scope::ProgressScope;
 pub use stage::Stage;

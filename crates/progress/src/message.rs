@@ -19,6 +19,13 @@ pub enum Message {
     },
     /// The stages that are to come, in their order, with weights: what each takes as a rule, in any unit.
     Plan(Vec<(Stage, f64)>),
+    /// A part of a longer run begins, as a level of a chain; plans that follow are its own.
+    Part {
+        /// What a person reads: "level 2 of 3".
+        name: String,
+        /// Work that is done, this part's own, and all, in any one unit; they may be revised from part to part.
+        work: [f64; 3],
+    },
     /// Something that the user should know and that stops nothing.
     Warning(String),
 }

@@ -8,10 +8,12 @@
 //! ```
 
 mod html;
+mod lod;
 pub mod page;
 mod turntable;
 mod uv_animation;
 
 pub use html::{flags, html_report};
+pub use lod::lod_report;
 pub use turntable::{FilmFormat, TurntableOptions, turntable, write_turntable};
 pub use uv_animation::{UvAnimationOptions, uv_animation};

@@ -12,7 +12,8 @@
 //!
 //! Contract: the result lies in the high-poly's common frame, has at most the wanted number of triangles (but one at
 //! least in each layer), smooth normals and no texture coordinates; its materials are the high-poly's by index. It
-//! depends on the arguments alone, not on the number of threads.
+//! depends on the arguments alone, not on the number of threads, unless the watcher has no seconds left: then polishing
+//! ends early, but collapsing goes on down to the wanted number. Only a watcher that says stop leaves more triangles.
 
 use crate::collapse::collapse_to;
 use crate::pictures::Pictures;
@@ -22,7 +23,7 @@ use crate::surface::Surface;
 use crate::target::{BACKGROUNDS, Target};
 use parbake_mesh::smooth_normals;
 use parbake_model::Mesh;
-use parbake_progress::Watcher;
+use parbake_progress::{Portion, Stage, Watcher};
 use parbake_views::alpha_layers::{LayerKind, high_layers};
 use parbake_views::high_poly::HighPoly;
 use parbake_views::pool::{View, view_pool};
@@ -81,6 +82,9 @@ pub struct Chosen {
     pub layers: Vec<LayerReport>,
 }
 
+/// Share of the time that collapsing two starts takes, about; the rest is polishing.
+const COLLAPSING: f64 = 0.4;
+
 /// Views that tell one collapse from another well enough.
 const FEW: usize = 24;
 
@@ -110,7 +114,9 @@ pub fn choose_triangles(
         // A layer of which edge collapses left nothing begins as it is.
         let start = if start.triangles.is_empty() { own(mesh, kind) } else { start };
         let starts = [Some((Start::Quadrics, start)), before.map(|mesh| (Start::Level, own(mesh, kind)))];
-        chosen.add(layer(high, Some(triangles), starts, &options, watcher));
+        let part = |k: usize| k as f64 / layers.len() as f64;
+        let own = Portion::new(watcher, part(kind)..part(kind + 1));
+        chosen.add(layer(high, Some(triangles), starts, &options, &own));
     }
     chosen
 }
@@ -160,7 +166,10 @@ fn layer(
         (0..options.sets as u64).map(|index| set(options.seed + index)).collect();
     let targets = &sets[0];
     let mut tried: Vec<(StartReport, Surface)> = Vec::new();
-    for (start, mesh) in starts.into_iter().flatten().filter(|(_, mesh)| !mesh.triangles.is_empty()) {
+    for (k, (start, mesh)) in
+        starts.into_iter().flatten().filter(|(_, m)| !m.triangles.is_empty()).enumerate()
+    {
+        let watcher = &Portion::new(watcher, 0.5 * COLLAPSING * k as f64..0.5 * COLLAPSING * (k + 1) as f64);
         let mut pictures = Pictures::new(&targets[..targets.len().min(FEW)], Surface::new(&mesh));
         collapse_to(&mut pictures, options.triangles, watcher);
         let report = StartReport { start, triangles: pictures.surface.count(), error: pictures.error() };
@@ -172,8 +181,9 @@ fn layer(
     weigh_backgrounds(&mut sets, &surface);
     let mut pictures = Pictures::new(&sets[0], surface);
     let before = pictures.error();
-    polish(&mut pictures, &sets, high, &options.polish, watcher);
+    polish(&mut pictures, &sets, high, &options.polish, &Portion::new(watcher, COLLAPSING..1.0));
     pictures.look_from(&sets[0]);
+    watcher.progress(Stage::Simplify, 1, 1);
     let mesh = pictures.surface.to_mesh();
     let report = LayerReport { triangles: mesh.triangles.len(), starts, error: [before, pictures.error()] };
     (mesh, report)

@@ -7,7 +7,8 @@
 //! Sweeps look from several sets of views in turn: moved by one set alone, points come to lie where its pixels do not
 //! see what is wrong.
 //!
-//! Contract: the number of triangles never grows, nor, with one set of views, the error. Deterministic.
+//! Contract: the number of triangles never grows, nor, with one set of views, the error. Deterministic, unless the watcher
+//! has no seconds left.
 
 use crate::change::Change;
 use crate::collapse::{collapse_to, least_squares};
@@ -15,7 +16,7 @@ use crate::pictures::{Pictures, Scratch};
 use crate::surface::Surface;
 use crate::target::Target;
 use glam::Vec3;
-use parbake_progress::{Message, Watcher};
+use parbake_progress::{Message, Stage, Watcher};
 use parbake_render::interpolate::interpolate;
 use parbake_views::high_poly::HighPoly;
 use rayon::prelude::*;
@@ -54,7 +55,8 @@ pub fn polish<'a>(
     settle(pictures, &mut sets, &mut steps, 3 * options.sweeps, watcher);
     let mut without = 0;
     for round in 0..options.rounds {
-        if watcher.stopped() || without == PATIENCE {
+        watcher.progress(Stage::Simplify, round + 1, options.rounds + 2);
+        if is_over(watcher) || without == PATIENCE {
             break;
         }
         let left = 1.0 - round as f64 / options.rounds as f64;
@@ -91,6 +93,11 @@ impl<'a> Sets<'a> {
     }
 }
 
+/// Whether to go no further: what there is may be kept at any time, so an end of time that is known ends it too.
+fn is_over(watcher: &impl Watcher) -> bool {
+    watcher.stopped() || watcher.seconds_left().is_some_and(|left| left <= 0.0)
+}
+
 /// Passes on that a run should stop, and no progress: a round is a part of the whole.
 struct Quietly<'a, W>(&'a W);
 
@@ -99,6 +106,10 @@ impl<W: Watcher> Watcher for Quietly<'_, W> {
 
     fn stopped(&self) -> bool {
         self.0.stopped()
+    }
+
+    fn seconds_left(&self) -> Option<f64> {
+        self.0.seconds_left()
     }
 }
 
@@ -141,7 +152,7 @@ fn settle<'a>(
     watcher: &impl Watcher,
 ) {
     for _ in 0..sweeps {
-        if watcher.stopped() {
+        if is_over(watcher) {
             return;
         }
         pictures.look_from(sets.next());

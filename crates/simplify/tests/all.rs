@@ -3,6 +3,7 @@
 use glam::Vec3;
 use parbake_image::display::{Curve, Display};
 use parbake_model::{AlphaMode, Material, Mesh, Model};
+use parbake_progress::Watcher;
 use parbake_render::camera::Projection;
 use parbake_render::interpretation::Interpretation;
 use parbake_simplify::change::Change;
@@ -120,6 +121,26 @@ fn closed_surfaces_stay_closed() {
         assert!((wanted - 1..=wanted).contains(&surface.count()), "{} of {wanted}", surface.count());
         assert!(surface.edges().iter().all(|&[a, b]| surface.at_edge(a, b).len() == 2));
     }
+}
+
+/// Protects time budgets: without time left triangles are polished no more, but still there are no more than wanted.
+#[test]
+fn without_time_the_budget_of_triangles_holds() {
+    struct Late;
+    impl Watcher for Late {
+        fn seconds_left(&self) -> Option<f64> {
+            Some(0.0)
+        }
+    }
+    let high = prepared(sphere(8));
+    let polish = PolishOptions { rounds: 2, sweeps: 1, ..PolishOptions::default() };
+    let options = ChooseOptions { triangles: 40, room: 2, views: 4, sets: 1, view_size: 32, polish, seed: 0 };
+    let chosen = choose_triangles(&high, None, &options, &Late);
+    assert!((39..=40).contains(&chosen.mesh.triangles.len()), "{}", chosen.mesh.triangles.len());
+    let [before, after] = chosen.layers[0].error;
+    assert_eq!(before, after);
+    let [before, after] = choose_triangles(&high, None, &options, &()).layers[0].error;
+    assert!(after < before);
 }
 
 /// Protects budgets from what is hidden: of a sphere within another one little is left.

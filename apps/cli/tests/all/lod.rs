@@ -19,7 +19,19 @@ fn a_chain_is_written_for_engines() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     demo_pair(folder);
-    let levels = ["--screen-size", "48,24", "--triangles", "300,60", "--layout", "three"];
+    // A budget that is long spent cuts every step short and leaves out no level.
+    let levels = [
+        "--screen-size",
+        "48,24",
+        "--triangles",
+        "300,60",
+        "--layout",
+        "three",
+        "--time-budget",
+        "3",
+        "--report",
+        "lods.html",
+    ];
     run(folder, &[&["lod", "demo_high.glb", "-o", "lods"], &levels[..]].concat());
     let lods = folder.join("lods");
     let chain = json(&lods.join("lods.json"));
@@ -42,8 +54,48 @@ fn a_chain_is_written_for_engines() {
     assert_eq!(coverages[0], told[0]["min_coverage"]);
     assert_eq!((coverages[1].as_f64(), coverages[2].as_f64()), (Some(0.0), None));
     assert!(lods.join("parbake_lods.js").exists());
+    let page = fs::read_to_string(folder.join("lods.html")).unwrap();
+    assert!(page.contains("At its size: 48 pixels") && page.contains("Level 1"));
     // The file with all levels shows the finest to readers that know no levels.
     run(folder, &["check", "lods/demo_high_lods.glb"]);
+}
+
+/// Protects `--target-psnr`: the file of the level is the one that was chosen among those that lods.json tells of, it has
+/// the figure that was measured and the maps that were left; a target that is out of reach is told by the exit code, and
+/// the best file is there all the same.
+#[test]
+fn a_level_is_the_smallest_file_of_a_psnr() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    let one = ["lod", "demo_high.glb", "--screen-size", "24", "--max-texture-size", "32"];
+    let level = |output: &str, code: i32, more: &[&str]| {
+        let ended = parbake(folder).args(one).args(["-o", output]).args(more).output().unwrap();
+        assert_eq!(ended.status.code(), Some(code), "{}", text(&ended.stderr));
+        (json(&folder.join(output).join("lods.json"))["levels"][0].clone(), text(&ended.stderr))
+    };
+    let (found, _) = level("found", 0, &["--target-psnr", "26"]);
+    let trials = found["target"]["trials"].as_array().unwrap();
+    let chosen: Vec<&Value> = trials.iter().filter(|trial| trial["chosen"] == true).collect();
+    assert_eq!(chosen.len(), 1);
+    assert_eq!(chosen[0]["bytes"], found["bytes"]);
+    assert_eq!(chosen[0]["triangles"], found["triangles"]);
+    let psnr = [chosen[0], &found["at_screen_size"]].map(|of| of["psnr"].as_f64().unwrap());
+    assert!(psnr[0] >= 26.0 && (psnr[0] - psnr[1]).abs() < 1e-6, "{psnr:?}");
+    // One that ends closer to the target may be a little larger.
+    let bytes = |of: &Value| of["bytes"].as_u64().unwrap();
+    let smaller = |trial: &&Value| trial["reached"] == true && 103 * bytes(trial) < 100 * bytes(&found);
+    assert_eq!(trials.iter().filter(smaller).count(), 0);
+    assert!(found["target"]["bakes"].as_u64().unwrap() <= 8);
+    let glb = document(&folder.join("found").join(found["file"].as_str().unwrap()));
+    let sizes = chosen[0]["maps"].as_array().unwrap().iter().filter(|map| map["size"] != 0);
+    assert_eq!(glb["images"].as_array().map_or(0, Vec::len), sizes.count());
+    let (missed, told) = level("missed", 4, &["--target-psnr", "60"]);
+    assert_eq!(missed["target"]["verdict"], "missed");
+    assert!(told.contains("60 dB cannot be reached"), "{told}");
+    let both = parbake(folder).args(one).args(["--target-psnr", "30", "--triangles", "90"]).output().unwrap();
+    assert_eq!(both.status.code(), Some(2));
+    assert!(text(&both.stderr).contains("--triangles"), "{}", text(&both.stderr));
 }
 
 /// Protects who has no low-poly: one is made, within its budget, and it has a sound layout.

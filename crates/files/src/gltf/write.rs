@@ -70,10 +70,18 @@ pub fn write_lod_glb(
 /// # Errors
 /// When the model breaks its contract.
 pub fn glb_bytes(model: &Model) -> Result<Vec<u8>, FileError> {
-    Ok(to_bytes(Path::new(&model.name), &[model], None, &WriteOptions::default(), encode_texture)?.0)
+    Ok(glb_bytes_with(model, &WriteOptions::default())?.0)
 }
 
-/// The same for one look at it: textures are encoded fast instead of small.
+/// As [`glb_bytes`], with textures and mesh as the options say; also what the file holds.
+///
+/// # Errors
+/// As [`glb_bytes`].
+pub fn glb_bytes_with(model: &Model, options: &WriteOptions) -> Result<(Vec<u8>, Written), FileError> {
+    to_bytes(Path::new(&model.name), &[model], None, options, encode_texture)
+}
+
+/// As [`glb_bytes`], for one look at it: textures are encoded fast instead of small.
 pub(crate) fn quick_glb_bytes(model: &Model) -> Result<Vec<u8>, FileError> {
     let encode = |image: &Image, _: Purpose, _: &WriteOptions| {
         let bytes = encode_png(image)?;

@@ -5,35 +5,49 @@
 //!                          └ … the next level may start from the triangles of this one ◁───────────┘
 //! ```
 //!
+//! `target.rs` makes a level of several bakes where a PSNR is asked for; `chain.rs` is progress and time.
+//!
 //! Each level is made for a size on screen. From that follow how far its surface may be off, hence its triangles, and
 //! how many texels it needs.
 //!
 //! Contract: levels have fewer and fewer triangles. Each is finished before the next one begins, and handed over;
 //! a chain that is stopped keeps those that are finished. Deterministic.
 
+pub(crate) mod chain;
 pub mod document;
 pub mod layout;
+mod maps;
 pub mod options;
+pub mod search;
 pub mod switch;
+pub mod target;
+mod written;
 
 use crate::bake::{Baked, bake_as, prepare_high_poly};
 use crate::error::BakeError;
 use crate::low_poly::low_poly;
 use crate::report::Work;
+use chain::{Chain, hurried};
 use options::LodOptions;
+use parbake_files::WriteOptions;
 use parbake_model::Model;
 use parbake_progress::Watcher;
 use parbake_simplify::LayerReport;
 use parbake_simplify::start::triangles_within;
 use parbake_views::high_poly::HighPoly;
 use serde::{Deserialize, Serialize};
-use switch::{AtSize, Lineup};
+use std::time::Instant;
+use switch::{AtSize, Lineup, Subject};
+use target::TargetReport;
+use written::as_written;
 
 /// A finished level.
 #[derive(Clone, Debug)]
 pub struct Level {
     /// The bake, with the model.
     pub baked: Baked,
+    /// How its file is to be written: as asked for, with a lower quality of textures where a target allows that.
+    pub write: WriteOptions,
     /// What there is to say of it.
     pub report: LevelReport,
 }
@@ -55,7 +69,7 @@ pub struct LevelReport {
     pub draw_calls: usize,
     /// How the triangles of each layer (opaque, cut out, blended, transmitting) were found.
     pub low_poly: Vec<LayerReport>,
-    /// Against the original, at the size that it was made for.
+    /// Against the original, at the size that it was made for; of what the file holds.
     pub at_screen_size: AtSize,
     /// Pixels that the model spans below which this level cannot be told from the one before, nor from the
     /// original; none where it always can.
@@ -64,7 +78,13 @@ pub struct LevelReport {
     pub switch_coverage: Option<f64>,
     /// Against the level before (the original for the first), at that size.
     pub against_before: Option<AtSize>,
-    /// Seconds that triangles, bake and figures took.
+    /// How the search for a PSNR went, where one was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub target: Option<TargetReport>,
+    /// Whether a time budget or a signal ended a step early.
+    #[serde(default)]
+    pub stopped_early: bool,
+    /// Seconds that triangles, bake and figures took; of a search for a PSNR those of all its bakes.
     pub seconds: [f64; 3],
 }
 
@@ -81,74 +101,152 @@ pub fn make_levels<E: From<BakeError>>(
     mut on_level: impl FnMut(Level) -> Result<(), E>,
 ) -> Result<usize, E> {
     options.check()?;
-    let high = prepare_high_poly(model, &options.bake(options.max_texture_size))?;
-    let lineup = Lineup::new(model, options.shading);
-    let original = lineup.subject(model)?;
-    let mut before: Option<(Model, switch::Subject)> = None;
+    let start = Instant::now();
+    let maker = Maker::new(model, options)?;
+    let sizes = (0..options.screen_size.len())
+        .map(|level| (maker.wanted_triangles(level), maker.texture_size(model, options.screen_size[level])));
+    let mut chain = Chain::new(watcher, start, options, &sizes.collect::<Vec<_>>());
+    let mut before: Option<(Model, Subject)> = None;
     let mut count = 0;
-    for (index, &screen_size) in options.screen_size.iter().enumerate() {
-        let begin = std::time::Instant::now();
-        let most = before.as_ref().map_or(high.triangles, |(low, _)| low.mesh.triangles.len());
-        let wanted = wanted_triangles(&high, options, index, screen_size).min(most);
+    for index in 0..options.screen_size.len() {
         let finer = before.as_ref().map(|(low, _)| low);
-        let (low, found) = low_poly(&high, model, finer, wanted, options.preset, watcher);
-        if watcher.stopped() {
-            // There may be too many triangles still.
-            break;
-        }
-        let chosen = begin.elapsed().as_secs_f64();
-        let texture_size = texture_size(&high, &low, screen_size, options.max_texture_size);
-        let baked = bake_as(Work::Level, &high, &low, &options.bake(texture_size), watcher)?;
-        let finished = begin.elapsed().as_secs_f64();
-
-        let subject = lineup.subject(&baked.model)?;
-        let at_screen_size = lineup.compare(&original, &subject, screen_size, true)?;
-        let others = [Some(&original), before.as_ref().map(|(_, subject)| subject)];
-        let others: Vec<_> = others.into_iter().flatten().collect();
-        let switch_pixels = lineup.largest_same(&subject, &others, screen_size, options.switch_psnr)?;
-        let last = others[others.len() - 1];
-        let against_before = switch_pixels.map(|pixels| lineup.compare(last, &subject, pixels, true));
+        let made = match options.target_psnr {
+            Some(target) => target::find(&maker, &mut chain, index, finer, target)?
+                .map(|found| (found.draft, found.write, Some(found.report))),
+            None => {
+                let most = finer.map_or(maker.high.triangles, |low| low.mesh.triangles.len());
+                let (wanted, until) = (maker.wanted_triangles(index).min(most), chain.level_until(index));
+                let draft = maker.draft(&mut chain, (index, 0), finer, (wanted, None), until)?;
+                draft.map(|draft| (draft, options.write, None))
+            }
+        };
+        let Some((draft, write, target)) = made else { break };
+        let begin = Instant::now();
+        let subject =
+            maker.lineup.subject(&as_written(&draft.baked.model, &write, options.normal_y)?.model)?;
+        let figures = maker.figures(index, &subject, before.as_ref().map(|(_, subject)| subject))?;
+        let Draft { low, layers, baked, seconds: [chosen, fitted, compared] } = draft;
         let report = LevelReport {
             level: index,
-            screen_size,
+            screen_size: options.screen_size[index],
             triangles: baked.model.mesh.triangles.len(),
-            texture_size,
+            texture_size: baked.model.images.iter().map(|image| image.width).max().unwrap_or(0),
             texels: baked.model.images.iter().map(|image| image.width * image.height).sum(),
             draw_calls: baked.model.materials.len(),
-            low_poly: found,
-            at_screen_size,
-            switch_pixels,
-            switch_coverage: switch_pixels.map(|pixels| (pixels / options.viewport_height).min(1.0)),
-            against_before: against_before.transpose()?,
-            seconds: [chosen, finished - chosen, begin.elapsed().as_secs_f64() - finished],
+            low_poly: layers,
+            at_screen_size: figures.at_screen_size,
+            switch_pixels: figures.switch_pixels,
+            switch_coverage: figures.switch_pixels.map(|pixels| (pixels / options.viewport_height).min(1.0)),
+            against_before: figures.against_before,
+            target,
+            stopped_early: baked.report.stopped_early,
+            seconds: [chosen, fitted, compared + begin.elapsed().as_secs_f64()],
         };
         before = Some((low, subject));
         count += 1;
-        on_level(Level { baked, report })?;
+        on_level(Level { baked, write, report })?;
     }
     Ok(count)
 }
 
-fn wanted_triangles(high: &HighPoly, options: &LodOptions, level: usize, screen_size: f64) -> usize {
-    let least = 4;
-    match (options.triangles.get(level), options.ratio.get(level)) {
-        (Some(&count), _) => count,
-        (None, Some(share)) => ((share * high.triangles as f64).round() as usize).max(least),
-        (None, None) => {
-            // The longest side is 2 long in the common frame.
-            let error = 2.0 * options.error / screen_size;
-            triangles_within(high.scene.mesh(), error as f32).max(least)
-        }
-    }
+/// What all levels are made of.
+pub(crate) struct Maker<'a> {
+    pub model: &'a Model,
+    pub high: HighPoly,
+    pub options: &'a LodOptions,
+    pub lineup: Lineup,
+    /// The model, ready for pictures.
+    pub original: Subject,
 }
 
-/// About a texel for each pixel that the surface covers at this size, where charts fill three quarters of the
-/// texture; a power of two.
-fn texture_size(high: &HighPoly, low: &Model, screen_size: f64, most: usize) -> usize {
-    let area: f64 =
-        (0..low.mesh.triangles.len()).map(|t| 0.5 * f64::from(low.mesh.area_normal(t).length())).sum();
-    let pixels_per_unit = 0.5 * screen_size * f64::from(high.frame.scale);
-    let side = (area * pixels_per_unit.powi(2) / 0.75).sqrt();
-    let side = 2f64.powf(side.max(1.0).log2().round()) as usize;
-    side.clamp(32, most)
+/// A baked level without figures.
+pub(crate) struct Draft {
+    /// Its triangles as they were chosen.
+    pub low: Model,
+    pub layers: Vec<LayerReport>,
+    pub baked: Baked,
+    /// That choosing triangles, baking and pictures took, those of bakes that were not taken included.
+    pub seconds: [f64; 3],
+}
+
+/// What pictures say of a level.
+struct Figures {
+    at_screen_size: AtSize,
+    switch_pixels: Option<f64>,
+    against_before: Option<AtSize>,
+}
+
+impl<'a> Maker<'a> {
+    fn new(model: &'a Model, options: &'a LodOptions) -> Result<Self, BakeError> {
+        let high = prepare_high_poly(model, &options.bake(options.max_texture_size))?;
+        let lineup = Lineup::new(model, options.shading);
+        let original = lineup.subject(model)?;
+        Ok(Self { model, high, options, lineup, original })
+    }
+
+    /// Chooses so many triangles and bakes, to be finished by `until`; the texture's size follows the level's where
+    /// none is given. None where the watcher said stop before the triangles were chosen.
+    fn draft(
+        &self,
+        chain: &mut Chain,
+        (level, bake): (usize, usize),
+        finer: Option<&Model>,
+        (triangles, texture_size): (usize, Option<usize>),
+        until: Option<Instant>,
+    ) -> Result<Option<Draft>, BakeError> {
+        let begin = Instant::now();
+        let watcher = chain.bake(level, bake, until);
+        let (low, layers) = low_poly(&self.high, self.model, finer, triangles, self.options.preset, &watcher);
+        if watcher.stopped() {
+            // There may be too many triangles still.
+            return Ok(None);
+        }
+        let chosen = begin.elapsed().as_secs_f64();
+        let own = || self.texture_size(&low, self.options.screen_size[level]);
+        let options = hurried(self.options.bake(texture_size.unwrap_or_else(own)), until);
+        let baked = bake_as(Work::Level, &self.high, &low, &options, &watcher.after_triangles())?;
+        let seconds = [chosen, begin.elapsed().as_secs_f64() - chosen, 0.0];
+        Ok(Some(Draft { low, layers, baked, seconds }))
+    }
+
+    fn figures(
+        &self,
+        level: usize,
+        subject: &Subject,
+        before: Option<&Subject>,
+    ) -> Result<Figures, BakeError> {
+        let (lineup, screen_size) = (&self.lineup, self.options.screen_size[level]);
+        let at_screen_size = lineup.compare(&self.original, subject, screen_size, true)?;
+        let others: Vec<&Subject> = [Some(&self.original), before].into_iter().flatten().collect();
+        let switch_pixels = lineup.largest_same(subject, &others, screen_size, self.options.switch_psnr)?;
+        let last = others[others.len() - 1];
+        let against_before =
+            switch_pixels.map(|pixels| lineup.compare(last, subject, pixels, true)).transpose()?;
+        Ok(Figures { at_screen_size, switch_pixels, against_before })
+    }
+
+    fn wanted_triangles(&self, level: usize) -> usize {
+        let (least, high, options) = (4, &self.high, self.options);
+        match (options.triangles.get(level), options.ratio.get(level)) {
+            (Some(&count), _) => count,
+            (None, Some(share)) => ((share * high.triangles as f64).round() as usize).max(least),
+            (None, None) => {
+                // The longest side is 2 long in the common frame.
+                let error = 2.0 * options.error / options.screen_size[level];
+                triangles_within(high.scene.mesh(), error as f32).max(least)
+            }
+        }
+    }
+
+    /// About a texel for each pixel that the surface covers at this size, where charts fill three quarters of the
+    /// texture; a power of two.
+    fn texture_size(&self, low: &Model, screen_size: f64) -> usize {
+        let area: f64 =
+            (0..low.mesh.triangles.len()).map(|t| 0.5 * f64::from(low.mesh.area_normal(t).length())).sum();
+        let pixels_per_unit = 0.5 * screen_size * f64::from(self.high.frame.scale);
+        let side = (area * pixels_per_unit.powi(2) / 0.75).sqrt();
+        let side = 2f64.powf(side.max(1.0).log2().round()) as usize;
+        let most = self.options.max_texture_size;
+        side.clamp(32.min(most), most)
+    }
 }

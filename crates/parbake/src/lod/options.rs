@@ -31,6 +31,11 @@ pub struct LodOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", default_value_t = 0.25, help_heading = LEVELS))]
     pub error: f64,
 
+    /// PSNR in dB against the original that each level is to reach at its size, 15 to 60: triangles, texels and maps
+    /// are searched for the smallest file that does, with at most 8 bakes a level
+    #[cfg_attr(feature = "clap", arg(long, value_name = "DECIBELS", conflicts_with_all = ["triangles", "ratio", "error"], help_heading = LEVELS))]
+    pub target_psnr: Option<f64>,
+
     /// Largest texture of a level, in texels along a side, 16 to 8192; textures follow the size on screen, with about
     /// a texel for each pixel
     #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 2048, value_parser = crate::texels::parse_texels, help_heading = LEVELS))]
@@ -58,6 +63,11 @@ pub struct LodOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME=WEIGHT", help_heading = heading::QUALITY))]
     pub importance: Vec<Importance>,
 
+    /// Seconds after which levels are finished with what there is, 0 to 1e9, reading of files included: fewer steps,
+    /// no level less [default: no limit]
+    #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "SECONDS", help_heading = heading::QUALITY))]
+    pub time_budget: Option<f64>,
+
     /// How files are written
     #[cfg_attr(feature = "clap", command(flatten))]
     #[serde(flatten)]
@@ -71,7 +81,8 @@ pub struct LodOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "NUMBER", default_value_t = 0, help_heading = heading::ADVANCED))]
     pub seed: u64,
 
-    /// Number of threads, 0 to 256; 0 is one a core. The result does not depend on it
+    /// Number of threads, 0 to 256; 0 is one a core. The result depends on it only if a time
+    /// budget ends the run
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", default_value_t = 0, help_heading = heading::ADVANCED))]
     pub threads: usize,
 }
@@ -87,12 +98,14 @@ impl Default for LodOptions {
             triangles: Vec::new(),
             ratio: Vec::new(),
             error: 0.25,
+            target_psnr: None,
             max_texture_size: 2048,
             switch_psnr: 35.0,
             viewport_height: 1080.0,
             preset: Preset::Fast,
             shading: Shading::Auto,
             importance: Vec::new(),
+            time_budget: None,
             write: WriteOptions::default(),
             normal_y: NormalY::Up,
             seed: 0,
@@ -141,7 +154,13 @@ impl LodOptions {
             ("max-texture-size", self.max_texture_size as f64, 16.0, 8192.0),
             ("switch-psnr", self.switch_psnr, 10.0, 60.0),
             ("viewport-height", self.viewport_height, 100.0, 1e5),
+            ("target-psnr", self.target_psnr.unwrap_or(30.0), 15.0, 60.0),
+            ("time-budget", self.time_budget.unwrap_or(0.0), 0.0, 1e9),
         ];
+        if let Some(target) = self.target_psnr.filter(|_| self.triangles.len() + self.ratio.len() > 0) {
+            let range = "left out where triangles or ratio say how large levels are";
+            return refuse("target-psnr", target.to_string(), range);
+        }
         for (option, value, low, high) in ranges {
             if !(low..=high).contains(&value) {
                 return refuse(option, value.to_string(), &format!("{low} to {high}"));

@@ -47,6 +47,12 @@ pub struct AtSize {
     pub flip: Option<f64>,
 }
 
+/// A model's pictures at one size.
+pub struct Pictures {
+    studio: Studio,
+    views: Vec<Rgb>,
+}
+
 /// Models in front of cameras.
 pub struct Lineup {
     original: Model,
@@ -72,6 +78,30 @@ impl Lineup {
     /// Where the original has no extent.
     pub fn subject(&self, model: &Model) -> Result<Subject, BakeError> {
         Ok(self.studio(SIZES[0])?.subject(model))
+    }
+
+    /// Takes a model's pictures at a size, to compare any number of others with.
+    ///
+    /// # Errors
+    /// Where the original has no extent.
+    pub fn pictures(&self, subject: &Subject, pixels: f64) -> Result<Pictures, BakeError> {
+        let studio = self.studio(pixels)?;
+        let views = fibonacci_sphere(VIEWS, 0.0)
+            .into_par_iter()
+            .map(|direction| studio.develop(&studio.shot(subject, direction), [GREY; 3]))
+            .collect();
+        Ok(Pictures { studio, views })
+    }
+
+    /// PSNR in dB of a model against another one's pictures: that of [`Lineup::compare`].
+    pub fn psnr(&self, pictures: &Pictures, subject: &Subject) -> f64 {
+        let Pictures { studio, views } = pictures;
+        let figures: Vec<f64> = (fibonacci_sphere(VIEWS, 0.0).into_par_iter().zip(views))
+            .map(|(direction, other)| {
+                psnr(other, &studio.develop(&studio.shot(subject, direction), [GREY; 3]))
+            })
+            .collect();
+        figures.iter().sum::<f64>() / figures.len() as f64
     }
 
     /// Compares two models at a size; FLIP and MS-SSIM only if asked for.

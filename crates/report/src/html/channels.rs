@@ -25,7 +25,7 @@ pub fn rows(scenes: &Scenes, compared: &Comparison) -> Vec<ChannelRow> {
     if compared.channels.is_empty() {
         return Vec::new();
     }
-    let camera = front(scenes);
+    let camera = front(&scenes.all());
     let shoot = |subject: &Subject| scenes.studio.photograph(subject, &camera, (PIXELS, SUPERSAMPLE), true);
     let (high, baked) = (shoot(&scenes.high), shoot(&scenes.baked));
     let row = |on: &OnChannel| {

@@ -20,13 +20,13 @@ mod figures;
 mod gallery;
 mod loss_curve;
 mod page;
-mod pictures;
+pub(crate) mod pictures;
 mod scenes;
 mod settings;
 mod tables;
 #[cfg(test)]
 mod tests;
-mod textures;
+pub(crate) mod textures;
 mod uv_check;
 mod uv_moves;
 mod view_chart;

@@ -75,7 +75,7 @@ pub fn page(
         "",
         &format!(
             r#"{}<div class="pair"><div><h3>Texture layout</h3>{}</div><div><h3>Texels</h3>{}{}</div></div>"#,
-            textures(&baked.model)?,
+            textures(&baked.model, "borders")?,
             uv_check(&report.uv),
             tables::texels(report),
             uv_moves(baked.uv_moves.as_ref())?

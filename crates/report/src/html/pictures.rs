@@ -19,7 +19,7 @@ pub const PIXELS: usize = 384;
 pub const AMPLIFIED: f32 = 4.0;
 /// A dark grey, as in most 3D applications' viewports: black would swallow the
 /// outline and white would outshine the model. Linear light.
-const BACKGROUND: [f32; 3] = [0.04; 3];
+pub const BACKGROUND: [f32; 3] = [0.04; 3];
 
 /// Samples along a side of each pixel.
 pub const SUPERSAMPLE: usize = 2;
@@ -67,7 +67,7 @@ fn direction(angles: [f32; 2]) -> Vec3 {
 }
 
 fn side(scenes: &Scenes, direction: Vec3) -> Side {
-    let camera = framed(scenes, direction);
+    let camera = framed(&scenes.all(), direction);
     let picture = |subject: &Subject| {
         let shot = scenes.studio.photograph(subject, &camera, (PIXELS, SUPERSAMPLE), false);
         scenes.studio.develop(&shot, BACKGROUND)
@@ -86,15 +86,20 @@ fn side(scenes: &Scenes, direction: Vec3) -> Side {
     }
 }
 
-/// The camera of the first side.
-pub fn front(scenes: &Scenes) -> Camera {
-    framed(scenes, direction(DIRECTIONS[0]))
+/// The camera of the first side, whose picture all subjects just fit into.
+pub fn front(subjects: &[&Subject]) -> Camera {
+    framed(subjects, direction(DIRECTIONS[0]))
+}
+
+/// Where it stands, of unit length.
+pub fn front_direction() -> Vec3 {
+    direction(DIRECTIONS[0])
 }
 
 /// A camera whose picture all shapes just fit into.
-fn framed(scenes: &Scenes, direction: Vec3) -> Camera {
+fn framed(subjects: &[&Subject], direction: Vec3) -> Camera {
     let wide = Camera::towards_origin(direction, RADIUS, Projection::Perspective(1.0));
-    let reach = [&scenes.high, &scenes.baked, &scenes.ray_cast]
+    let reach = subjects
         .iter()
         .flat_map(|subject| {
             let scene = subject.scene();

@@ -23,4 +23,9 @@ impl Scenes {
             [high, &baked.ray_cast, &baked.model].map(|model| studio.subject(model));
         Ok(Self { studio, high, ray_cast, baked })
     }
+
+    /// All three.
+    pub fn all(&self) -> [&Subject; 3] {
+        [&self.high, &self.baked, &self.ray_cast]
+    }
 }

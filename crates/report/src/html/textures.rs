@@ -37,13 +37,15 @@ fn maps(model: &Model) -> Vec<(&Image, String)> {
     found.into_iter().filter_map(|(image, names)| Some((model.images.get(image)?, names))).collect()
 }
 
-/// All textures.
-pub fn textures(model: &Model) -> Result<String, BakeError> {
-    let layout = uv_layout(&model.mesh, "borders");
+/// All textures. `id` names the layout among the page's elements.
+pub fn textures(model: &Model, id: &str) -> Result<String, BakeError> {
+    let layout = uv_layout(&model.mesh, id);
     let (lines, left_out) = layout.map_or((String::new(), None), |l| (l.svg, l.left_out));
     let mut out = String::new();
     if !lines.is_empty() {
-        out += r#"<input type="checkbox" id="lines" checked><label for="lines">show the texture layout's lines</label>"#;
+        out += &format!(
+            r#"<input type="checkbox" class="lines" id="{id}-lines" checked><label for="{id}-lines">show the texture layout's lines</label>"#
+        );
     }
     out += r#"<div class="textures">"#;
     for (index, (image, what)) in maps(model).into_iter().enumerate() {

@@ -37,6 +37,29 @@ impl Frame {
         bottom - (bottom - top) * scale.share(value)
     }
 
+    /// Ticks below the horizontal axis, and what it counts.
+    pub(super) fn horizontal_axis(&self, scale: &Scale, title: &str) -> String {
+        let mut out = String::from(r#"<g class="grid">"#);
+        for tick in &scale.ticks {
+            let x = self.x(scale, tick.value);
+            let _ = write!(
+                out,
+                r#"<path d="M{x:.1} {:.1}v5"/><text x="{x:.1}" y="{:.1}" text-anchor="middle">{}</text>"#,
+                self.bottom,
+                self.bottom + LINE + 4.0,
+                tick.label
+            );
+        }
+        let _ = write!(
+            out,
+            r#"</g><g class="axis"><text x="{:.1}" y="{:.1}" text-anchor="end">{}</text></g>"#,
+            self.right,
+            self.height - 5.0,
+            escape(&shortened(title, self.right - 4.0))
+        );
+        out
+    }
+
     /// The drawing: the grid, then `content`. `title` names it for those who do not see it.
     pub(super) fn svg(&self, title: &str, y_title: &str, scale: &Scale, content: &str) -> String {
         let mut out = format!(
@@ -65,6 +88,20 @@ impl Frame {
         );
         out
     }
+}
+
+/// As many ticks as have labels that do not touch.
+pub(super) fn x_scale(positions: impl Iterator<Item = f64> + Clone, width: f64) -> Scale {
+    let mut scale = Scale::within(positions.clone(), 10);
+    for steps in [8, 6, 5, 4, 3, 2, 1] {
+        let widest = scale.ticks.iter().map(|tick| text_width(&tick.label)).fold(0.0, f64::max);
+        let apart = |pair: &[super::scale::Tick]| scale.share(pair[1].value) - scale.share(pair[0].value);
+        if scale.ticks.windows(2).all(|pair| width * apart(pair) > widest + 10.0) {
+            break;
+        }
+        scale = Scale::within(positions.clone(), steps);
+    }
+    scale
 }
 
 /// Space that the vertical axis' labels need at its left.

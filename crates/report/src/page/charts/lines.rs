@@ -9,7 +9,7 @@
 //! left out and the line goes on without them. All coordinates are finite, the same chart
 //! gives the same bytes, and it has `role="img"` and an `aria-label`.
 
-use super::frame::{Frame, LINE, left_margin, shortened, text_width};
+use super::frame::{Frame, LINE, left_margin, shortened, text_width, x_scale};
 use super::looks::{colour, dash, legend, mark};
 use super::scale::Scale;
 use crate::page::text::{escape, figures};
@@ -69,7 +69,7 @@ impl LineChart {
         frame.bottom = frame.top + SIZE.1;
         frame.height = frame.bottom + 2.0 * LINE + 12.0;
 
-        let mut content = self.horizontal_axis(&x_scale, &frame);
+        let mut content = frame.horizontal_axis(&x_scale, &self.x_title);
         for (&(at, label), &row) in boundaries.iter().zip(&rows) {
             let x = frame.x(&x_scale, *at);
             let drawn = row < MOST_ROWS;
@@ -99,28 +99,6 @@ impl LineChart {
     fn shown(&self, series: &Series) -> Vec<(f64, f64)> {
         let fits = |&(x, y): &(f64, f64)| x.is_finite() && y.is_finite() && (y > 0.0 || !self.logarithmic);
         series.points.iter().copied().filter(fits).collect()
-    }
-
-    fn horizontal_axis(&self, scale: &Scale, frame: &Frame) -> String {
-        let mut out = String::from(r#"<g class="grid">"#);
-        for tick in &scale.ticks {
-            let x = frame.x(scale, tick.value);
-            let _ = write!(
-                out,
-                r#"<path d="M{x:.1} {:.1}v5"/><text x="{x:.1}" y="{:.1}" text-anchor="middle">{}</text>"#,
-                frame.bottom,
-                frame.bottom + LINE + 4.0,
-                tick.label
-            );
-        }
-        let _ = write!(
-            out,
-            r#"</g><g class="axis"><text x="{:.1}" y="{:.1}" text-anchor="end">{}</text></g>"#,
-            frame.right,
-            frame.height - 5.0,
-            escape(&shortened(&self.x_title, frame.right - 4.0))
-        );
-        out
     }
 
     /// Appends the line of a series and its marks, which stand at `places`.
@@ -160,20 +138,6 @@ impl LineChart {
         });
         legend(40, entries)
     }
-}
-
-/// As many ticks as have labels that do not touch.
-fn x_scale(positions: impl Iterator<Item = f64> + Clone, width: f64) -> Scale {
-    let mut scale = Scale::within(positions.clone(), 10);
-    for steps in [8, 6, 5, 4, 3, 2, 1] {
-        let widest = scale.ticks.iter().map(|tick| text_width(&tick.label)).fold(0.0, f64::max);
-        let apart = |pair: &[super::scale::Tick]| scale.share(pair[1].value) - scale.share(pair[0].value);
-        if scale.ticks.windows(2).all(|pair| width * apart(pair) > widest + 10.0) {
-            break;
-        }
-        scale = Scale::within(positions.clone(), steps);
-    }
-    scale
 }
 
 /// Right edge that leaves room for the labels of the last boundaries.

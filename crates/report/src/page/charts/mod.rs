@@ -5,6 +5,7 @@
 //! | `lines.rs` | how values go on: a loss over its steps |
 //! | `violins.rs` | how values spread: differences over models, a violin for each method |
 //! | `bars.rs` | how large values are, beside those that a paper states |
+//! | `scatter.rs` | which of many pairs of values is best: bytes against decibels |
 //! | `scale.rs` | an axis and its round ticks |
 //! | `places.rs` | an axis of groups and their names |
 //! | `frame.rs` | grid, titles, where values stand |
@@ -21,8 +22,10 @@ mod lines;
 mod looks;
 mod places;
 mod scale;
+mod scatter;
 mod violins;
 
 pub use bars::{Bar, BarChart, BarGroup};
 pub use lines::{LineChart, Series};
+pub use scatter::{ScatterChart, ScatterPoint};
 pub use violins::{Violin, ViolinChart, ViolinGroup};

@@ -1,0 +1,70 @@
+//! A part of a stage that reports as if it were all of it: its steps become those of the stage.
+//!
+//! Contract: passes all else on.
+
+use crate::message::{Message, Watcher};
+use std::ops::Range;
+
+/// Steps that a stage has when its parts report.
+const STEPS: f64 = 1000.0;
+
+/// Passes a part's messages on.
+pub struct Portion<'a, W: ?Sized> {
+    watcher: &'a W,
+    range: Range<f64>,
+}
+
+impl<'a, W: Watcher + ?Sized> Portion<'a, W> {
+    /// For the part from `range.start` to `range.end` of the stage, 0 to 1.
+    pub fn new(watcher: &'a W, range: Range<f64>) -> Self {
+        Self { watcher, range }
+    }
+}
+
+impl<W: Watcher + ?Sized> Watcher for Portion<'_, W> {
+    fn message(&self, message: Message) {
+        self.watcher.message(match message {
+            Message::Progress { stage, done, total } => {
+                let share = (done as f64 / total.max(1) as f64).clamp(0.0, 1.0);
+                let share = self.range.start + (self.range.end - self.range.start) * share;
+                Message::Progress { stage, done: (STEPS * share).round() as usize, total: STEPS as usize }
+            }
+            other => other,
+        });
+    }
+
+    fn stopped(&self) -> bool {
+        self.watcher.stopped()
+    }
+
+    fn seconds_left(&self) -> Option<f64> {
+        self.watcher.seconds_left()
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::Stage;
+    use std::sync::Mutex;
+
+    struct Notes(Mutex<Vec<Message>>);
+
+    impl Watcher for Notes {
+        fn message(&self, message: Message) {
+            self.0.lock().unwrap().push(message);
+        }
+    }
+
+    /// Protects the bar: the second half of a stage ends where the stage does, and begins in its middle.
+    #[test]
+    fn a_part_reports_as_the_whole() {
+        let notes = Notes(Mutex::default());
+        let half = Portion::new(&notes, 0.5..1.0);
+        half.progress(Stage::Simplify, 0, 7);
+        half.progress(Stage::Simplify, 7, 7);
+        let at = |done| Message::Progress { stage: Stage::Simplify, done, total: 1000 };
+        assert_eq!(*notes.0.lock().unwrap(), [at(500), at(1000)]);
+    }
+}
