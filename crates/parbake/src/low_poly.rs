@@ -30,7 +30,7 @@ pub fn low_poly(
         *point = *point / high.frame.scale + high.frame.centre;
     }
     let materials = model.materials.iter().map(layer_only).collect();
-    (Model { name: model.name.clone(), mesh, materials, images: Vec::new() }, chosen.layers)
+    (Model { name: model.name.clone(), mesh, materials, ..Model::default() }, chosen.layers)
 }
 
 /// Of a material what says in which layer it is drawn.

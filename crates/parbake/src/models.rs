@@ -46,7 +46,7 @@ pub fn laid_out(low: &Model, mode: UvMode, texture_size: usize) -> Result<Model,
     let options = BakeOptions { texture_size, ..BakeOptions::default() };
     let RepairedLowPoly { name, mut mesh, .. } = repair_uvs(low, &options.uv_stage_as(mode))?;
     mesh.triangle_materials.fill(0);
-    Ok(Model { name, mesh, materials: vec![Material::default()], images: Vec::new() })
+    Ok(Model { name, mesh, materials: vec![Material::default()], ..Model::default() })
 }
 
 /// A copy with four times the triangles and the same shape.
@@ -68,7 +68,7 @@ pub fn wall_pair() -> (Model, Model) {
 
 /// A model without textures.
 fn plain(name: &str, mesh: Mesh) -> Model {
-    Model { name: name.into(), mesh, materials: vec![Material::default()], images: Vec::new() }
+    Model { name: name.into(), mesh, materials: vec![Material::default()], ..Model::default() }
 }
 
 #[cfg(test)]

@@ -60,7 +60,7 @@ fn prepared(mesh: Mesh) -> HighPoly {
 }
 
 fn prepared_of(mesh: Mesh, materials: Vec<Material>) -> HighPoly {
-    let model = Model { name: "high".into(), mesh, materials, images: Vec::new() };
+    let model = Model { name: "high".into(), mesh, materials, images: Vec::new(), rig: None };
     let conventions = Conventions {
         interpretation: Interpretation { decode_srgb: true, trilinear: true, parallax: true },
         display: Display { gain: 1.0, curve: Curve::Srgb },

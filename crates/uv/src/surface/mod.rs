@@ -148,7 +148,7 @@ pub fn optimise_uvs(
         }
     }
     mesh.triangle_materials.fill(0);
-    let model = Model { name, mesh, materials: vec![Material::default()], images: Vec::new() };
+    let model = Model { name, mesh, materials: vec![Material::default()], images: Vec::new(), rig: None };
     UvStageResult { model, moves, pieces, report }
 }
 
@@ -329,7 +329,7 @@ mod tests {
             triangle_materials: vec![0; charts as usize],
             ..Mesh::default()
         };
-        Model { name: "sheet".into(), mesh, materials: vec![Material::default()], images: Vec::new() }
+        Model { name: "sheet".into(), mesh, materials: vec![Material::default()], images: Vec::new(), rig: None }
     }
 
     /// Protects parallax maps from their neighbours: two of the map's texels lie between charts,
