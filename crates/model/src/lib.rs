@@ -32,8 +32,8 @@ pub use parallax::{DepthMap, ShParallaxMap};
 pub use parallax_fault::ParallaxFault;
 pub use placement::{Bounds, Placement};
 pub use rig::{
-    Animation, Influences, Interpolation, Joint, MOST_INFLUENCES, Morph, MorphTarget, NodeTransform, Property, Rig,
-    RigNode, Skeleton, Track,
+    Animation, Influences, Interpolation, Joint, MOST_INFLUENCES, Morph, MorphTarget, NodeTransform,
+    Property, Rig, RigNode, Skeleton, Track,
 };
 pub use short_uv::{is_short, nearest_short, short_uv, short_uvs_pay};
 

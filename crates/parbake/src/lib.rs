@@ -50,6 +50,7 @@ mod plan;
 mod raycast;
 mod raycast_options;
 mod report;
+mod rigs;
 mod stats;
 pub mod studio;
 mod texels;

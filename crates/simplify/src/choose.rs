@@ -81,20 +81,23 @@ pub struct Chosen {
 /// Views that tell one collapse from another well enough.
 const FEW: usize = 24;
 
-/// Chooses the triangles; `before` is the level before in the common frame, if there is one.
+/// Chooses the triangles; `before` is the level before in the common frame, if there is one. `parts` has for each of the
+/// high-poly's materials the part that moves by itself to which it belongs; nothing where there is one. No triangle of
+/// the result lies on two.
 pub fn choose_triangles(
     high: &HighPoly,
     before: Option<&Mesh>,
+    parts: &[u32],
     options: &ChooseOptions,
     watcher: &impl Watcher,
 ) -> Chosen {
     let mesh = high.scene.mesh();
-    let start = quadrics(mesh, options.room * options.triangles);
+    let start = quadrics(mesh, parts, options.room * options.triangles);
     let layers = high_layers(high);
     let mut chosen = Chosen { mesh: Mesh::default(), layers: Vec::new() };
     if let [_] = layers[..] {
         let starts = [Some((Start::Quadrics, start)), before.map(|mesh| (Start::Level, mesh.clone()))];
-        chosen.add(layer(high, None, starts, options, watcher));
+        chosen.add(layer(high, None, parts, starts, options, watcher));
         return chosen;
     }
     let kind_of_material = kinds_of_materials(high, &layers);
@@ -107,7 +110,7 @@ pub fn choose_triangles(
         // A layer of which edge collapses left nothing begins as it is.
         let start = if start.triangles.is_empty() { own(mesh, kind) } else { start };
         let starts = [Some((Start::Quadrics, start)), before.map(|mesh| (Start::Level, own(mesh, kind)))];
-        chosen.add(layer(high, Some(triangles), starts, &options, watcher));
+        chosen.add(layer(high, Some(triangles), parts, starts, &options, watcher));
     }
     chosen
 }
@@ -146,6 +149,7 @@ impl Chosen {
 fn layer(
     high: &HighPoly,
     triangles: Option<&[u32]>,
+    parts: &[u32],
     starts: [Option<(Start, Mesh)>; 2],
     options: &ChooseOptions,
     watcher: &impl Watcher,
@@ -155,7 +159,7 @@ fn layer(
     let mut targets: Vec<Target> = cameras.par_iter().map(target).collect();
     let mut tried: Vec<(StartReport, Surface)> = Vec::new();
     for (start, mesh) in starts.into_iter().flatten().filter(|(_, mesh)| !mesh.triangles.is_empty()) {
-        let mut pictures = Pictures::new(&targets[..targets.len().min(FEW)], Surface::new(&mesh));
+        let mut pictures = Pictures::new(&targets[..targets.len().min(FEW)], Surface::in_parts(&mesh, parts));
         collapse_to(&mut pictures, options.triangles, watcher);
         let report = StartReport { start, triangles: pictures.surface.count(), error: pictures.error() };
         tried.push((report, pictures.surface));

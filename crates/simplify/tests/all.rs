@@ -156,7 +156,7 @@ fn chosen_triangles_fit_and_are_the_same_for_any_threads() {
             .num_threads(threads)
             .build()
             .unwrap_or_else(|e| unreachable!("{e}"));
-        pool.install(|| choose_triangles(&high, None, &options, &()))
+        pool.install(|| choose_triangles(&high, None, &[], &options, &()))
     };
     let (one, three) = (on(1), on(3));
     assert_eq!(one.mesh, three.mesh);
@@ -185,7 +185,7 @@ fn what_is_behind_glass_is_kept() {
         polish: PolishOptions { rounds: 0, sweeps: 1, ..PolishOptions::default() },
         seed: 0,
     };
-    let chosen = choose_triangles(&high, None, &options, &());
+    let chosen = choose_triangles(&high, None, &[], &options, &());
     let is_inner = |t: &&[u32; 3]| t.iter().all(|&v| chosen.mesh.positions[v as usize].length() < 0.6);
     let inner = chosen.mesh.triangles.iter().filter(is_inner).count();
     assert!(

@@ -70,7 +70,9 @@ impl<'a, 'd> Animations<'a, 'd> {
                     (None, Some(ids)) if !ids.is_empty() => (ids.len(), false),
                     _ => continue,
                 };
-                let Some(sampled) = own.sampled(channel, &json.samplers, width, normalise, &here)? else { continue };
+                let Some(sampled) = own.sampled(channel, &json.samplers, width, normalise, &here)? else {
+                    continue;
+                };
                 let Sampled { interpolation, times, values } = sampled;
                 match (property, ids) {
                     (Some(property), _) => tracks.push(Track { property, interpolation, times, values }),
@@ -83,7 +85,9 @@ impl<'a, 'd> Animations<'a, 'd> {
             let rest: Vec<f32> = morphs.targets.iter().map(|target| target.weight).collect();
             if let Some((track, is_exact)) = together(weights, &rest) {
                 if !is_exact {
-                    buffers.context.warn("weights of morph targets that several nodes animate were sampled anew");
+                    buffers
+                        .context
+                        .warn("weights of morph targets that several nodes animate were sampled anew");
                 }
                 tracks.push(track);
             }

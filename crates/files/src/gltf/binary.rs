@@ -59,7 +59,8 @@ fn shorts(values: [u16; 4]) -> [u8; 8] {
 /// Weights, greatest first, in whole parts that sum to `most`.
 fn whole_parts(weights: [f32; 4], most: u16) -> [u16; 4] {
     let sum: f32 = weights.iter().sum();
-    let mut parts = weights.map(|w| (w / sum * f32::from(most)).round() as u16);
+    // Halves go down, so that the first one stays the greatest.
+    let mut parts = weights.map(|w| (w / sum * f32::from(most) - 0.5).ceil() as u16);
     let rest: u32 = parts[1..].iter().map(|&part| u32::from(part)).sum();
     parts[0] = (u32::from(most).saturating_sub(rest)) as u16;
     parts
@@ -124,17 +125,23 @@ impl Binary {
     /// exact; weights of a vertex sum to 1 to the bit.
     pub fn influences(&mut self, influences: &[Influences], joints: usize, small: bool) -> [usize; 2] {
         let few = joints <= 1 + usize::from(u8::MAX);
+        let most = if small { u16::from(u8::MAX) } else { u16::MAX };
+        let parts: Vec<[u16; 4]> = influences.iter().map(|i| whole_parts(i.weights, most)).collect();
+        // What is rounded to no weight names no joint.
+        let named = influences.iter().zip(&parts).map(|(influences, parts)| {
+            std::array::from_fn::<u32, 4, _>(|k| if parts[k] == 0 { 0 } else { influences.joints[k] })
+        });
         let (joint_view, count) = match few {
-            true => self.rows(influences.iter().map(|i| i.joints.map(|joint| joint as u8))),
-            false => self.rows(influences.iter().map(|i| shorts(i.joints.map(|joint| joint as u16)))),
+            true => self.rows(named.map(|joints| joints.map(|joint| joint as u8))),
+            false => self.rows(named.map(|joints| shorts(joints.map(|joint| joint as u16)))),
         };
         let joint_type = if few { UNSIGNED_BYTE } else { UNSIGNED_SHORT };
         let joints = self.accessor(json!({
             "bufferView": joint_view, "componentType": joint_type, "count": count, "type": "VEC4",
         }));
         let (weight_view, count) = match small {
-            true => self.rows(influences.iter().map(|i| whole_parts(i.weights, 255).map(|w| w as u8))),
-            false => self.rows(influences.iter().map(|i| shorts(whole_parts(i.weights, 65_535)))),
+            true => self.rows(parts.iter().map(|parts| parts.map(|part| part as u8))),
+            false => self.rows(parts.iter().map(|&parts| shorts(parts))),
         };
         let weight_type = if small { UNSIGNED_BYTE } else { UNSIGNED_SHORT };
         let weights = self.accessor(json!({

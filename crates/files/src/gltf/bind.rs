@@ -112,7 +112,9 @@ impl Binding {
                 buffers.context.warn("vertices keep the four strongest of their joints");
             }
             if found.is_empty() {
-                buffers.context.warn("vertices without a weight for any joint were given to their skin's first");
+                buffers
+                    .context
+                    .warn("vertices without a weight for any joint were given to their skin's first");
                 found.push((0, 1.0));
             }
             let node = |this: &Self, slot: usize| this.motion.skin(skin).map_or(0, |skin| skin.joints[slot]);
@@ -127,13 +129,15 @@ impl Binding {
                 .iter()
                 .map(|&(slot, weight)| {
                     let joint = *joints.entry(slot).or_insert_with(|| {
-                        let bind = self.motion.skin(skin).map_or(DAffine3::IDENTITY, |s| s.inverse_binds[slot]);
+                        let bind =
+                            self.motion.skin(skin).map_or(DAffine3::IDENTITY, |s| s.inverse_binds[slot]);
                         self.joint(Some(node(self, slot)), bind * inverse)
                     });
                     (joint, weight)
                 })
                 .collect();
-            self.influences.push(Influences::strongest(&followed).unwrap_or_else(|| Influences::of(followed[0].0)));
+            self.influences
+                .push(Influences::strongest(&followed).unwrap_or_else(|| Influences::of(followed[0].0)));
         }
         placing
     }
@@ -207,7 +211,8 @@ impl Binding {
             }
         }
         for &index in self.motion.order.iter().filter(|&&index| kept[index]) {
-            let parent = self.motion.seat(index).and_then(|seat| seat.parent).and_then(|parent| places[parent]);
+            let parent =
+                self.motion.seat(index).and_then(|seat| seat.parent).and_then(|parent| places[parent]);
             places[index] = Some(skeleton.nodes.len());
             let node = &document.nodes[index];
             skeleton.nodes.push(RigNode { name: node.name.clone(), parent, rest: super::scene::local(node) });
@@ -216,12 +221,13 @@ impl Binding {
         for &(node, inverse_bind) in &self.joints {
             let place = node.and_then(|node| places[node]);
             // A skin names a node once: others stand beside it, as its children.
-            let own = place.filter(|&place| !std::mem::replace(&mut taken[place], true)).unwrap_or_else(|| {
-                let name = place.map_or(STILL.into(), |place| skeleton.nodes[place].name.clone());
-                skeleton.nodes.push(RigNode { name, parent: place, rest: NodeTransform::IDENTITY });
-                taken.push(true);
-                skeleton.nodes.len() - 1
-            });
+            let own =
+                place.filter(|&place| !std::mem::replace(&mut taken[place], true)).unwrap_or_else(|| {
+                    let name = place.map_or(STILL.into(), |place| skeleton.nodes[place].name.clone());
+                    skeleton.nodes.push(RigNode { name, parent: place, rest: NodeTransform::IDENTITY });
+                    taken.push(true);
+                    skeleton.nodes.len() - 1
+                });
             skeleton.joints.push(Joint { node: own, inverse_bind });
         }
         (skeleton, places)

@@ -18,8 +18,8 @@ use super::sources::{Attributes, Sources, draco_stream};
 use super::topology::{has_triangles, triangles};
 use super::uv_sets::UvSets;
 use crate::{FileError, Place};
-use parbake_model::{Mesh, Rig};
 use parbake_model::glam::{DAffine3, DMat3, Vec2, Vec3, Vec4};
+use parbake_model::{Mesh, Rig};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -101,7 +101,8 @@ impl<'a, 'd> Merge<'a, 'd> {
         for index in binding.motion.order.clone() {
             let node = &self.buffers.document.nodes[index];
             let (Some(mesh), Some(skin)) = (node.mesh, node.skin) else { continue };
-            let Some(json) = self.buffers.document.meshes.get(mesh).filter(|_| seen.insert((mesh, skin))) else {
+            let Some(json) = self.buffers.document.meshes.get(mesh).filter(|_| seen.insert((mesh, skin)))
+            else {
                 continue;
             };
             for (i, primitive) in json.primitives.iter().enumerate().filter(|(_, p)| has_triangles(p)) {
@@ -237,8 +238,9 @@ impl<'a, 'd> Merge<'a, 'd> {
             let k = placing.of(i);
             (placing.matrices[k], cofactors[k])
         };
-        let source_normal =
-            |e: u32| sources.normal.as_ref().map_or(Vec3::ZERO, |s| Vec3::from_array(s.read(e as usize, [0.0; 3])));
+        let source_normal = |e: u32| {
+            sources.normal.as_ref().map_or(Vec3::ZERO, |s| Vec3::from_array(s.read(e as usize, [0.0; 3])))
+        };
         let part = Part {
             first: self.mesh.positions.len() - elements.len(),
             elements,

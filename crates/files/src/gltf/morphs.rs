@@ -51,8 +51,9 @@ impl Morphs {
         let own = node.map(|node| &document.nodes[node].weights).filter(|weights| !weights.is_empty());
         let weights = own.unwrap_or(&json.weights);
         let channels = document.animations.iter().flat_map(|animation| &animation.channels);
-        let is_animated =
-            channels.filter(|c| c.target.path == "weights").any(|c| c.target.node.is_some_and(|n| Some(n) == node));
+        let is_animated = channels
+            .filter(|c| c.target.path == "weights")
+            .any(|c| c.target.node.is_some_and(|n| Some(n) == node));
         let ids: Vec<usize> = (0..count)
             .map(|k| {
                 let name = json.target_names.0.get(k).cloned().unwrap_or_default();
@@ -94,7 +95,9 @@ impl Morphs {
                     Ok(Some(accessor)) if accessor.count != count => {
                         let found = accessor.count;
                         let context = buffers.context;
-                        context.warn(format!("{from} was left out: there are {count} positions, but it has {found}"));
+                        context.warn(format!(
+                            "{from} was left out: there are {count} positions, but it has {found}"
+                        ));
                         None
                     }
                     Ok(accessor) => accessor,
@@ -116,11 +119,12 @@ impl Morphs {
                 }
                 let (matrix, cofactors) = (part.matrix)(i);
                 let vertex = part.first + i;
-                let normal_delta = part.normals.filter(|_| turned != Vec3::ZERO).map_or(Vec3::ZERO, |normals| {
-                    let moved = cofactors * ((part.source_normal)(element) + turned).as_dvec3();
-                    let before = normals.get(vertex).copied().unwrap_or_default();
-                    moved.try_normalize().map_or(Vec3::ZERO, |moved| moved.as_vec3() - before)
-                });
+                let normal_delta =
+                    part.normals.filter(|_| turned != Vec3::ZERO).map_or(Vec3::ZERO, |normals| {
+                        let moved = cofactors * ((part.source_normal)(element) + turned).as_dvec3();
+                        let before = normals.get(vertex).copied().unwrap_or_default();
+                        moved.try_normalize().map_or(Vec3::ZERO, |moved| moved.as_vec3() - before)
+                    });
                 let delta = (matrix.matrix3 * delta.as_dvec3()).as_vec3();
                 if delta.is_finite() && normal_delta.is_finite() {
                     self.push(id, vertex as u32, delta, normal_delta);

@@ -40,13 +40,15 @@ impl Motion {
     /// None where there are no animations, no skins in use and no morph targets.
     pub fn of(buffers: &Buffers<'_>) -> Result<Option<Self>, FileError> {
         let document = buffers.document;
-        let is_skinned = |index: usize| document.nodes[index].mesh.is_some().then_some(document.nodes[index].skin);
+        let is_skinned =
+            |index: usize| document.nodes[index].mesh.is_some().then_some(document.nodes[index].skin);
         let has_skins = (0..document.nodes.len()).any(|index| is_skinned(index).flatten().is_some());
         let has_targets = document.meshes.iter().flat_map(|m| &m.primitives).any(|p| !p.targets.is_empty());
         if !has_skins && !has_targets && document.animations.is_empty() {
             return Ok(None);
         }
-        let mut motion = Self { seats: vec![None; document.nodes.len()], order: Vec::new(), skins: Vec::new() };
+        let mut motion =
+            Self { seats: vec![None; document.nodes.len()], order: Vec::new(), skins: Vec::new() };
         if document.scenes.is_empty() && document.nodes.is_empty() {
             return Ok(Some(motion));
         }
@@ -103,7 +105,8 @@ impl Motion {
         let json = &buffers.document.skins[index];
         let joints = json.joints.clone();
         let mut seen = std::collections::HashSet::new();
-        if joints.is_empty() || !joints.iter().all(|&joint| self.seat(joint).is_some() && seen.insert(joint)) {
+        if joints.is_empty() || !joints.iter().all(|&joint| self.seat(joint).is_some() && seen.insert(joint))
+        {
             return None;
         }
         let mut inverse_binds = vec![DAffine3::IDENTITY; joints.len()];

@@ -109,4 +109,3 @@ impl<'a> Sources<'a> {
         Ok(Some(sources))
     }
 }
-

@@ -8,8 +8,8 @@ use super::binary::Binary;
 use super::levels_out::{self, meshes, nodes, together};
 use super::meshopt_out;
 use super::quantise::Grid;
-use super::write_rig;
 use super::write_material::{EMISSIVE_STRENGTH, Materials, UNLIT, purpose_of};
+use super::write_rig;
 use crate::texture_out::{Encoded, encode_texture};
 use crate::write_options::{
     MeshCompression, TextureFormat, WriteOptions, Written, WrittenMesh, WrittenTexture,

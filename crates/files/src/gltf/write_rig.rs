@@ -98,16 +98,12 @@ pub fn describe_targets(mesh: &mut Value, skeleton: &Skeleton) {
 
 /// Adds nodes, skin and animations to the document, whose nodes so far are those of meshes. `grid` is that of skinned
 /// positions.
-pub fn add_to_document(
-    document: &mut Value,
-    binary: &mut Binary,
-    skeleton: &Skeleton,
-    grid: Option<&Grid>,
-) {
+pub fn add_to_document(document: &mut Value, binary: &mut Binary, skeleton: &Skeleton, grid: Option<&Grid>) {
     let first = document["nodes"].as_array().map_or(0, Vec::len);
     let is_mesh = |node: &Value| node.get("mesh").is_some();
     let nodes = document["nodes"].as_array().into_iter().flatten();
-    let mesh_nodes: Vec<usize> = nodes.enumerate().filter(|(_, node)| is_mesh(node)).map(|(index, _)| index).collect();
+    let mesh_nodes: Vec<usize> =
+        nodes.enumerate().filter(|(_, node)| is_mesh(node)).map(|(index, _)| index).collect();
     if !skeleton.joints.is_empty() {
         let inverse_binds: Vec<f32> = skeleton
             .joints

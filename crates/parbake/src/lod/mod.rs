@@ -20,6 +20,7 @@ use crate::bake::{Baked, bake_as, prepare_high_poly};
 use crate::error::BakeError;
 use crate::low_poly::low_poly;
 use crate::report::Work;
+use crate::rigs::with_parted_materials;
 use options::LodOptions;
 use parbake_model::Model;
 use parbake_progress::Watcher;
@@ -81,6 +82,7 @@ pub fn make_levels<E: From<BakeError>>(
     mut on_level: impl FnMut(Level) -> Result<(), E>,
 ) -> Result<usize, E> {
     options.check()?;
+    let model = &*with_parted_materials(model);
     let high = prepare_high_poly(model, &options.bake(options.max_texture_size))?;
     let lineup = Lineup::new(model, options.shading);
     let original = lineup.subject(model)?;

@@ -329,7 +329,13 @@ mod tests {
             triangle_materials: vec![0; charts as usize],
             ..Mesh::default()
         };
-        Model { name: "sheet".into(), mesh, materials: vec![Material::default()], images: Vec::new(), rig: None }
+        Model {
+            name: "sheet".into(),
+            mesh,
+            materials: vec![Material::default()],
+            images: Vec::new(),
+            rig: None,
+        }
     }
 
     /// Protects parallax maps from their neighbours: two of the map's texels lie between charts,
