@@ -15,5 +15,6 @@ mod real_models;
 mod refusals;
 mod reproduce;
 mod schema;
+mod skins;
 mod stats;
 mod turntable;

@@ -171,16 +171,19 @@ fn nodes_of(skeleton: &Skeleton, first: usize) -> (Vec<Value>, Vec<Value>) {
 #[derive(Default)]
 struct Pool<'s> {
     blocks: Vec<(&'static str, usize, &'s [f32])>,
-    places: HashMap<(&'static str, Vec<u32>), usize>,
-    /// Those that are times.
+    places: HashMap<(&'static str, bool, Vec<u32>), usize>,
+    /// Those that are times, which are never values as well.
     times: Vec<usize>,
 }
 
 impl<'s> Pool<'s> {
-    fn place(&mut self, kind: &'static str, width: usize, numbers: &'s [f32]) -> usize {
-        let key = (kind, numbers.iter().map(|x| x.to_bits()).collect());
+    fn place(&mut self, kind: &'static str, width: usize, numbers: &'s [f32], is_time: bool) -> usize {
+        let key = (kind, is_time, numbers.iter().map(|x| x.to_bits()).collect());
         *self.places.entry(key).or_insert_with(|| {
             self.blocks.push((kind, width, numbers));
+            if is_time {
+                self.times.push(self.blocks.len() - 1);
+            }
             self.blocks.len() - 1
         })
     }
@@ -190,15 +193,13 @@ fn animations(binary: &mut Binary, skeleton: &Skeleton, first: usize, meshes: &[
     let mut pool = Pool::default();
     let mut placed: Vec<[usize; 2]> = Vec::new();
     for track in skeleton.animations.iter().flat_map(|animation| &animation.tracks) {
-        // Times by themselves, since they alone have bounds.
-        let times = pool.place("SCALAR", 1, &track.times);
-        pool.times.push(times);
+        let times = pool.place("SCALAR", 1, &track.times, true);
         let (kind, width) = match track.property {
             Property::Translation(_) | Property::Scale(_) => ("VEC3", 3),
             Property::Rotation(_) => ("VEC4", 4),
             Property::MorphWeights => ("SCALAR", 1),
         };
-        placed.push([times, pool.place(kind, width, &track.values)]);
+        placed.push([times, pool.place(kind, width, &track.values, false)]);
     }
     if placed.is_empty() {
         return Vec::new();
