@@ -10,7 +10,7 @@
 //! with `node` the joint's node in the world. What stands still in a model of which other parts move has a joint that
 //! nothing moves.
 //!
-//! Contract ([`Rig::fault`] checks it): nodes come after their parents and have no more than one joint each; all
+//! Contract ([`Rig::fault`] checks it): there are at most 65,536 joints; nodes come after their parents and have no more than one joint each; all
 //! indices are in range; weights of a vertex are not negative, sum to 1 and name no joint twice but with weight 0; all
 //! numbers are finite; times increase.
 
@@ -19,6 +19,9 @@ use std::sync::Arc;
 
 /// Joints that a vertex may follow.
 pub const MOST_INFLUENCES: usize = 4;
+
+/// Joints that a rig may have: files name them by two bytes.
+const MOST_JOINTS: usize = 1 << 16;
 
 /// How the vertices of one mesh move.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -238,6 +241,9 @@ impl Rig {
         let is_late = |(index, node): (usize, &RigNode)| node.parent.is_some_and(|parent| parent >= index);
         if nodes.iter().enumerate().any(is_late) {
             return Some("a node before its parent");
+        }
+        if joints.len() > MOST_JOINTS {
+            return Some("more joints than files can name");
         }
         let mut taken = vec![false; nodes.len()];
         let takes = |joint: &Joint| taken.get_mut(joint.node).is_some_and(|t| !std::mem::replace(t, true));

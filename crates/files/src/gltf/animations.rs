@@ -7,7 +7,7 @@ use super::accessor::Accessor;
 use super::buffers::{Buffers, pointer};
 use super::json_motion::{AnimationSampler, Channel};
 use super::morphs::Morphs;
-use super::weight_tracks::{WeightTrack, together};
+use super::weight_tracks::{MOST_SAMPLES, WeightTrack, together};
 use crate::FileError;
 use parbake_model::glam::Quat;
 use parbake_model::{Animation, Interpolation, Property, Track};
@@ -83,6 +83,13 @@ impl<'a, 'd> Animations<'a, 'd> {
                 }
             }
             let rest: Vec<f32> = morphs.targets.iter().map(|target| target.weight).collect();
+            // Values of a target are said anew at the times of all others.
+            let samples = weights.iter().map(|track| track.values.len() / track.targets.len()).sum::<usize>()
+                + if weights.len() > 1 { MOST_SAMPLES } else { 0 };
+            let bytes = NUMBER.saturating_mul((samples as u64).saturating_mul(rest.len() as u64));
+            if !weights.is_empty() {
+                buffers.add_bytes(bytes, pointer(format!("/animations/{index}")))?;
+            }
             if let Some((track, is_exact)) = together(weights, &rest) {
                 if !is_exact {
                     buffers

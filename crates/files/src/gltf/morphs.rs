@@ -9,7 +9,7 @@ use super::json::Primitive;
 use crate::FileError;
 use parbake_model::glam::{DAffine3, DMat3, Vec3};
 use parbake_model::{Morph, MorphTarget};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Bytes of a vertex of a target.
 const ENTRY: u64 = 28;
@@ -22,6 +22,8 @@ pub(super) struct Morphs {
     /// For each node that has some its targets' indices.
     pub of_nodes: HashMap<usize, Vec<usize>>,
     shared: HashMap<(String, u32), usize>,
+    /// Nodes whose weights are animated.
+    animated: Option<HashSet<usize>>,
 }
 
 /// The part of the merged mesh that a primitive became.
@@ -50,27 +52,30 @@ impl Morphs {
         let count = json.primitives.iter().map(|p| p.targets.len()).max().unwrap_or(0);
         let own = node.map(|node| &document.nodes[node].weights).filter(|weights| !weights.is_empty());
         let weights = own.unwrap_or(&json.weights);
-        let channels = document.animations.iter().flat_map(|animation| &animation.channels);
-        let is_animated = channels
-            .filter(|c| c.target.path == "weights")
-            .any(|c| c.target.node.is_some_and(|n| Some(n) == node));
-        let ids: Vec<usize> = (0..count)
-            .map(|k| {
-                let name = json.target_names.0.get(k).cloned().unwrap_or_default();
-                let weight = weights.get(k).copied().filter(|w| w.is_finite()).unwrap_or(0.0);
-                let key = (name.clone(), weight.to_bits());
-                let may_share = !name.is_empty() && !is_animated;
-                if let Some(&id) = self.shared.get(&key).filter(|_| may_share) {
-                    return id;
-                }
-                self.targets.push(MorphTarget { name, weight });
-                self.morphs.push(Morph::default());
-                if may_share {
-                    self.shared.insert(key, self.targets.len() - 1);
-                }
-                self.targets.len() - 1
-            })
-            .collect();
+        let animated = self.animated.get_or_insert_with(|| {
+            let channels = document.animations.iter().flat_map(|animation| &animation.channels);
+            channels.filter(|c| c.target.path == "weights").filter_map(|c| c.target.node).collect()
+        });
+        let is_animated = node.is_some_and(|node| animated.contains(&node));
+        let mut ids: Vec<usize> = Vec::with_capacity(count);
+        for k in 0..count {
+            let name = json.target_names.0.get(k).cloned().unwrap_or_default();
+            let weight = weights.get(k).copied().filter(|w| w.is_finite()).unwrap_or(0.0);
+            let alike = (!name.is_empty() && !is_animated).then(|| (name.clone(), weight.to_bits()));
+            let same = alike.as_ref().and_then(|alike| self.shared.get(alike)).copied();
+            // A mesh may call two of its targets the same.
+            if let Some(id) = same.filter(|id| !ids.contains(id)) {
+                ids.push(id);
+                continue;
+            }
+            let id = self.targets.len();
+            self.targets.push(MorphTarget { name, weight });
+            self.morphs.push(Morph::default());
+            if let Some(alike) = alike {
+                self.shared.entry(alike).or_insert(id);
+            }
+            ids.push(id);
+        }
         self.of_nodes.insert(key, ids.clone());
         ids
     }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// Samples a second where no key times are enough.
 const RATE: f32 = 30.0;
 /// Samples that this may come to.
-const MOST_SAMPLES: f32 = 20_000.0;
+pub(super) const MOST_SAMPLES: usize = 20_000;
 
 /// What some of the targets do.
 pub(super) struct WeightTrack {
@@ -32,8 +32,8 @@ pub(super) fn together(tracks: Vec<WeightTrack>, rest: &[f32]) -> Option<(Track,
     let mut times: Vec<f32> = tracks.iter().flat_map(|t| t.times.iter().copied()).collect();
     let end = times.iter().copied().fold(0.0, f32::max);
     if !is_exact {
-        let samples = (end * RATE).ceil().min(MOST_SAMPLES);
-        times.extend((0..samples as usize).map(|k| end * k as f32 / samples));
+        let samples = ((end * RATE).ceil() as usize).min(MOST_SAMPLES);
+        times.extend((0..samples).map(|k| end * k as f32 / samples as f32));
     }
     times.sort_by(f32::total_cmp);
     times.dedup();
