@@ -40,6 +40,12 @@ pub fn write_model(
                 path.display()
             ));
         }
+        if model.rig.is_some() {
+            console.say(&format!(
+                "warning: {}: OBJ has no place for skins, morph targets and animations; write a .glb to keep them",
+                path.display()
+            ));
+        }
         return Ok((write_obj(path, model)?, None));
     }
     let written = write_glb_with(path, model, options)?;

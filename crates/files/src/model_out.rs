@@ -54,6 +54,9 @@ pub(crate) fn check(path: &Path, model: &Model) -> Result<(), FileError> {
     if let Some(fault) = maps.filter_map(|map| map.check(&model.images).err()).next() {
         return refuse(format!("a parallax map is broken: {fault}"));
     }
+    if let Some(fault) = model.rig.as_ref().and_then(|rig| rig.fault(count)) {
+        return refuse(format!("its rig has {fault}"));
+    }
     let finite = mesh.positions.iter().all(|p| p.is_finite())
         && mesh.uvs.iter().chain(&mesh.uvs1).all(|uv| uv.is_finite())
         && mesh.colors.iter().all(|c| c.is_finite());

@@ -194,7 +194,8 @@ fn glb() -> Vec<u8> {
         ..Material::default()
     };
     let materials = vec![material];
-    glb_bytes(&Model { name: "m".into(), mesh, materials, images: vec![picture()] }).expect("a whole model")
+    glb_bytes(&Model { name: "m".into(), mesh, materials, images: vec![picture()], rig: None })
+        .expect("a whole model")
 }
 
 fn picture() -> Image {

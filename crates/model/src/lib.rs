@@ -16,6 +16,7 @@ mod mesh;
 mod parallax;
 mod parallax_fault;
 mod placement;
+mod rig;
 mod short_uv;
 
 pub use cutout::CutoutMap;
@@ -30,13 +31,17 @@ pub use mesh::Mesh;
 pub use parallax::{DepthMap, ShParallaxMap};
 pub use parallax_fault::ParallaxFault;
 pub use placement::{Bounds, Placement};
+pub use rig::{
+    Animation, Influences, Interpolation, Joint, MOST_INFLUENCES, Morph, MorphTarget, NodeTransform,
+    Property, Rig, RigNode, Skeleton, Track,
+};
 pub use short_uv::{is_short, nearest_short, short_uv, short_uvs_pay};
 
 /// A textured model: one mesh, and what its triangles' materials name.
 ///
 /// Contract: every `Mesh::triangle_materials` entry indexes `materials`, and
 /// every [`TextureSlot::image`] indexes `images`; every [`ShParallaxMap`] passes its
-/// check. There is at least one material.
+/// check; a [`Rig`] fits the mesh. There is at least one material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {
     /// A name to show to people, usually the file's.
@@ -47,4 +52,6 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// Images, each decoded once.
     pub images: Vec<Image>,
+    /// Skin, morph targets and animations of this mesh; none of a model in which nothing moves.
+    pub rig: Option<Rig>,
 }

@@ -19,6 +19,7 @@ use crate::low_poly::low_poly;
 use crate::options::{BakeOptions, Shading, UvMode};
 use crate::plan::Plan;
 use crate::report::{BakeReport, Work, layout_warning};
+use crate::rigs::{carried, rigged, with_parted_materials};
 use crate::textures::{FittedTextures, Subject, fit_views};
 use crate::warnings::{Warnings, swapped, unseen};
 use parbake_atlas::check_mesh;
@@ -56,7 +57,7 @@ pub struct Baked {
     pub uv_moves: Option<UvMoves>,
 }
 
-/// Bakes the high-poly's look onto the low-poly.
+/// Bakes the high-poly's look onto the low-poly. A low-poly without a rig takes over the high-poly's.
 ///
 /// Runs on rayon's current thread pool. When the watcher asks to stop, the best
 /// state so far is returned; it is never worse than the projection.
@@ -72,7 +73,7 @@ pub fn bake(
 ) -> Result<Baked, BakeError> {
     options.check()?;
     let begin = Instant::now();
-    run(&prepare(high, options)?, low, Work::Bake, options, watcher, begin)
+    run(&prepare(high, options)?, &rigged(high, low), Work::Bake, options, watcher, begin)
 }
 
 /// Prepares a high-poly for any number of bakes with [`bake_prepared`]: its frame, its scene, its
@@ -98,6 +99,7 @@ pub fn bake_to_triangles(
 ) -> Result<Baked, BakeError> {
     options.check()?;
     let begin = Instant::now();
+    let high = &*with_parted_materials(high);
     let prepared = prepare(high, options)?;
     let (low, _) = low_poly(&prepared, high, None, triangles, options.preset, watcher);
     run(&prepared, &low, Work::Level, options, watcher, begin)
@@ -193,6 +195,7 @@ fn run(
     let mut clock = Clock::new(begin);
     let mut warnings = Warnings::new(watcher);
     warnings.tell((work == Work::Bake).then(|| swapped(high, low)).flatten());
+    let given = low;
     // One model twice keeps its vertices, whatever their normals are like.
     let turned = (!same).then(|| lit(low));
     let low = turned.as_ref().map_or(low, |(model, _)| model);
@@ -264,9 +267,11 @@ fn run(
         written: None,
         peak_memory: crate::memory::peak_memory(),
     };
+    let model = look.textured(low, written, fitted.images, parallax.as_ref());
+    let moving = |model: Model| Model { rig: carried(given, &model.mesh), ..model };
     Ok(Baked {
-        ray_cast,
-        model: look.textured(low, written, fitted.images, parallax.as_ref()),
+        ray_cast: moving(ray_cast),
+        model: moving(model),
         report,
         uv_moves: uv_stage.and_then(|u| u.moves),
     })

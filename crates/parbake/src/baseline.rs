@@ -32,6 +32,6 @@ pub(crate) fn other_baseline(
         return None;
     }
     mesh.triangle_materials.fill(0);
-    let repaired = Model { name, mesh, materials: vec![Material::default()], images: Vec::new() };
+    let repaired = Model { name, mesh, materials: vec![Material::default()], ..Model::default() };
     LowPoly::new(&repaired, &high.frame, options.texture_size).ok()
 }

@@ -23,6 +23,7 @@ use crate::kept;
 use crate::lost::lost;
 use crate::options::{BakeOptions, Convention, Parallax, Shading, UvMode};
 use crate::report::{BakeReport, LossStep, Work, layout_warning};
+use crate::rigs::carried;
 use parbake_atlas::{check_mesh, in_one_tile};
 use parbake_mesh::{HighSurface, visibilities};
 use parbake_model::glam::DVec2;
@@ -157,9 +158,13 @@ fn plain(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<
     let losses = vec![loss(kind, &baseline.solved), loss("color", &written.solved)];
     let mut report = own.report(baseline, &written, watcher);
     (report.losses, report.stages) = (losses, clock.stages);
+    let finished = |of: Model, solved: &SurfaceTexture| {
+        let made = textured(of, solved);
+        Model { rig: carried(model, &made.mesh), ..made }
+    };
     Ok(Baked {
-        ray_cast: textured(baseline.low.model.clone(), &baseline.solved),
-        model: textured(written.low.model, &written.solved),
+        ray_cast: finished(baseline.low.model.clone(), &baseline.solved),
+        model: finished(written.low.model, &written.solved),
         report,
         uv_moves: written.low.moves,
     })
@@ -341,6 +346,7 @@ mod tests {
             mesh,
             materials: vec![Material { base_color_texture: Some(slot), ..Material::default() }],
             images: vec![Image { name: "noise".into(), width: size, height: size, pixels }],
+            rig: None,
         }
     }
 

@@ -148,7 +148,7 @@ mod tests {
             ..Mesh::default()
         };
         let materials = vec![named("Glass"), named("Cloth red"), named("Cloth blue")];
-        let model = Model { name: "car".into(), mesh, materials, images: Vec::new() };
+        let model = Model { name: "car".into(), mesh, materials, ..Model::default() };
         let weights = |texts: &[&str]| {
             let options: Vec<Importance> =
                 texts.iter().map(|text| text.parse().expect("as in the help")).collect();

@@ -51,6 +51,7 @@ mod plan;
 mod raycast;
 mod raycast_options;
 mod report;
+mod rigs;
 mod stats;
 pub mod studio;
 mod texels;

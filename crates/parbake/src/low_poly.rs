@@ -1,6 +1,7 @@
 //! A low-poly for a high-poly: triangles chosen by its pictures (`parbake-simplify`).
 
 use crate::options::Preset;
+use crate::rigs::{parts_of_materials, transferred};
 use parbake_model::{AlphaMode, Material, MaterialExtensions, Model};
 use parbake_progress::Watcher;
 use parbake_simplify::polish::PolishOptions;
@@ -9,7 +10,7 @@ use parbake_views::high_poly::HighPoly;
 
 /// A low-poly of at most so many triangles, without texture coordinates, in the high-poly's own space. `model` is
 /// what the high-poly was prepared from; `before` is a finer low-poly that it may start from. Also returns how the
-/// triangles of each layer were found.
+/// triangles of each layer were found. It moves as the model does.
 pub fn low_poly(
     high: &HighPoly,
     model: &Model,
@@ -28,13 +29,15 @@ pub fn low_poly(
         // Quadrics do not know what counts: there must be something to choose from.
         options.room = options.room.max(2);
     }
-    let chosen = choose_triangles(high, before.as_ref(), &options, &watcher);
+    let parts = parts_of_materials(model);
+    let chosen = choose_triangles(high, before.as_ref(), &parts, &options, &watcher);
     let mut mesh = chosen.mesh;
     for point in &mut mesh.positions {
         *point = *point / high.frame.scale + high.frame.centre;
     }
     let materials = model.materials.iter().map(layer_only).collect();
-    (Model { name: model.name.clone(), mesh, materials, images: Vec::new() }, chosen.layers)
+    let rig = transferred(model, &mesh, &parts);
+    (Model { name: model.name.clone(), mesh, materials, images: Vec::new(), rig }, chosen.layers)
 }
 
 /// Of a material what says in which layer it is drawn.

@@ -2,6 +2,7 @@
 
 use crate::error::BakeError;
 use crate::options::{BakeOptions, UvMode};
+use crate::rigs::{carried, parts_of_materials, transferred, with_parted_materials};
 use parbake_mesh::compute_tangents;
 use parbake_mesh::demo::{demo_low, demo_model, wall_low, wall_model};
 use parbake_mesh::simplify::{SimplifyOptions, simplify};
@@ -12,7 +13,17 @@ use parbake_uv::surface::{RepairedLowPoly, repair_uvs};
 /// A coarser copy of about this many triangles, with the same materials; see [`with_tangents`].
 pub fn simplified(model: &Model, triangles: usize) -> Model {
     let options = SimplifyOptions { target_triangles: triangles, ..SimplifyOptions::default() };
-    with_tangents(Model { mesh: simplify(&model.mesh, options), ..model.clone() })
+    let parted = with_parted_materials(model);
+    let mut mesh = simplify(&parted.mesh, options);
+    let rig = transferred(&parted, &mesh, &parts_of_materials(&parted));
+    if parted.materials.len() > model.materials.len() {
+        let mut original = vec![0; parted.materials.len()];
+        for (&own, &before) in parted.mesh.triangle_materials.iter().zip(&model.mesh.triangle_materials) {
+            original[own as usize] = before;
+        }
+        mesh.triangle_materials.iter_mut().for_each(|material| *material = original[*material as usize]);
+    }
+    with_tangents(Model { mesh, rig, ..model.clone() })
 }
 
 /// The model with MikkTSpace tangents, where its materials need some and it has none, so that viewers need
@@ -26,6 +37,7 @@ pub fn with_tangents(mut model: Model) -> Model {
     let normals = model.materials.iter().filter_map(|m| m.normal_texture);
     let second = normals.map(|slot| if slot.uv_set == 1 { 1 } else { -1 }).sum::<i32>() > 0;
     let is_second = second && !model.mesh.uvs1.is_empty();
+    let before = model.rig.is_some().then(|| model.clone());
     let mesh = &mut model.mesh;
     if is_second {
         std::mem::swap(&mut mesh.uvs, &mut mesh.uvs1);
@@ -34,6 +46,7 @@ pub fn with_tangents(mut model: Model) -> Model {
     if is_second {
         std::mem::swap(&mut mesh.uvs, &mut mesh.uvs1);
     }
+    model.rig = before.and_then(|before| carried(&before, &model.mesh));
     model
 }
 
@@ -46,12 +59,14 @@ pub fn laid_out(low: &Model, mode: UvMode, texture_size: usize) -> Result<Model,
     let options = BakeOptions { texture_size, ..BakeOptions::default() };
     let RepairedLowPoly { name, mut mesh, .. } = repair_uvs(low, &options.uv_stage_as(mode))?;
     mesh.triangle_materials.fill(0);
-    Ok(Model { name, mesh, materials: vec![Material::default()], images: Vec::new() })
+    Ok(Model { name, mesh, materials: vec![Material::default()], ..Model::default() })
 }
 
 /// A copy with four times the triangles and the same shape.
 pub fn subdivided(model: &Model) -> Model {
-    with_tangents(Model { mesh: subdivide(&model.mesh), ..model.clone() })
+    let mesh = subdivide(&model.mesh);
+    let rig = transferred(model, &mesh, &[]);
+    with_tangents(Model { mesh, rig, ..model.clone() })
 }
 
 /// The built-in detailed model, an ornate jar, and its coarse counterpart.
@@ -68,7 +83,7 @@ pub fn wall_pair() -> (Model, Model) {
 
 /// A model without textures.
 fn plain(name: &str, mesh: Mesh) -> Model {
-    Model { name: name.into(), mesh, materials: vec![Material::default()], images: Vec::new() }
+    Model { name: name.into(), mesh, materials: vec![Material::default()], ..Model::default() }
 }
 
 #[cfg(test)]

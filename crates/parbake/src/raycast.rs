@@ -15,6 +15,7 @@ use crate::normal_y::NormalY;
 use crate::options::UvMode;
 pub use crate::raycast_options::{Match, RayNormals, RaycastOptions, RaycastUv};
 use crate::report::layout_warning;
+use crate::rigs::{carried, rigged};
 use crate::warnings::{Warnings, swapped};
 use parbake_atlas::{UvCheck, check_mesh};
 use parbake_files::{FileError, Written, encode_png16};
@@ -136,6 +137,7 @@ pub fn raycast(
     let size = options.texture_size;
     watcher.message(Message::Plan(vec![(Stage::Prepare, 1.0), (Stage::Start, 9.0)]));
     let bake = options.as_bake();
+    let given = rigged(high, low);
     let high = HighPoly::new(high, conventions(&bake))?;
     warnings.tell(swapped(&high, low));
     let (delivered, of_normals) = lit(low);
@@ -161,7 +163,8 @@ pub fn raycast(
         maps.retain(|(kind, _)| *kind != MapKind::Occlusion);
         maps.extend(own.map(|(_, image)| (MapKind::Occlusion, to_image(MapKind::Occlusion, image, true))));
     }
-    let model = look.textured(&low, &prepared.written, maps, None);
+    let mut model = look.textured(&low, &prepared.written, maps, None);
+    model.rig = carried(&given, &model.mesh);
     let wanted = options.pictures();
     let pictures: Vec<ShapePicture> = (cast.geometry.iter())
         .filter(|(map, _)| wanted.contains(map))

@@ -88,20 +88,23 @@ const COLLAPSING: f64 = 0.4;
 /// Views that tell one collapse from another well enough.
 const FEW: usize = 24;
 
-/// Chooses the triangles; `before` is the level before in the common frame, if there is one.
+/// Chooses the triangles; `before` is the level before in the common frame, if there is one. `parts` has for each of the
+/// high-poly's materials the part that moves by itself to which it belongs; nothing where there is one. No triangle of
+/// the result lies on two.
 pub fn choose_triangles(
     high: &HighPoly,
     before: Option<&Mesh>,
+    parts: &[u32],
     options: &ChooseOptions,
     watcher: &impl Watcher,
 ) -> Chosen {
     let mesh = high.scene.mesh();
-    let start = quadrics(mesh, options.room * options.triangles);
+    let start = quadrics(mesh, parts, options.room * options.triangles);
     let layers = high_layers(high);
     let mut chosen = Chosen { mesh: Mesh::default(), layers: Vec::new() };
     if let [_] = layers[..] {
         let starts = [Some((Start::Quadrics, start)), before.map(|mesh| (Start::Level, mesh.clone()))];
-        chosen.add(layer(high, None, starts, options, watcher));
+        chosen.add(layer(high, None, parts, starts, options, watcher));
         return chosen;
     }
     let kind_of_material = kinds_of_materials(high, &layers);
@@ -116,7 +119,7 @@ pub fn choose_triangles(
         let starts = [Some((Start::Quadrics, start)), before.map(|mesh| (Start::Level, own(mesh, kind)))];
         let part = |k: usize| k as f64 / layers.len() as f64;
         let own = Portion::new(watcher, part(kind)..part(kind + 1));
-        chosen.add(layer(high, Some(triangles), starts, &options, &own));
+        chosen.add(layer(high, Some(triangles), parts, starts, &options, &own));
     }
     chosen
 }
@@ -155,6 +158,7 @@ impl Chosen {
 fn layer(
     high: &HighPoly,
     triangles: Option<&[u32]>,
+    parts: &[u32],
     starts: [Option<(Start, Mesh)>; 2],
     options: &ChooseOptions,
     watcher: &impl Watcher,
@@ -170,7 +174,7 @@ fn layer(
         starts.into_iter().flatten().filter(|(_, m)| !m.triangles.is_empty()).enumerate()
     {
         let watcher = &Portion::new(watcher, 0.5 * COLLAPSING * k as f64..0.5 * COLLAPSING * (k + 1) as f64);
-        let mut pictures = Pictures::new(&targets[..targets.len().min(FEW)], Surface::new(&mesh));
+        let mut pictures = Pictures::new(&targets[..targets.len().min(FEW)], Surface::in_parts(&mesh, parts));
         collapse_to(&mut pictures, options.triangles, watcher);
         let report = StartReport { start, triangles: pictures.surface.count(), error: pictures.error() };
         tried.push((report, pictures.surface));

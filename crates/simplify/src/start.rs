@@ -19,9 +19,10 @@ pub enum Start {
     Level,
 }
 
-/// Edge collapses down to about `target` triangles, in halvings: one shot at a large reduction is worse.
-pub fn quadrics(mesh: &Mesh, target: usize) -> Mesh {
-    let surface = Surface::new(mesh).to_mesh();
+/// Edge collapses down to about `target` triangles, in halvings: one shot at a large reduction is worse. `parts` has the
+/// part of each material, as in [`Surface::in_parts`].
+pub fn quadrics(mesh: &Mesh, parts: &[u32], target: usize) -> Mesh {
+    let surface = Surface::in_parts(mesh, parts).to_mesh();
     let (mut positions, mut indices, materials) = by_material(&surface);
     let mut count = indices.len() / 3;
     while count > target {

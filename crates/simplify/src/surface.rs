@@ -1,7 +1,7 @@
 //! A surface whose triangles come and go: points that are welded by position, triangles between them, and which
 //! triangles lie around a point.
 //!
-//! Any set of triangles will do: open, closed, several parts, edges with three triangles.
+//! Parts that move against each other do not share points. Any set of triangles will do: open, closed, several parts, edges with three triangles.
 //!
 //! Contract: an index once given is never given again, so a triangle that is gone cannot be taken for another one.
 //! No triangle names a point twice. Lists around points are in ascending order, so results do not depend on the
@@ -11,6 +11,7 @@ use crate::change::Change;
 use glam::Vec3;
 use parbake_mesh::weld_by_position;
 use parbake_model::Mesh;
+use std::collections::HashMap;
 
 /// A triangle: its points, counter-clockwise from the front, and what it belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,19 +37,23 @@ pub struct Surface {
 impl Surface {
     /// Welds the vertices of a mesh by position; triangles without extent are left out.
     pub fn new(mesh: &Mesh) -> Self {
+        Self::in_parts(mesh, &[])
+    }
+
+    /// The same, but only within each part: `parts` has each material's, or nothing where there is one. As no change
+    /// joins what is not connected, parts stay apart.
+    pub fn in_parts(mesh: &Mesh, parts: &[u32]) -> Self {
         let first = weld_by_position(&mesh.positions);
-        let mut index = vec![u32::MAX; first.len()];
+        let mut index: HashMap<(u32, u32), u32> = HashMap::with_capacity(first.len());
         let mut out = Self::default();
         for (corners, &material) in mesh.triangles.iter().zip(&mesh.triangle_materials) {
             let welded = corners.map(|v| first[v as usize]);
             if welded[0] == welded[1] || welded[1] == welded[2] || welded[2] == welded[0] {
                 continue;
             }
+            let part = parts.get(material as usize).copied().unwrap_or(0);
             let corners = welded.map(|v| {
-                if index[v as usize] == u32::MAX {
-                    index[v as usize] = out.push_point(mesh.positions[v as usize]);
-                }
-                index[v as usize]
+                *index.entry((v, part)).or_insert_with(|| out.push_point(mesh.positions[v as usize]))
             });
             out.push(Triangle { corners, material });
         }

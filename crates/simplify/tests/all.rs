@@ -61,7 +61,7 @@ fn prepared(mesh: Mesh) -> HighPoly {
 }
 
 fn prepared_of(mesh: Mesh, materials: Vec<Material>) -> HighPoly {
-    let model = Model { name: "high".into(), mesh, materials, images: Vec::new() };
+    let model = Model { name: "high".into(), mesh, materials, images: Vec::new(), rig: None };
     let conventions = Conventions {
         interpretation: Interpretation { decode_srgb: true, trilinear: true, parallax: true },
         display: Display { gain: 1.0, curve: Curve::Srgb },
@@ -135,11 +135,11 @@ fn without_time_the_budget_of_triangles_holds() {
     let high = prepared(sphere(8));
     let polish = PolishOptions { rounds: 2, sweeps: 1, ..PolishOptions::default() };
     let options = ChooseOptions { triangles: 40, room: 2, views: 4, sets: 1, view_size: 32, polish, seed: 0 };
-    let chosen = choose_triangles(&high, None, &options, &Late);
+    let chosen = choose_triangles(&high, None, &[], &options, &Late);
     assert!((39..=40).contains(&chosen.mesh.triangles.len()), "{}", chosen.mesh.triangles.len());
     let [before, after] = chosen.layers[0].error;
     assert_eq!(before, after);
-    let [before, after] = choose_triangles(&high, None, &options, &()).layers[0].error;
+    let [before, after] = choose_triangles(&high, None, &[], &options, &()).layers[0].error;
     assert!(after < before);
 }
 
@@ -178,7 +178,7 @@ fn chosen_triangles_fit_and_are_the_same_for_any_threads() {
             .num_threads(threads)
             .build()
             .unwrap_or_else(|e| unreachable!("{e}"));
-        pool.install(|| choose_triangles(&high, None, &options, &()))
+        pool.install(|| choose_triangles(&high, None, &[], &options, &()))
     };
     let (one, three) = (on(1), on(3));
     assert_eq!(one.mesh, three.mesh);
@@ -208,7 +208,7 @@ fn what_is_behind_glass_is_kept() {
         polish: PolishOptions { rounds: 0, sweeps: 1, ..PolishOptions::default() },
         seed: 0,
     };
-    let chosen = choose_triangles(&high, None, &options, &());
+    let chosen = choose_triangles(&high, None, &[], &options, &());
     let is_inner = |t: &&[u32; 3]| t.iter().all(|&v| chosen.mesh.positions[v as usize].length() < 0.6);
     let inner = chosen.mesh.triangles.iter().filter(is_inner).count();
     assert!(

@@ -33,7 +33,7 @@ pub struct LowPoly {
 pub fn lit(model: &Model) -> (Model, Vec<String>) {
     let Model { name, mesh, materials, .. } = model;
     let mut model =
-        Model { name: name.clone(), mesh: mesh.clone(), materials: materials.clone(), images: Vec::new() };
+        Model { name: name.clone(), mesh: mesh.clone(), materials: materials.clone(), ..Model::default() };
     let had = !model.mesh.normals.is_empty();
     let repaired = ensure_normals(&mut model.mesh);
     let turned = face_outwards(&mut model.mesh);

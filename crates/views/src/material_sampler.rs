@@ -251,7 +251,7 @@ mod tests {
             mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
             mesh.triangle_materials.extend([index as u32; 2]);
         }
-        Model { name: "squares".into(), mesh, materials, images: Vec::new() }
+        Model { name: "squares".into(), mesh, materials, ..Model::default() }
     }
 
     fn conventions() -> Conventions {
@@ -374,7 +374,7 @@ mod tests {
             double_sided: true,
             ..Material::default()
         };
-        Model { name: "tube".into(), mesh, materials: vec![plain(1.0), plain(0.0)], images: Vec::new() }
+        Model { name: "tube".into(), mesh, materials: vec![plain(1.0), plain(0.0)], ..Model::default() }
     }
 
     /// Protects thin walls: where a coarse wall is far thicker in its sag than the fine one is, no pixel asks

@@ -15,6 +15,7 @@ mod real_models;
 mod refusals;
 mod reproduce;
 mod schema;
+mod skins;
 mod stats;
 mod turntable;
 mod view;

@@ -1,9 +1,13 @@
 //! The one buffer of a GLB file that is being written, its views and its accessors.
 
+use super::quantise::signed_byte;
+use parbake_model::Influences;
+use parbake_model::glam::Vec3;
 use serde_json::{Value, json};
 
 const BYTE: u32 = 5120;
 const UNSIGNED_BYTE: u32 = 5121;
+const SIGNED_SHORT: u32 = 5122;
 const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
@@ -33,6 +37,33 @@ pub struct Stream {
     pub stride: usize,
     /// Whether these are corners of triangles.
     pub triangles: bool,
+}
+
+/// In what displacements are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Floats.
+    Float,
+    /// Whole numbers of two bytes.
+    Short,
+    /// 127ths.
+    NormalisedByte,
+}
+
+/// Four numbers of two bytes.
+fn shorts(values: [u16; 4]) -> [u8; 8] {
+    let [[a, b], [c, d], [e, f], [g, h]] = values.map(u16::to_le_bytes);
+    [a, b, c, d, e, f, g, h]
+}
+
+/// Weights, greatest first, in whole parts that sum to `most`.
+fn whole_parts(weights: [f32; 4], most: u16) -> [u16; 4] {
+    let sum: f32 = weights.iter().sum();
+    // Halves go down, so that the first one stays the greatest.
+    let mut parts = weights.map(|w| (w / sum * f32::from(most) - 0.5).ceil() as u16);
+    let rest: u32 = parts[1..].iter().map(|&part| u32::from(part)).sum();
+    parts[0] = (u32::from(most).saturating_sub(rest)) as u16;
+    parts
 }
 
 impl Binary {
@@ -88,6 +119,101 @@ impl Binary {
         self.accessor(json!({
             "bufferView": view, "componentType": component, "normalized": true, "count": count, "type": kind,
         }))
+    }
+
+    /// Joints of vertices, in bytes where there are few enough, and their weights, in bytes where these need not be
+    /// exact; weights of a vertex sum to 1 to the bit.
+    pub fn influences(&mut self, influences: &[Influences], joints: usize, small: bool) -> [usize; 2] {
+        let few = joints <= 1 + usize::from(u8::MAX);
+        let most = if small { u16::from(u8::MAX) } else { u16::MAX };
+        let parts: Vec<[u16; 4]> = influences.iter().map(|i| whole_parts(i.weights, most)).collect();
+        // What is rounded to no weight names no joint.
+        let named = influences.iter().zip(&parts).map(|(influences, parts)| {
+            std::array::from_fn::<u32, 4, _>(|k| if parts[k] == 0 { 0 } else { influences.joints[k] })
+        });
+        let (joint_view, count) = match few {
+            true => self.rows(named.map(|joints| joints.map(|joint| joint as u8))),
+            false => self.rows(named.map(|joints| shorts(joints.map(|joint| joint as u16)))),
+        };
+        let joint_type = if few { UNSIGNED_BYTE } else { UNSIGNED_SHORT };
+        let joints = self.accessor(json!({
+            "bufferView": joint_view, "componentType": joint_type, "count": count, "type": "VEC4",
+        }));
+        let (weight_view, count) = match small {
+            true => self.rows(parts.iter().map(|parts| parts.map(|part| part as u8))),
+            false => self.rows(parts.iter().map(|&parts| shorts(parts))),
+        };
+        let weight_type = if small { UNSIGNED_BYTE } else { UNSIGNED_SHORT };
+        let weights = self.accessor(json!({
+            "bufferView": weight_view, "componentType": weight_type, "normalized": true, "count": count,
+            "type": "VEC4",
+        }));
+        [joints, weights]
+    }
+
+    /// Displacements of `vertices` (ascending) among `count`; all others are zero.
+    pub fn displacements(&mut self, count: usize, vertices: &[u32], values: &[Vec3], unit: Unit) -> usize {
+        let (component, size, row) = match unit {
+            Unit::Float => (FLOAT, 12, 12),
+            Unit::Short => (SIGNED_SHORT, 6, 8),
+            Unit::NormalisedByte => (BYTE, 3, 4),
+        };
+        let bytes = |value: &Vec3| -> Vec<u8> {
+            match unit {
+                Unit::Float => value.to_array().into_iter().flat_map(f32::to_le_bytes).collect(),
+                Unit::Short => {
+                    value.to_array().into_iter().flat_map(|x| (x.round() as i16).to_le_bytes()).collect()
+                }
+                Unit::NormalisedByte => value.to_array().into_iter().map(signed_byte).collect(),
+            }
+        };
+        let mut accessor = json!({ "componentType": component, "count": count, "type": "VEC3" });
+        if unit == Unit::NormalisedByte {
+            accessor["normalized"] = true.into();
+        }
+        let index_size = if count <= SHORT { 2 } else { 4 };
+        if vertices.len() * (size + index_size) < count * row {
+            if !vertices.is_empty() {
+                let indices: Vec<u8> = match index_size {
+                    2 => vertices.iter().flat_map(|&v| (v as u16).to_le_bytes()).collect(),
+                    _ => vertices.iter().flat_map(|v| v.to_le_bytes()).collect(),
+                };
+                let indices = self.view(&indices, None);
+                let values: Vec<u8> = values.iter().flat_map(bytes).collect();
+                let values = self.view(&values, None);
+                let kind = if index_size == 2 { UNSIGNED_SHORT } else { UNSIGNED_INT };
+                accessor["sparse"] = json!({
+                    "count": vertices.len(),
+                    "indices": { "bufferView": indices, "componentType": kind },
+                    "values": { "bufferView": values },
+                });
+            }
+            return self.accessor(accessor);
+        }
+        let mut all = vec![0; count * row];
+        for (&vertex, value) in vertices.iter().zip(values) {
+            all[vertex as usize * row..][..size].copy_from_slice(&bytes(value));
+        }
+        let view = self.stream(&all, ARRAY_BUFFER, row);
+        self.views[view]["byteStride"] = row.into();
+        accessor["bufferView"] = view.into();
+        self.accessor(accessor)
+    }
+
+    /// Blocks of floats that are no vertices, in one view: for each the kind of its elements and how many numbers each
+    /// has. Returns the first one's accessor; the others follow it.
+    pub fn blocks(&mut self, blocks: &[(&str, usize, &[f32])]) -> usize {
+        let (view, first) = (self.views.len(), self.accessors.len());
+        let mut bytes: Vec<u8> = Vec::new();
+        for (kind, width, numbers) in blocks {
+            self.accessor(json!({
+                "bufferView": view, "byteOffset": bytes.len(), "componentType": FLOAT,
+                "count": numbers.len() / width, "type": kind,
+            }));
+            bytes.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
+        }
+        self.view(&bytes, None);
+        first
     }
 
     fn accessor(&mut self, value: Value) -> usize {

@@ -1,13 +1,13 @@
 //! The parts of a glTF 2.0 document that Parbake reads, by the names of the
 //! specification (section 5); all else in a document is passed over. Materials are in
-//! `json_material.rs`.
+//! `json_material.rs`, skins and animations in `json_motion.rs`.
 //!
 //! Contract: nothing is checked here but the types; what is missing has the
 //! specification's default, and numbers are whole from 0 where it asks for that.
 
-use super::ignored::Ignored;
 use super::integer::{integer, integers, optional_integer};
 use super::json_material::Material;
+use super::json_motion::{Animation, Skin, Target, TargetNames};
 use serde::Deserialize;
 
 #[derive(Debug, Default, Deserialize)]
@@ -28,8 +28,8 @@ pub(super) struct Document {
     pub textures: Vec<Texture>,
     pub images: Vec<Image>,
     pub samplers: Vec<Sampler>,
-    pub skins: Vec<Ignored>,
-    pub animations: Vec<Ignored>,
+    pub skins: Vec<Skin>,
+    pub animations: Vec<Animation>,
     pub extensions: DocumentExtensions,
 }
 
@@ -69,6 +69,7 @@ pub(super) struct Scene {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Node {
+    pub name: String,
     #[serde(deserialize_with = "integers")]
     pub children: Vec<usize>,
     pub matrix: Option<Box<[f64; 16]>>,
@@ -79,6 +80,7 @@ pub(super) struct Node {
     pub mesh: Option<usize>,
     #[serde(deserialize_with = "optional_integer")]
     pub skin: Option<usize>,
+    pub weights: Vec<f32>,
     pub extensions: Option<Box<NodeExtensions>>,
 }
 
@@ -122,6 +124,10 @@ fn yes() -> bool {
 #[serde(default)]
 pub(super) struct Mesh {
     pub primitives: Vec<Primitive>,
+    /// Of morph targets, where a node does not have its own.
+    pub weights: Vec<f32>,
+    #[serde(rename = "extras")]
+    pub target_names: TargetNames,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -134,7 +140,7 @@ pub(super) struct Primitive {
     pub material: Option<usize>,
     #[serde(deserialize_with = "optional_integer")]
     pub mode: Option<usize>,
-    pub targets: Vec<Ignored>,
+    pub targets: Vec<Target>,
     pub extensions: Option<Box<PrimitiveExtensions>>,
 }
 
@@ -181,6 +187,14 @@ pub(super) struct Attributes {
     pub texcoord_7: Option<usize>,
     #[serde(rename = "COLOR_0", deserialize_with = "optional_integer")]
     pub color_0: Option<usize>,
+    #[serde(rename = "JOINTS_0", deserialize_with = "optional_integer")]
+    pub joints_0: Option<usize>,
+    #[serde(rename = "JOINTS_1", deserialize_with = "optional_integer")]
+    pub joints_1: Option<usize>,
+    #[serde(rename = "WEIGHTS_0", deserialize_with = "optional_integer")]
+    pub weights_0: Option<usize>,
+    #[serde(rename = "WEIGHTS_1", deserialize_with = "optional_integer")]
+    pub weights_1: Option<usize>,
 }
 
 impl Attributes {

@@ -6,17 +6,22 @@
 //! primitive uses are left out; the others keep their order.
 
 use super::accessor::Accessor;
+use super::animations::Animations;
+use super::bind::{Binding, Placing};
 use super::buffers::{Buffers, pointer};
-use super::draco::Decoded;
-use super::json::{self, Primitive};
+use super::json::Primitive;
+use super::morphs::{Morphs, Part};
+use super::motion::Motion;
 use super::parallax::turns;
-use super::scene::Instance;
+use super::scene::{Instance, visit};
+use super::sources::{Attributes, Sources, draco_stream};
 use super::topology::{has_triangles, triangles};
 use super::uv_sets::UvSets;
 use crate::{FileError, Place};
-use parbake_model::Mesh;
 use parbake_model::glam::{DAffine3, DMat3, Vec2, Vec3, Vec4};
-use std::collections::HashMap;
+use parbake_model::{Mesh, Rig};
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 const UNUSED: u32 = u32::MAX;
 
@@ -44,25 +49,9 @@ pub(super) struct Merge<'a, 'd> {
     drawn: String,
     /// From a primitive's element numbers to vertices; all `UNUSED` between primitives.
     places: Vec<u32>,
-}
-
-/// Which attributes the mesh gets.
-struct Attributes {
-    normals: bool,
-    tangents: bool,
-    uvs: bool,
-    uvs1: bool,
-    colors: bool,
-}
-
-/// The accessors of one primitive.
-struct Sources<'a> {
-    position: Accessor<'a>,
-    normal: Option<Accessor<'a>>,
-    tangent: Option<Accessor<'a>>,
-    uv: Option<Accessor<'a>>,
-    uv1: Option<Accessor<'a>>,
-    color: Option<Accessor<'a>>,
+    /// What vertices follow, where something moves.
+    pub binding: Option<Binding>,
+    pub morphs: Morphs,
 }
 
 impl<'a, 'd> Merge<'a, 'd> {
@@ -80,11 +69,62 @@ impl<'a, 'd> Merge<'a, 'd> {
             colors: any(|p| p.attributes.color_0.is_some()),
         };
         let (mesh, materials, turned, scales, material_ids, placed, drawn, places) = Default::default();
-        Self { buffers, mesh, materials, turned, scales, material_ids, has, uv_sets, placed, drawn, places }
+        let (binding, morphs) = Default::default();
+        Self {
+            buffers,
+            mesh,
+            materials,
+            turned,
+            scales,
+            material_ids,
+            has,
+            uv_sets,
+            placed,
+            drawn,
+            places,
+            binding,
+            morphs,
+        }
+    }
+
+    /// Adds all placings of all meshes.
+    pub fn add_all(&mut self) -> Result<(), FileError> {
+        if let Some(motion) = Motion::of(self.buffers)? {
+            self.bind(Binding::new(motion))?;
+        }
+        visit(self.buffers, &mut |instance| self.add(instance))
+    }
+
+    /// Looks at all skinned meshes: which joints bend together decides where they stand.
+    fn bind(&mut self, mut binding: Binding) -> Result<(), FileError> {
+        let (mut seen, mut noted) = (HashSet::new(), HashSet::new());
+        for index in binding.motion.order.clone() {
+            let node = &self.buffers.document.nodes[index];
+            let (Some(mesh), Some(skin)) = (node.mesh, node.skin) else { continue };
+            let Some(json) = self.buffers.document.meshes.get(mesh).filter(|_| seen.insert((mesh, skin)))
+            else {
+                continue;
+            };
+            for (i, primitive) in json.primitives.iter().enumerate().filter(|(_, p)| has_triangles(p)) {
+                let here = format!("/meshes/{mesh}/primitives/{i}");
+                let sets = sets_of(&self.uv_sets, primitive);
+                let stream = draco_stream(self.buffers, primitive, &here)?;
+                // Primitives often share their accessors.
+                let own = (primitive.attributes.joints_0, primitive.attributes.weights_0, skin);
+                let is_new = stream.is_some() || noted.insert(own);
+                if let Some(sources) =
+                    Sources::open(self.buffers, primitive, &here, &self.has, sets, stream, is_new)?
+                {
+                    binding.note(skin, &sources);
+                }
+            }
+        }
+        self.binding = Some(binding);
+        Ok(())
     }
 
     /// Adds one placing of a mesh.
-    pub fn add(&mut self, instance: Instance) -> Result<(), FileError> {
+    fn add(&mut self, instance: Instance) -> Result<(), FileError> {
         let buffers = self.buffers;
         let meshes = &buffers.document.meshes;
         let Some(mesh) = meshes.get(instance.mesh) else {
@@ -119,7 +159,10 @@ impl<'a, 'd> Merge<'a, 'd> {
         let context = self.buffers.context;
         let stream = draco_stream(self.buffers, primitive, here)?;
         let sets = sets_of(&self.uv_sets, primitive);
-        let Some(sources) = Sources::open(self.buffers, primitive, here, &self.has, sets, stream)? else {
+        let skin = at.node.and_then(|node| self.buffers.document.nodes[node].skin);
+        let skin = skin.filter(|&skin| self.binding.as_ref().is_some_and(|b| b.motion.skin(skin).is_some()));
+        let opened = Sources::open(self.buffers, primitive, here, &self.has, sets, stream, skin.is_some())?;
+        let Some(sources) = opened else {
             context.warn(format!("{here} has no positions and was left out"));
             return Ok(());
         };
@@ -128,8 +171,6 @@ impl<'a, 'd> Merge<'a, 'd> {
         if triangles.is_empty() {
             return Ok(());
         }
-        let determinant = at.world.matrix3.determinant();
-        let material = self.material(primitive.material, determinant.abs().cbrt(), here)?;
         let (elements, mut triangles) = if self.has.normals && sources.normal.is_none() {
             separate(&triangles)
         } else {
@@ -139,7 +180,10 @@ impl<'a, 'd> Merge<'a, 'd> {
         let found = (first as u64).saturating_add(elements.len() as u64);
         let limit = (context.limits.max_vertices as u64).min(u64::from(u32::MAX) - 1);
         context.within(pointer(here.into()), "vertices", found, limit)?;
-        self.turned[material as usize] |= turns(&at.world.matrix3);
+        let placing = self.placing(skin, &sources, &elements, at);
+        let determinant = placing.matrices[0].matrix3.determinant();
+        let material = self.material(primitive.material, determinant.abs().cbrt(), here)?;
+        self.turned[material as usize] |= placing.matrices.iter().any(|matrix| turns(&matrix.matrix3));
         for triangle in &mut triangles {
             *triangle = triangle.map(|i| i + first as u32);
             if determinant < 0.0 {
@@ -148,12 +192,63 @@ impl<'a, 'd> Merge<'a, 'd> {
         }
         self.mesh.triangle_materials.resize(already + triangles.len(), material);
         self.mesh.triangles.append(&mut triangles);
-        self.positions(&sources.position, &elements, at)?;
-        self.attributes(&sources, &elements, &at.world);
+        self.positions(&sources.position, &elements, at, &placing)?;
+        self.attributes(&sources, &elements, &placing);
         if self.has.normals && sources.normal.is_none() {
             self.flat_normals(already);
         }
-        Ok(())
+        self.targets(primitive, here, at, &sources, &elements, &placing)
+    }
+
+    /// Where a primitive's vertices stand; what they follow is noted.
+    fn placing(
+        &mut self,
+        skin: Option<usize>,
+        sources: &Sources<'_>,
+        elements: &[u32],
+        at: &Instance,
+    ) -> Placing {
+        match (&mut self.binding, skin.filter(|_| !sources.influences.is_empty())) {
+            (Some(binding), Some(skin)) => binding.skinned(skin, sources, elements, &at.world, self.buffers),
+            (binding, _) => {
+                if let Some(binding) = binding {
+                    binding.rigid(at.node, elements.len(), self.buffers);
+                }
+                Placing::whole(at.world)
+            }
+        }
+    }
+
+    /// The morph targets of a primitive whose vertices are the last ones.
+    fn targets(
+        &mut self,
+        primitive: &Primitive,
+        here: &str,
+        at: &Instance,
+        sources: &Sources<'_>,
+        elements: &[u32],
+        placing: &Placing,
+    ) -> Result<(), FileError> {
+        if primitive.targets.is_empty() || self.binding.is_none() {
+            return Ok(());
+        }
+        let ids = self.morphs.ids(self.buffers, at.node, at.mesh);
+        let cofactors: Vec<DMat3> = placing.matrices.iter().map(|m| cofactors(&m.matrix3).0).collect();
+        let matrix = |i: usize| {
+            let k = placing.of(i);
+            (placing.matrices[k], cofactors[k])
+        };
+        let source_normal = |e: u32| {
+            sources.normal.as_ref().map_or(Vec3::ZERO, |s| Vec3::from_array(s.read(e as usize, [0.0; 3])))
+        };
+        let part = Part {
+            first: self.mesh.positions.len() - elements.len(),
+            elements,
+            matrix: &matrix,
+            normals: sources.normal.is_some().then_some(&self.mesh.normals),
+            source_normal: &source_normal,
+        };
+        self.morphs.add(self.buffers, primitive, here, &ids, &part, sources.position.count)
     }
 
     /// The number of a material on what nodes enlarge by `scale`.
@@ -177,18 +272,24 @@ impl<'a, 'd> Merge<'a, 'd> {
         Ok(id)
     }
 
-    fn positions(&mut self, source: &Accessor<'_>, elements: &[u32], at: &Instance) -> Result<(), FileError> {
+    fn positions(
+        &mut self,
+        source: &Accessor<'_>,
+        elements: &[u32],
+        at: &Instance,
+        placing: &Placing,
+    ) -> Result<(), FileError> {
         let refuse = |element: u32, reason: &str| {
             let place = Place::Element(source.pointer.clone(), element as usize);
             Err(self.buffers.context.invalid(place, reason))
         };
         self.mesh.positions.reserve(elements.len());
-        for &element in elements {
+        for (i, &element) in elements.iter().enumerate() {
             let position = Vec3::from_array(source.read(element as usize, [0.0; 3]));
             if !position.is_finite() {
                 return refuse(element, "the position is not finite");
             }
-            let moved = at.world.transform_point3(position.as_dvec3()).as_vec3();
+            let moved = placing.matrices[placing.of(i)].transform_point3(position.as_dvec3()).as_vec3();
             if !moved.is_finite() {
                 return refuse(element, &format!("the transform of {} moves it out of range", at.from));
             }
@@ -197,26 +298,32 @@ impl<'a, 'd> Merge<'a, 'd> {
         Ok(())
     }
 
-    fn attributes(&mut self, sources: &Sources<'_>, elements: &[u32], world: &DAffine3) {
-        let matrix = world.matrix3;
-        let (cofactors, sign) = cofactors(&matrix);
-        let still = matrix == DMat3::IDENTITY;
-        let turned = |m: &DMat3, v: Vec3| {
+    fn attributes(&mut self, sources: &Sources<'_>, elements: &[u32], placing: &Placing) {
+        let turns: Vec<(DMat3, DMat3, f32)> = (placing.matrices.iter())
+            .map(|DAffine3 { matrix3, .. }| {
+                let (cofactors, sign) = cofactors(matrix3);
+                (*matrix3, cofactors, sign)
+            })
+            .collect();
+        let turned = |m: &DMat3, still: bool, v: Vec3| {
             // Bits are kept where nothing turns. In doubles: scales of 1e-20 are squared.
             if still { v } else { (*m * v.as_dvec3()).normalize_or_zero().as_vec3() }
         };
+        let numbered = || elements.iter().enumerate().map(|(i, &e)| (&turns[placing.of(i)], e as usize));
         let elements = || elements.iter().map(|&e| e as usize);
         let mesh = &mut self.mesh;
         if let Some(source) = &sources.normal {
-            let read = |e| turned(&cofactors, Vec3::from_array(source.read(e, [0.0; 3])));
-            mesh.normals.extend(elements().map(read));
+            let read = |((matrix, cofactors, _), e): (&(DMat3, DMat3, f32), usize)| {
+                turned(cofactors, *matrix == DMat3::IDENTITY, Vec3::from_array(source.read(e, [0.0; 3])))
+            };
+            mesh.normals.extend(numbered().map(read));
         }
         if let Some(source) = &sources.tangent {
-            let read = |e| {
+            let read = |((matrix, _, sign), e): (&(DMat3, DMat3, f32), usize)| {
                 let tangent = Vec4::from_array(source.read(e, [0.0; 4]));
-                turned(&matrix, tangent.truncate()).extend(tangent.w * sign)
+                turned(matrix, *matrix == DMat3::IDENTITY, tangent.truncate()).extend(tangent.w * sign)
             };
-            mesh.tangents.extend(elements().map(read));
+            mesh.tangents.extend(numbered().map(read));
         }
         let uv = |source: &Option<Accessor>, e| {
             source.as_ref().map_or(Vec2::ZERO, |s| Vec2::from_array(s.read(e, [0.0; 2])))
@@ -232,6 +339,25 @@ impl<'a, 'd> Merge<'a, 'd> {
             let color = |s: &Accessor, e| Vec4::from_array(s.read(e, [1.0; 4]).map(|x| x.clamp(0.0, 1.0)));
             mesh.colors.extend(elements().map(|e| sources.color.as_ref().map_or(Vec4::ONE, |s| color(s, e))));
         }
+    }
+
+    /// The rig of what was added; none where nothing moves.
+    pub fn rig(&mut self) -> Result<Option<Rig>, FileError> {
+        let Some(binding) = &mut self.binding else { return Ok(None) };
+        let (mut skeleton, places) = binding.skeleton(self.buffers);
+        skeleton.animations = Animations::of(self.buffers, &places, &self.morphs)?;
+        let Morphs { targets, morphs, .. } = std::mem::take(&mut self.morphs);
+        skeleton.targets = targets;
+        if skeleton.joints.is_empty() && skeleton.targets.is_empty() {
+            return Ok(None);
+        }
+        let influences = std::mem::take(&mut binding.influences);
+        let rig = Rig { skeleton: Arc::new(skeleton), influences, morphs };
+        if let Some(fault) = rig.fault(self.mesh.positions.len()) {
+            self.buffers.context.warn(format!("skins and animations were left out: the rig has {fault}"));
+            return Ok(None);
+        }
+        Ok(Some(rig))
     }
 
     /// For the triangles from `first` on, none of which shares a vertex.
@@ -250,75 +376,6 @@ impl<'a, 'd> Merge<'a, 'd> {
 /// The sets of texture coordinates that a primitive's material asks for.
 fn sets_of(uv_sets: &[UvSets], primitive: &Primitive) -> UvSets {
     primitive.material.and_then(|index| uv_sets.get(index)).copied().unwrap_or_default()
-}
-
-/// The Draco stream of a primitive, where that is what it has its positions from: where they also
-/// stand uncompressed, for readers without Draco, these lose less and cost nothing.
-fn draco_stream<'a>(
-    buffers: &'a Buffers<'_>,
-    primitive: &Primitive,
-    here: &str,
-) -> Result<Option<&'a Decoded>, FileError> {
-    let Some(draco) = primitive.extensions.as_ref().and_then(|e| e.draco.as_ref()) else { return Ok(None) };
-    let position = primitive.attributes.position.and_then(|index| buffers.document.accessors.get(index));
-    let uncompressed = position.is_some_and(|p| p.buffer_view.is_some() || p.sparse.is_some());
-    if uncompressed || primitive.attributes.position.is_none() {
-        return Ok(None);
-    }
-    let here = format!("{here}/extensions/KHR_draco_mesh_compression");
-    match (draco.buffer_view, draco.attributes.position) {
-        (Some(view), Some(_)) => buffers.stream(view, &here).map(Some),
-        _ => Err(buffers.context.invalid(pointer(here), "it has no buffer view or no POSITION")),
-    }
-}
-
-impl<'a> Sources<'a> {
-    /// `None` when the primitive has no positions. What a Draco stream has is taken from there.
-    fn open(
-        buffers: &'a Buffers<'_>,
-        primitive: &Primitive,
-        here: &str,
-        has: &Attributes,
-        sets: UvSets,
-        stream: Option<&'a Decoded>,
-    ) -> Result<Option<Self>, FileError> {
-        let draco = primitive.extensions.as_ref().and_then(|e| e.draco.as_ref());
-        type Which<'w> = &'w dyn Fn(&json::Attributes) -> Option<usize>;
-        let open = |which: Which<'_>, name: &str, widths: &[usize], wanted: bool| {
-            let from = format!("{here}/attributes/{name}");
-            let Some(index) = which(&primitive.attributes).filter(|_| wanted) else { return Ok(None) };
-            let id = draco.and_then(|draco| which(&draco.attributes));
-            let (Some(stream), Some(id)) = (stream, id) else {
-                return Accessor::new(buffers, index, &from, widths).map(Some);
-            };
-            let Some(attribute) = stream.attribute(id) else {
-                let place = format!("{here}/extensions/KHR_draco_mesh_compression/attributes/{name}");
-                let reason = format!("the Draco stream has no attribute {id}");
-                return Err(buffers.context.invalid(pointer(place), reason));
-            };
-            Accessor::decoded(buffers, index, &from, widths, attribute, stream.points).map(Some)
-        };
-        let Some(position) = open(&|a| a.position, "POSITION", &[3], true)? else { return Ok(None) };
-        let uv = |place: usize| {
-            let set = sets.document_set(place);
-            open(&|a| a.texcoord(set), &format!("TEXCOORD_{set}"), &[2], true)
-        };
-        let sources = Self {
-            normal: open(&|a| a.normal, "NORMAL", &[3], true)?,
-            tangent: open(&|a| a.tangent, "TANGENT", &[4], has.tangents)?,
-            uv: uv(0)?,
-            uv1: uv(1)?,
-            color: open(&|a| a.color_0, "COLOR_0", &[3, 4], true)?,
-            position,
-        };
-        let count = sources.position.count;
-        let others = [&sources.normal, &sources.tangent, &sources.uv, &sources.uv1, &sources.color];
-        if let Some(other) = others.into_iter().flatten().find(|a| a.count != count) {
-            let reason = format!("there are {count} positions, but {} has {}", other.pointer, other.count);
-            return Err(buffers.context.invalid(pointer(format!("{here}/attributes")), reason));
-        }
-        Ok(Some(sources))
-    }
 }
 
 /// Three vertices of its own for each triangle.

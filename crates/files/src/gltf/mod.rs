@@ -3,11 +3,12 @@
 //! Understood are triangles, also compressed by Draco and meshoptimizer, the metallic-roughness
 //! material with all its textures, specular-glossiness, the factors of other material extensions,
 //! and parallax maps.
-//! Skins, morph targets and animations are passed over with a warning: the mesh
-//! is taken as its nodes place it.
+//! Skins, morph targets and animations become the model's one rig (`bind.rs`, `morphs.rs`, `animations.rs`).
 
 mod accessor;
+mod animations;
 mod binary;
+mod bind;
 mod buffers;
 mod container;
 mod draco;
@@ -17,6 +18,7 @@ mod integer;
 mod json;
 mod json_extensions;
 mod json_material;
+mod json_motion;
 mod json_texture;
 mod levels_out;
 mod locate;
@@ -26,6 +28,8 @@ mod merge;
 mod meshopt;
 mod meshopt_filter;
 mod meshopt_out;
+mod morphs;
+mod motion;
 mod names;
 mod pack;
 mod parallax;
@@ -33,16 +37,19 @@ mod quantise;
 mod references;
 mod runs;
 mod scene;
+mod sources;
 mod specular_glossiness;
 mod textures;
 mod topology;
 mod uri;
 mod uv_sets;
+mod weight_tracks;
 mod write;
 mod write_extensions;
 mod write_material;
 mod write_mesh;
 mod write_parallax;
+mod write_rig;
 
 pub(crate) use names::named_files;
 pub(crate) use pack::pack;
@@ -77,10 +84,11 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
     let (text, binary) = container::open(bytes, &context)?;
     let document = parse(text, &context)?;
     extensions::check(&document, &context)?;
-    mention_motion(&document, &context);
+    mention_variants(&document, &context);
     let buffers = buffers::Buffers::new(&document, binary, &context);
     let mut merge = merge::Merge::new(&buffers);
-    scene::visit(&buffers, &mut |instance| merge.add(instance))?;
+    merge.add_all()?;
+    let rig = merge.rig()?;
     let (mesh, used) = (std::mem::take(&mut merge.mesh), std::mem::take(&mut merge.materials));
     let turned = std::mem::take(&mut merge.turned);
     let scales = std::mem::take(&mut merge.scales);
@@ -104,7 +112,7 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
         }
     }
     let name = context.path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    finish(Model { name, mesh, materials, images }, context, empty)
+    finish(Model { name, mesh, materials, images, rig }, context, empty)
 }
 
 fn parse(text: &[u8], context: &Context<'_>) -> Result<json::Document, FileError> {
@@ -152,16 +160,7 @@ fn emptiness(document: &json::Document) -> &'static str {
     }
 }
 
-fn mention_motion(document: &json::Document, context: &Context<'_>) {
-    if !document.skins.is_empty() && document.nodes.iter().any(|n| n.skin.is_some()) {
-        context.warn("the model has skins; its meshes are taken as they are bound, unmoved by joints");
-    }
-    if document.meshes.iter().flat_map(|m| &m.primitives).any(|p| !p.targets.is_empty()) {
-        context.warn("the model has morph targets; its meshes are taken without them");
-    }
-    if !document.animations.is_empty() {
-        context.warn("the model has animations; it is taken as it stands before they begin");
-    }
+fn mention_variants(document: &json::Document, context: &Context<'_>) {
     if let Some(variants) = document.extensions.variants.as_ref().filter(|v| !v.variants.is_empty()) {
         let names: Vec<String> = variants.variants.iter().map(|v| format!("{:?}", v.name)).collect();
         context.warn(format!(

@@ -1,7 +1,7 @@
 //! Vertices in integers (`KHR_mesh_quantization`): positions on a grid of 65535 steps along the box's
-//! longest side, which a node places; unit vectors in signed bytes.
+//! longest side, which a node places, or the inverse bind matrices of joints; unit vectors in signed bytes.
 
-use parbake_model::glam::Vec3;
+use parbake_model::glam::{DAffine3, DQuat, DVec3, Vec3};
 use serde_json::{Value, json};
 
 /// Steps of the grid along the longest side.
@@ -45,6 +45,15 @@ impl Grid {
     pub fn place(&self, node: &mut Value) {
         node["translation"] = json!(self.origin.to_array().map(f64::from));
         node["scale"] = json!(Vec3::splat(self.step).to_array().map(f64::from));
+    }
+
+    /// From the grid to the mesh.
+    pub fn as_transform(&self) -> DAffine3 {
+        DAffine3::from_scale_rotation_translation(
+            DVec3::splat(self.step.into()),
+            DQuat::IDENTITY,
+            self.origin.as_dvec3(),
+        )
     }
 
     /// The largest distance of a position from where it is shown.

@@ -8,11 +8,22 @@ use super::accessor::Accessor;
 use super::buffers::{Buffers, pointer};
 use super::json::{InstancingAttributes, Node};
 use crate::FileError;
+use parbake_model::NodeTransform;
 use parbake_model::glam::{DAffine3, DMat4, DQuat, DVec3};
+
+/// A node of the scene.
+pub(super) struct Placed {
+    pub index: usize,
+    pub parent: Option<usize>,
+    /// From the node's space to the world.
+    pub world: DAffine3,
+}
 
 /// One placing of a mesh.
 pub(super) struct Instance {
     pub mesh: usize,
+    /// The node that places it; none in a document without nodes.
+    pub node: Option<usize>,
     /// Where the mesh is named, for messages.
     pub from: String,
     /// From the mesh's space to the world.
@@ -38,10 +49,33 @@ pub(super) fn visit(
     let document = buffers.document;
     if document.scenes.is_empty() && document.nodes.is_empty() {
         for mesh in 0..document.meshes.len() {
-            each(Instance { mesh, from: format!("/meshes/{mesh}"), world: DAffine3::IDENTITY })?;
+            let from = format!("/meshes/{mesh}");
+            each(Instance { mesh, node: None, from, world: DAffine3::IDENTITY })?;
         }
         return Ok(());
     }
+    walk(buffers, &mut |Placed { index, world, .. }| {
+        let node = &document.nodes[index];
+        let Some(mesh) = node.mesh else { return Ok(()) };
+        let from = format!("/nodes/{index}/mesh");
+        match node.extensions.as_deref().and_then(|e| e.instancing.as_ref()) {
+            Some(instancing) => {
+                let here = format!("/nodes/{index}/extensions/EXT_mesh_gpu_instancing/attributes");
+                for_instances(buffers, &instancing.attributes, &here, &mut |local| {
+                    each(Instance { mesh, node: Some(index), from: from.clone(), world: world * local })
+                })
+            }
+            None => each(Instance { mesh, node: Some(index), from, world }),
+        }
+    })
+}
+
+/// Calls `each` for every visible node of the scene, parents first, in the document's order.
+pub(super) fn walk(
+    buffers: &Buffers<'_>,
+    each: &mut dyn FnMut(Placed) -> Result<(), FileError>,
+) -> Result<(), FileError> {
+    let document = buffers.document;
     let (scene, roots) = roots(buffers)?;
     let mut visited = vec![false; document.nodes.len()];
     let mut levels = vec![Level { parent: None, children: &roots, next: 0, world: DAffine3::IDENTITY }];
@@ -63,24 +97,12 @@ pub(super) fn visit(
             let reason = format!("node {index} is reached twice: it has two parents or is its own ancestor");
             return Err(buffers.context.invalid(pointer(from()), reason));
         }
-        let extensions = node.extensions.as_deref();
-        if extensions.and_then(|e| e.visibility.as_ref()).is_some_and(|v| !v.visible) {
+        if node.extensions.as_deref().and_then(|e| e.visibility.as_ref()).is_some_and(|v| !v.visible) {
             buffers.context.warn("nodes that are marked invisible were left out");
             continue;
         }
-        let world = parent_world * local(node);
-        if let Some(mesh) = node.mesh {
-            let from = format!("/nodes/{index}/mesh");
-            match extensions.and_then(|e| e.instancing.as_ref()) {
-                Some(instancing) => {
-                    let here = format!("/nodes/{index}/extensions/EXT_mesh_gpu_instancing/attributes");
-                    for_instances(buffers, &instancing.attributes, &here, &mut |local| {
-                        each(Instance { mesh, from: from.clone(), world: world * local })
-                    })?;
-                }
-                None => each(Instance { mesh, from, world })?,
-            }
-        }
+        let world = parent_world * local(node).to_parent();
+        each(Placed { index, parent, world })?;
         levels.push(Level { parent: Some(index), children: &node.children, next: 0, world });
     }
     Ok(())
@@ -106,10 +128,11 @@ fn roots(buffers: &Buffers<'_>) -> Result<(usize, Vec<usize>), FileError> {
     Ok((0, (0..document.nodes.len()).filter(|&n| !is_child[n]).collect()))
 }
 
-fn local(node: &Node) -> DAffine3 {
+/// How a node is placed in its parent.
+pub(super) fn local(node: &Node) -> NodeTransform {
     match &node.matrix {
-        Some(matrix) => DAffine3::from_mat4(DMat4::from_cols_array(matrix)),
-        None => from_parts(
+        Some(matrix) => NodeTransform::Matrix(DAffine3::from_mat4(DMat4::from_cols_array(matrix))),
+        None => parts(
             node.translation.unwrap_or([0.0; 3]),
             node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]),
             node.scale.unwrap_or([1.0; 3]),
@@ -117,16 +140,16 @@ fn local(node: &Node) -> DAffine3 {
     }
 }
 
-fn from_parts(translation: [f64; 3], rotation: [f64; 4], scale: [f64; 3]) -> DAffine3 {
+fn parts(translation: [f64; 3], rotation: [f64; 4], scale: [f64; 3]) -> NodeTransform {
     let quaternion = DQuat::from_array(rotation);
     let length = quaternion.length();
-    let quaternion = match length {
+    let rotation = match length {
         // As written where it is a unit already: dividing would blur the last bits.
         l if (l - 1.0).abs() < 1e-15 => quaternion,
         l if l > 0.0 && l.is_finite() => quaternion / l,
         _ => DQuat::IDENTITY,
     };
-    DAffine3::from_scale_rotation_translation(DVec3::from(scale), quaternion, DVec3::from(translation))
+    NodeTransform::Parts { translation: DVec3::from(translation), rotation, scale: DVec3::from(scale) }
 }
 
 /// EXT_mesh_gpu_instancing: one transform for each element of its accessors.
@@ -152,7 +175,7 @@ fn for_instances(
         let t = translation.as_ref().map_or([0.0; 3], |a| a.read(i, [0.0; 3]));
         let r = rotation.as_ref().map_or([0.0, 0.0, 0.0, 1.0], |a| a.read(i, [0.0; 4]));
         let s = scale.as_ref().map_or([1.0; 3], |a| a.read(i, [1.0; 3]));
-        each(from_parts(t.map(f64::from), r.map(f64::from), s.map(f64::from)))?;
+        each(parts(t.map(f64::from), r.map(f64::from), s.map(f64::from)).to_parent())?;
     }
     Ok(())
 }

@@ -9,6 +9,7 @@ use super::levels_out::{self, meshes, nodes, together};
 use super::meshopt_out;
 use super::quantise::Grid;
 use super::write_material::{EMISSIVE_STRENGTH, Materials, UNLIT, purpose_of};
+use super::write_rig;
 use crate::texture_out::{Encoded, Purpose, encode_texture};
 use crate::write_options::{
     MeshCompression, TextureFormat, WriteOptions, Written, WrittenMesh, WrittenTexture,
@@ -103,9 +104,16 @@ fn to_bytes(
     let mut binary = Binary::default();
     let positions: Vec<Vec3> = levels.iter().flat_map(|model| model.mesh.positions.iter().copied()).collect();
     let grid = (options.mesh_compression != MeshCompression::None).then(|| Grid::of(&positions));
+    let skeleton = write_rig::shared_skeleton(path, levels)?;
+    // Skinned meshes ignore their nodes: their joints bring positions back, and leave scales alone.
+    let is_skinned = skeleton.is_some_and(|skeleton| !skeleton.joints.is_empty());
+    let placing = grid.as_ref().filter(|_| !is_skinned);
     let model = &together(levels);
-    let mut materials = Materials::of(model, grid.map_or(1.0, |grid| grid.unit()));
-    let meshes = meshes(&mut binary, levels, grid.as_ref());
+    let mut materials = Materials::of(model, placing.map_or(1.0, |grid| grid.unit()));
+    let mut meshes = meshes(&mut binary, levels, grid.as_ref());
+    for (mesh, skeleton) in meshes.iter_mut().zip(skeleton.into_iter().cycle()) {
+        write_rig::describe_targets(mesh, skeleton);
+    }
     let fallback =
         (options.mesh_compression == MeshCompression::Meshopt).then(|| meshopt_out::compress(&mut binary));
     let mesh_bytes = binary.bytes.len() as u64;
@@ -121,10 +129,8 @@ fn to_bytes(
     name_sources(&mut materials.textures, &textures);
     let uses = |extension| textures.iter().any(|texture| extension_of(texture.format) == Some(extension));
     let (uses_webp, uses_ktx2) = (uses(WEBP), uses(KTX2));
-    let nodes = nodes(levels, coverages, grid.as_ref());
-    let mut buffers = vec![json!({ "byteLength": binary.bytes.len() })];
+    let nodes = nodes(levels, coverages, placing);
     let uses_meshopt = fallback.is_some();
-    buffers.extend(fallback);
     let mut document = json!({
         "asset": { "version": "2.0", "generator": concat!("Parbake ", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
@@ -132,10 +138,15 @@ fn to_bytes(
         "nodes": nodes,
         "meshes": meshes,
         "materials": materials.json,
-        "accessors": binary.accessors,
-        "bufferViews": binary.views,
-        "buffers": buffers,
     });
+    if let Some(skeleton) = skeleton {
+        write_rig::add_to_document(&mut document, &mut binary, skeleton, grid.as_ref());
+    }
+    let mut buffers = vec![json!({ "byteLength": binary.bytes.len() })];
+    buffers.extend(fallback);
+    document["accessors"] = binary.accessors.into();
+    document["bufferViews"] = binary.views.into();
+    document["buffers"] = buffers.into();
     // glTF has no empty arrays.
     for (key, values) in
         [("textures", materials.textures), ("samplers", materials.samplers), ("images", images)]

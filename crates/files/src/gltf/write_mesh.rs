@@ -1,5 +1,5 @@
 //! A mesh in a GLB file: one primitive for each material in use, all on the same vertices, or one
-//! for each run of triangles that repeat ([`super::runs`]).
+//! for each run of triangles that repeat ([`super::runs`]), if nothing moves them.
 //!
 //! Coordinates that are all 65535ths, as [`parbake_model::short_uv`] makes them, take half the bytes where
 //! they are many, and come back to the bit.
@@ -7,6 +7,7 @@
 use super::binary::Binary;
 use super::quantise::{Grid, byte, signed_byte};
 use super::runs::{Run, runs};
+use super::write_rig;
 use crate::unit::{unit, unit_tangent};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{Mesh, Model};
@@ -23,6 +24,11 @@ pub fn primitives(binary: &mut Binary, model: &Model, used: &[usize], grid: Opti
         Some(_) => uvs.iter().all(|uv| uv.cmpge(Vec2::ZERO).all() && uv.cmple(Vec2::ONE).all()),
     };
     let stored = Stored { short_sets: [&mesh.uvs, &mesh.uvs1].map(short), grid };
+    if let Some(rig) = &model.rig {
+        let mut primitives = whole(binary, &mesh, stored, used);
+        write_rig::add_to_primitives(binary, &mut primitives, rig, mesh.positions.len(), grid);
+        return primitives;
+    }
     match runs(&mesh, stride(&mesh, stored.short_sets)) {
         None => whole(binary, &mesh, stored, used),
         Some(runs) => in_runs(binary, &mesh, stored, &runs),

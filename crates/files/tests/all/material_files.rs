@@ -28,7 +28,7 @@ fn model(materials: Vec<Material>) -> Model {
     mesh.triangles = triangles.clone().map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
     mesh.triangle_materials = triangles.collect();
     let image = |i: u8| Image::solid(&format!("image {i}"), 4, 2 + usize::from(i), [i, 10 * i, 128, 255]);
-    Model { name: "m".into(), mesh, materials, images: (0..6).map(image).collect() }
+    Model { name: "m".into(), mesh, materials, images: (0..6).map(image).collect(), rig: None }
 }
 
 /// Images, sets, wrap modes and transforms that no two textures of a material share.

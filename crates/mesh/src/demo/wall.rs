@@ -40,7 +40,13 @@ pub fn wall_model() -> Model {
     };
     let mut mesh = grid(&lines(), true);
     mesh.normals = smooth_normals(&mesh);
-    Model { name: "demo wall".into(), mesh, materials: vec![material], images: vec![texture(TEXTURE_SIZE)] }
+    Model {
+        name: "demo wall".into(),
+        mesh,
+        materials: vec![material],
+        images: vec![texture(TEXTURE_SIZE)],
+        rig: None,
+    }
 }
 
 /// The cube to bake it onto, with hard edges.

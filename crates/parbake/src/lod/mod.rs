@@ -27,6 +27,7 @@ use crate::bake::{Baked, bake_as, prepare_high_poly};
 use crate::error::BakeError;
 use crate::low_poly::low_poly;
 use crate::report::Work;
+use crate::rigs::with_parted_materials;
 use chain::{Chain, hurried};
 use options::LodOptions;
 use parbake_files::WriteOptions;
@@ -102,6 +103,7 @@ pub fn make_levels<E: From<BakeError>>(
 ) -> Result<usize, E> {
     options.check()?;
     let start = Instant::now();
+    let model = &*with_parted_materials(model);
     let maker = Maker::new(model, options)?;
     let sizes = (0..options.screen_size.len())
         .map(|level| (maker.wanted_triangles(level), maker.texture_size(model, options.screen_size[level])));

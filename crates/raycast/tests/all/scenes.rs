@@ -119,8 +119,13 @@ pub fn pair(high: &Model, low: Mesh, size: usize, max_distance: f32) -> (HighPol
         max_distance,
     };
     let high = HighPoly::new(high, conventions).unwrap();
-    let low =
-        Model { name: "low".into(), mesh: low, materials: vec![Material::default()], images: Vec::new() };
+    let low = Model {
+        name: "low".into(),
+        mesh: low,
+        materials: vec![Material::default()],
+        images: Vec::new(),
+        rig: None,
+    };
     let low = LowPoly::new(&low, &high.frame, size).unwrap();
     (high, low)
 }
@@ -128,5 +133,11 @@ pub fn pair(high: &Model, low: Mesh, size: usize, max_distance: f32) -> (HighPol
 /// A model of these materials' colours.
 pub fn painted(mesh: Mesh, colors: &[[f32; 3]]) -> Model {
     let material = |&[r, g, b]: &[f32; 3]| Material { base_color: [r, g, b, 1.0], ..Material::default() };
-    Model { name: "high".into(), mesh, materials: colors.iter().map(material).collect(), images: Vec::new() }
+    Model {
+        name: "high".into(),
+        mesh,
+        materials: colors.iter().map(material).collect(),
+        images: Vec::new(),
+        rig: None,
+    }
 }

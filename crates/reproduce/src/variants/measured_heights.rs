@@ -77,8 +77,13 @@ mod tests {
 
     fn measured(height: f32) -> MeasuredHeights {
         let mesh = square(0.0);
-        let model =
-            Model { name: "low".into(), mesh, materials: vec![Material::default()], images: Vec::new() };
+        let model = Model {
+            name: "low".into(),
+            mesh,
+            materials: vec![Material::default()],
+            images: Vec::new(),
+            rig: None,
+        };
         let frame = Placement { centre: Vec3::ZERO, scale: 1.0 };
         let low = LowPoly::new(&model, &frame, 8).unwrap();
         MeasuredHeights::new(&low, &HighSurface::new(&square(height)), 0.5)

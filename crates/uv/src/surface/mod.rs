@@ -149,7 +149,7 @@ pub fn optimise_uvs(
         }
     }
     mesh.triangle_materials.fill(0);
-    let model = Model { name, mesh, materials: vec![Material::default()], images: Vec::new() };
+    let model = Model { name, mesh, materials: vec![Material::default()], images: Vec::new(), rig: None };
     UvStageResult { model, moves, pieces, report }
 }
 
@@ -356,7 +356,13 @@ mod tests {
             triangle_materials: vec![0; charts as usize],
             ..Mesh::default()
         };
-        Model { name: "sheet".into(), mesh, materials: vec![Material::default()], images: Vec::new() }
+        Model {
+            name: "sheet".into(),
+            mesh,
+            materials: vec![Material::default()],
+            images: Vec::new(),
+            rig: None,
+        }
     }
 
     /// Protects parallax maps from their neighbours: two of the map's texels lie between charts,

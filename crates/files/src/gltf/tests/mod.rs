@@ -2,6 +2,7 @@
 
 mod compressed;
 mod extensions;
+mod motion;
 mod parallax;
 mod textures;
 mod writing;

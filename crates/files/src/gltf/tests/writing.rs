@@ -32,7 +32,7 @@ fn model() -> Model {
         ..Material::default()
     };
     let images = vec![Image::solid("a", 2, 3, [1, 2, 3, 4]), Image::solid("b", 3, 2, [5, 6, 7, 255])];
-    Model { name: "x".into(), mesh, materials: vec![material], images }
+    Model { name: "x".into(), mesh, materials: vec![material], images, rig: None }
 }
 
 /// Protects every bit of a model on its way through a GLB file.
