@@ -144,7 +144,7 @@ fn at_the_end(path: &Path) -> Model {
     model
 }
 
-/// How far two posed surfaces are apart at most, where the longest side is 2.
+/// How far two posed surfaces are apart at most; the arm is 2 long and 0.4 thick.
 fn apart(original: &Model, level: &Model) -> f64 {
     model_distance(original, level, &StatsOptions { samples: 20_000, ..StatsOptions::default() })
         .unwrap()
@@ -164,7 +164,7 @@ fn levels_move_as_the_original() {
     assert!(arm.iter().map(|p| p.y).fold(0.0, f32::max) < 1.4);
     let small = ["--screen-size", "48,24", "--triangles", "500,250", "--max-texture-size", "32"];
     run(folder, &[&["lod", "arm.gltf", "-o", "lods", "--mesh-compression", "meshopt"], &small[..]].concat());
-    for (file, most) in [("arm_lod0.glb", 0.06), ("arm_lod1.glb", 0.12), ("arm_lods.glb", 0.06)] {
+    for (file, most) in [("arm_lod0.glb", 0.06), ("arm_lod1.glb", 0.2), ("arm_lods.glb", 0.06)] {
         let level = at_the_end(&folder.join("lods").join(file));
         let found = apart(&original, &level);
         assert!(found < most, "{file}: {found}");
