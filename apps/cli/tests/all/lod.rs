@@ -68,7 +68,9 @@ fn a_level_is_the_smallest_file_of_a_psnr() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     demo_pair(folder);
-    let one = ["lod", "demo_high.glb", "--screen-size", "24", "--max-texture-size", "32"];
+    // Bakes are many, and those that reach for a target in vain have as many triangles as there are.
+    run(folder, &["simplify", "demo_high.glb", "-t", "600", "-o", "model.glb"]);
+    let one = ["lod", "model.glb", "--screen-size", "24", "--max-texture-size", "32"];
     let level = |output: &str, code: i32, more: &[&str]| {
         let ended = parbake(folder).args(one).args(["-o", output]).args(more).output().unwrap();
         assert_eq!(ended.status.code(), Some(code), "{}", text(&ended.stderr));
