@@ -70,13 +70,20 @@ fn a_level_is_the_smallest_file_of_a_psnr() {
     demo_pair(folder);
     // Bakes are many, and those that reach for a target in vain have as many triangles as there are.
     run(folder, &["simplify", "demo_high.glb", "-t", "600", "-o", "model.glb"]);
-    let one = ["lod", "model.glb", "--screen-size", "24", "--max-texture-size", "32"];
-    let level = |output: &str, code: i32, more: &[&str]| {
-        let ended = parbake(folder).args(one).args(["-o", output]).args(more).output().unwrap();
+    run(folder, &["simplify", "demo_high.glb", "-t", "24", "-o", "coarse.glb"]);
+    let small = ["--screen-size", "24", "--max-texture-size", "32"];
+    let level = |model: &str, output: &str, code: i32, more: &[&str]| {
+        let ended = parbake(folder)
+            .args(["lod", model])
+            .args(small)
+            .args(["-o", output])
+            .args(more)
+            .output()
+            .unwrap();
         assert_eq!(ended.status.code(), Some(code), "{}", text(&ended.stderr));
         (json(&folder.join(output).join("lods.json"))["levels"][0].clone(), text(&ended.stderr))
     };
-    let (found, _) = level("found", 0, &["--target-psnr", "26"]);
+    let (found, _) = level("model.glb", "found", 0, &["--target-psnr", "26"]);
     let trials = found["target"]["trials"].as_array().unwrap();
     let chosen: Vec<&Value> = trials.iter().filter(|trial| trial["chosen"] == true).collect();
     assert_eq!(chosen.len(), 1);
@@ -92,10 +99,13 @@ fn a_level_is_the_smallest_file_of_a_psnr() {
     let glb = document(&folder.join("found").join(found["file"].as_str().unwrap()));
     let sizes = chosen[0]["maps"].as_array().unwrap().iter().filter(|map| map["size"] != 0);
     assert_eq!(glb["images"].as_array().map_or(0, Vec::len), sizes.count());
-    let (missed, told) = level("missed", 4, &["--target-psnr", "60"]);
+    let (missed, told) = level("coarse.glb", "missed", 4, &["--target-psnr", "60"]);
     assert_eq!(missed["target"]["verdict"], "missed");
     assert!(told.contains("60 dB cannot be reached"), "{told}");
-    let both = parbake(folder).args(one).args(["--target-psnr", "30", "--triangles", "90"]).output().unwrap();
+    let both = parbake(folder)
+        .args(["lod", "model.glb", "--target-psnr", "30", "--triangles", "90"])
+        .output()
+        .unwrap();
     assert_eq!(both.status.code(), Some(2));
     assert!(text(&both.stderr).contains("--triangles"), "{}", text(&both.stderr));
 }
