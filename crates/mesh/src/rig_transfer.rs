@@ -1,7 +1,7 @@
 //! Skin and morph targets of one surface on another: each vertex takes those of the closest point.
 //!
 //! The closest point is one of a triangle that faces as the vertex does, unless that is much farther away, so that legs
-//! side by side and fingers keep their own joints. Parts that move against each other ([`crate::rig_parts`]) never mix:
+//! side by side and fingers keep their own joints. Parts that move against each other ([`mod@crate::rig_parts`]) never mix:
 //! a triangle of a known part takes from that part alone; where parts are not known, those connected parts of the
 //! surface that nearly all lie on one take from that one.
 //!
