@@ -10,8 +10,7 @@ import { LIGHT_NAMES } from './lib/light_names.mjs';
 import { bakeOurs, makeGltfpacks } from './lib/make.mjs';
 import { countTriangles, findModels } from './lib/models.mjs';
 import { report } from './lib/report.mjs';
-import { inParallel } from './lib/run.mjs';
-import { Viewer } from './lib/viewer.mjs';
+import { sweep } from './lib/sweep.mjs';
 
 const USAGE = `usage: node compare.mjs FOLDER [options] [-- options of parbake bake]
 
@@ -93,22 +92,12 @@ async function compare() {
   };
   const models = chosen(await findModels(folder), values.models);
   if (models.length === 0) throw new Error(`${folder}: no sub-folder holds a .glb or .gltf`);
-  await mkdir(settings.out, { recursive: true });
-  const viewer = await Viewer.start(values.chromium);
-  const rows = new Array(models.length);
-  try {
-    await inParallel(models, whole(values, 'jobs', 1, 64), async (model, index) => {
-      rows[index] = await compareModel(model, settings, viewer);
-      const done = rows.filter(Boolean);
-      console.error(`${model.name}: ${done.length} of ${models.length}`);
-      // After each model, so that a run that is cut short leaves what it found.
-      const { markdown, json } = report(done, settings);
-      await writeFile(path.join(settings.out, 'compared.md'), markdown);
-      await writeFile(path.join(settings.out, 'compared.json'), JSON.stringify(json, null, 2));
-    });
-  } finally {
-    await viewer.close();
-  }
+  const rows = await sweep(
+    models,
+    { out: settings.out, name: 'compared', jobs: whole(values, 'jobs', 1, 64), chromium: values.chromium },
+    (model, viewer) => compareModel(model, settings, viewer),
+    (done) => report(done, settings),
+  );
   console.log(report(rows, settings).markdown);
 }
 

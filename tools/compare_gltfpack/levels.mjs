@@ -10,9 +10,9 @@ import { VIEWER_OPTIONS, UsageError, chosen, lightsOf, main, whole } from './lib
 import { levelsReport } from './lib/levels_report.mjs';
 import { makeGltfpacks, makeLevels } from './lib/make.mjs';
 import { findModels } from './lib/models.mjs';
-import { inParallel } from './lib/run.mjs';
+import { sweep } from './lib/sweep.mjs';
 import { mean } from './lib/table.mjs';
-import { Viewer, pictureSize } from './lib/viewer.mjs';
+import { pictureSize } from './lib/viewer.mjs';
 
 const USAGE = `usage: node levels.mjs FOLDER [options] [-- options of parbake lod]
 
@@ -106,21 +106,12 @@ async function compare() {
   };
   const models = chosen(await findModels(folder), values.models);
   if (models.length === 0) throw new Error(`${folder}: no sub-folder holds a .glb or .gltf`);
-  await mkdir(settings.out, { recursive: true });
-  const viewer = await Viewer.start(values.chromium);
-  const rows = [];
-  try {
-    await inParallel(models, 1, async (model) => {
-      rows.push(await compareModel(model, settings, viewer));
-      console.error(`${model.name}: ${rows.length} of ${models.length}`);
-      // After each model, so that a run that is cut short leaves what it found.
-      const { markdown, json } = levelsReport(rows, settings);
-      await writeFile(path.join(settings.out, 'levels.md'), markdown);
-      await writeFile(path.join(settings.out, 'levels.json'), JSON.stringify(json, null, 2));
-    });
-  } finally {
-    await viewer.close();
-  }
+  const rows = await sweep(
+    models,
+    { out: settings.out, name: 'levels', jobs: 1, chromium: values.chromium },
+    (model, viewer) => compareModel(model, settings, viewer),
+    (done) => levelsReport(done, settings),
+  );
   console.log(levelsReport(rows, settings).markdown);
 }
 

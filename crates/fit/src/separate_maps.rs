@@ -12,7 +12,7 @@ use crate::material_problem::MaterialProblem;
 use crate::membrane::Membrane;
 use crate::schedule::{Fitted, LossPoint, Move, Schedule, fit_maps};
 use parbake_image::{MapKind, MapSet};
-use parbake_progress::{Message, Watcher};
+use parbake_progress::{Portion, Watcher};
 use parbake_solve::conjugate_gradient::Effort;
 use parbake_views::chart_labels::Atlas;
 use parbake_views::material_sample::MaterialSample;
@@ -84,8 +84,9 @@ pub fn fit_separate_maps<K: Backend>(
     let mut fits = Vec::with_capacity(kinds.len());
     for (place, &kind) in kinds.iter().enumerate() {
         let problem = MaterialProblem::new(samples, atlas, [kind].into_iter());
-        let turn = Turn { watcher, place, of: kinds.len() };
-        fits.push(fit_maps(&problem, &start.only(kind), backend, srgb, &schedule.of(kind), &turn));
+        let share = |maps: usize| maps as f64 / kinds.len() as f64;
+        let own = Portion::new(watcher, share(place)..share(place + 1));
+        fits.push(fit_maps(&problem, &start.only(kind), backend, srgb, &schedule.of(kind), &own));
     }
     Fitted {
         losses: joined(&fits),
@@ -117,38 +118,13 @@ fn joined(fits: &[Fitted]) -> Vec<LossPoint> {
     points
 }
 
-/// One of several fits of equal length, to a watcher of them all.
-struct Turn<'a, W> {
-    watcher: &'a W,
-    place: usize,
-    of: usize,
-}
-
-impl<W: Watcher> Watcher for Turn<'_, W> {
-    fn message(&self, message: Message) {
-        self.watcher.message(match message {
-            Message::Progress { stage, done, total } => {
-                Message::Progress { stage, done: self.place * total + done, total: self.of * total }
-            }
-            other => other,
-        });
-    }
-
-    fn stopped(&self) -> bool {
-        self.watcher.stopped()
-    }
-
-    fn seconds_left(&self) -> Option<f64> {
-        self.watcher.seconds_left()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::backend::Cpu;
     use parbake_image::{FloatImage, MapValues};
     use parbake_model::glam::{Vec4, vec2};
+    use parbake_progress::Message;
     use std::sync::Mutex;
 
     const SIZE: usize = 8;

@@ -64,9 +64,7 @@ pub fn move_geometry<W: Watcher>(
         geometry.shape = Some(shape(&low.name, &mut low.mesh, high, plan, options.seed, &share)?);
         clock.lap(Stage::Shape);
     }
-    let mut placed = low.mesh.clone();
-    high.frame.apply(&mut placed);
-    let importances = importances_of(&placed, high);
+    let importances = importances_of(&low.mesh, high);
     if options.uv != UvMode::Keep {
         low.weigh_charts(&importances, &uv_options)?;
     }

@@ -102,11 +102,13 @@ pub fn importances(model: &Model, options: &[Importance]) -> Result<Vec<f32>, Ba
 const PLACES: [[f32; 3]; 4] =
     [[1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0], [0.6, 0.2, 0.2], [0.2, 0.6, 0.2], [0.2, 0.2, 0.6]];
 
-/// The weights of a low-poly's triangles, which lie in the common frame; empty where all count alike.
-pub fn importances_of(mesh: &Mesh, high: &HighPoly) -> Vec<f32> {
+/// The weight of each of a low-poly's triangles, which lie in the high-poly's own space; empty where all count alike.
+pub fn importances_of(low: &Mesh, high: &HighPoly) -> Vec<f32> {
     if high.importances.is_empty() {
         return Vec::new();
     }
+    let mut mesh = low.clone();
+    high.frame.apply(&mut mesh);
     let at = |triangle: usize, place: [f32; 3]| {
         let point = interpolate(mesh.corners(triangle), place);
         let hit =
