@@ -10,8 +10,8 @@
 //! with `node` the joint's node in the world. What stands still in a model of which other parts move has a joint that
 //! nothing moves.
 //!
-//! Contract ([`Rig::fault`] checks it): there are at most 65,536 joints; nodes come after their parents and have no more than one joint each; all
-//! indices are in range; weights of a vertex are not negative, sum to 1 and name no joint twice but with weight 0; all
+//! Contract ([`Rig::fault`] checks it): there are at most 65,536 joints; nodes come after their parents and have no more
+//! than one joint each; all indices are in range; weights of a vertex are not negative, sum to 1 and name no joint twice but with weight 0; all
 //! numbers are finite; times increase.
 
 use glam::{DAffine3, DQuat, DVec3, Vec3};

@@ -98,7 +98,7 @@ fn sources(before: &Mesh, after: &Mesh) -> Option<Vec<u32>> {
             *own = source;
         }
     }
-    // What no triangle uses moves as anything.
+    // Vertices that no triangle uses may move with any other.
     sources.iter_mut().filter(|source| **source == NONE).for_each(|source| *source = 0);
     Some(sources)
 }

@@ -1,7 +1,7 @@
 //! The smallest file that reaches a PSNR, over triangles × texels × maps, with few bakes.
 //!
-//! A bake is dear, and what can be made of it is cheap: its maps can be halved, or become factors, and the pictures of
-//! that be taken. So bakes are spent on triangles and on the largest texture, and each is followed by measured
+//! A bake takes seconds; variants of it are cheap: its maps can be halved, or become factors, and the result be
+//! rendered. So bakes are spent on triangles and on the largest texture, and each is followed by measured
 //! reductions of its maps. Errors add up:
 //!
 //! ```text
