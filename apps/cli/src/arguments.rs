@@ -351,7 +351,7 @@ pub enum DemoScene {
 /// Arguments of `variants`.
 #[derive(Args, Debug)]
 #[command(after_help = "Vertices and texture coordinates stay as they are, so that only the maps differ. \
-Only maps of spherical harmonics can be written to files, by bake --parallax sh. \
+Only coefficient maps can be written to files, by bake --parallax tangent or sh. \
 For the brick wall: parbake demo --scene wall, then its demo_high.glb and demo_low.glb.")]
 pub struct VariantsCommand {
     /// The high-poly: .obj, .gltf or .glb

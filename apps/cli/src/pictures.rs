@@ -35,7 +35,7 @@ pub fn write_pictures(path: &Path, pair: &Pair, baked: &Baked, console: &Console
     };
     let plain = BakeOptions { parallax: Parallax::None, ..own.clone() };
     let ray_cast = BakeOptions { uv: UvMode::Keep, shape: ShapeMode::Keep, rounds: Some(0), ..plain.clone() };
-    let maps = BakeOptions { parallax: Parallax::Sh, ..own.clone() };
+    let maps = BakeOptions { parallax: Parallax::Tangent, ..own.clone() };
     let lows = [ray_cast, plain, maps].map(with);
     let options = EvaluateOptions {
         resolution: SIDE,

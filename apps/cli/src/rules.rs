@@ -71,7 +71,11 @@ pub fn check(
     }
     if options.parallax == Parallax::None {
         let maps = ["parallax_order", "parallax_size", "no_cutout", "cutout_order", "cutout_size"];
-        refuse(&maps, "does nothing without --parallax sh; add that or leave it out")?;
+        refuse(&maps, "does nothing without --parallax; add --parallax tangent or leave it out")?;
+    }
+    if options.parallax == Parallax::Tangent {
+        let why = "is of spherical harmonics, and does nothing with --parallax tangent; leave it out";
+        refuse(&["parallax_order", "cutout_order"], why)?;
     }
     let of_cutout = ["cutout_order", "cutout_size"];
     if options.no_cutout {

@@ -70,7 +70,7 @@ pub(crate) fn check(path: &Path, model: &Model) -> Result<(), FileError> {
 mod tests {
     use super::*;
     use parbake_model::glam::Vec3;
-    use parbake_model::{Image, Mesh, ShParallaxMap, TextureSlot, UvTransform};
+    use parbake_model::{Image, Mesh, ParallaxMap, TextureSlot, UvTransform};
 
     fn turned(rotation: f32) -> Option<TextureSlot> {
         let transform = UvTransform { rotation, ..UvTransform::default() };
@@ -101,7 +101,7 @@ mod tests {
             |m| m.images[0].pixels.clear(),
             |m| m.materials[0].base_color_texture = turned(f32::NAN),
             |m| m.materials[0].emissive_texture = turned(f32::NAN),
-            |m| m.materials[0].parallax = Some(ShParallaxMap::default()),
+            |m| m.materials[0].parallax = Some(ParallaxMap::default()),
         ];
         let path = Path::new("out.glb");
         assert!(check(path, &good).is_ok());

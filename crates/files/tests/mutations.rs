@@ -14,7 +14,7 @@ use parbake_files::{
     read_obj_bytes,
 };
 use parbake_model::glam::{Vec2, Vec3, Vec4};
-use parbake_model::{CutoutMap, Image, Material, Mesh, Model, ShParallaxMap, TextureSlot};
+use parbake_model::{Basis, CutoutMap, Image, Material, Mesh, Model, ParallaxMap, TextureSlot};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -176,10 +176,11 @@ fn glb() -> Vec<u8> {
         triangle_materials: vec![0],
     };
     let base_color_texture = Some(TextureSlot::default());
-    let cutout = Some(CutoutMap { order: 0, images: vec![0], scale: vec![2.0], offset: vec![-1.0] });
-    let map = ShParallaxMap { images: vec![0], cutout, ..ShParallaxMap::default() };
+    let cutout =
+        Some(CutoutMap { basis: Basis::Harmonics(0), images: vec![0], scale: vec![2.0], offset: vec![-1.0] });
+    let map = ParallaxMap { images: vec![0], cutout, ..ParallaxMap::default() };
     let parallax =
-        Some(ShParallaxMap { scale: vec![0.5; 2], offset: vec![-0.1; 2], base_color_texture, ..map });
+        Some(ParallaxMap { scale: vec![0.5; 2], offset: vec![-0.1; 2], base_color_texture, ..map });
     let material = Material {
         base_color_texture,
         metallic: 0.5,

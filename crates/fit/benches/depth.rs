@@ -12,9 +12,9 @@ use parbake_fit::cutout::{CutoutOptions, examples, fit_cutout};
 use parbake_fit::parallax::{ParallaxOptions, State, fit_parallax};
 use parbake_image::display_table::DisplayTable;
 use parbake_image::{FloatImage, MapSet};
-use parbake_model::Mesh;
 use parbake_model::glam::Vec4;
-use parbake_render::parallax::ShParallax;
+use parbake_model::{Basis, Mesh};
+use parbake_render::parallax::ParallaxCoefficients;
 use parbake_render::shade::Lambert;
 use parbake_views::reference::Reference;
 use parbake_views::view_sample::sample_views;
@@ -43,9 +43,10 @@ fn looked_at<T>(views: &[Vec<T>], views_per_step: usize) -> ItemsCount {
 fn parallax(bencher: Bencher, order: usize, size: usize) {
     let (low, references) = &*SCENE;
     let views = sample_views(&sampler(low), references);
-    let options = ParallaxOptions { order, steps: STEPS, ..ParallaxOptions::default() };
+    let options =
+        ParallaxOptions { basis: Basis::Harmonics(order), steps: STEPS, ..ParallaxOptions::default() };
     let state = || State {
-        map: ShParallax::zeros(order, options.size),
+        map: ParallaxCoefficients::zeros(Basis::Harmonics(order), options.size),
         maps: MapSet::of(
             FloatImage::solid(size, Vec4::new(0.5, 0.5, 0.5, 0.0)),
             FloatImage::solid(size, Vec4::Z),
@@ -73,7 +74,7 @@ fn parallax_by_order(bencher: Bencher, order: usize) {
 #[divan::bench(args = [2, 4], sample_size = 1, sample_count = 9)]
 fn cutout(bencher: Bencher, order: usize) {
     let (low, references) = &*SCENE;
-    let options = CutoutOptions { order, steps: STEPS, ..CutoutOptions::default() };
+    let options = CutoutOptions { basis: Basis::Harmonics(order), steps: STEPS, ..CutoutOptions::default() };
     let views = examples(&sampler(low), references, options.size);
     bencher
         .counter(looked_at(&views, options.views_per_step))

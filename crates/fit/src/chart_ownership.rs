@@ -9,8 +9,7 @@
 //! not depend on the number of threads.
 
 use parbake_model::glam::Vec2;
-use parbake_render::parallax::{ShParallax, ViewDirection};
-use parbake_render::spherical_harmonics::functions;
+use parbake_render::parallax::{ParallaxCoefficients, ViewDirection};
 use parbake_views::chart_labels::{Atlas, NO_CHART};
 use parbake_views::view_sample::ViewSample;
 use rayon::prelude::*;
@@ -41,7 +40,7 @@ impl ChartOwnership {
 
     /// Whether a shift leads from one owner to another.
     #[inline]
-    fn strays(&self, map: &ShParallax, uv: Vec2, sight: &ViewDirection) -> bool {
+    fn strays(&self, map: &ParallaxCoefficients, uv: Vec2, sight: &ViewDirection) -> bool {
         self.owner(uv + map.shift(uv, sight)) != self.owner(uv)
     }
 }
@@ -56,10 +55,10 @@ const ROUNDS: usize = 32;
 pub fn clamp_to_chart(
     views: &[Vec<ViewSample>],
     chart_ownership: &ChartOwnership,
-    map: &mut ShParallax,
+    map: &mut ParallaxCoefficients,
 ) -> [f64; 2] {
     let (first, mut stray) = strays(views, chart_ownership, map);
-    let count = functions(map.order);
+    let count = map.basis.count();
     for _ in 0..ROUNDS {
         stray.retain(|(uv, sight)| chart_ownership.strays(map, *uv, sight));
         if stray.is_empty() {
@@ -81,7 +80,7 @@ pub fn clamp_to_chart(
 fn strays(
     views: &[Vec<ViewSample>],
     chart_ownership: &ChartOwnership,
-    map: &ShParallax,
+    map: &ParallaxCoefficients,
 ) -> (f64, Vec<(Vec2, ViewDirection)>) {
     let stray: Vec<(Vec2, ViewDirection)> = (views.par_iter())
         .flat_map_iter(|view| {
@@ -96,6 +95,7 @@ fn strays(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use parbake_model::Basis;
     use parbake_model::glam::Vec3;
 
     /// Protects other charts' colours: a border is seen, and so is the texture's edge.
@@ -103,7 +103,7 @@ mod tests {
     fn shifts_across_a_border_stray() {
         let label = (0..16).map(|i| u32::from(i % 4 >= 2)).collect();
         let chart_ownership = ChartOwnership::new(&Atlas { size: 4, label, covered: vec![true; 16] });
-        let mut map = ShParallax::zeros(0, 1);
+        let mut map = ParallaxCoefficients::zeros(Basis::Harmonics(0), 1);
         let sight = ViewDirection { direction: Vec3::Z, cosine: 1.0 };
         let mut strays = |x: f32, from: f32| {
             map.coefficients[0] = Vec2::new(x / 0.282_094_8, 0.0);
@@ -119,7 +119,7 @@ mod tests {
     fn crossing_shifts_shrink_and_others_stay() {
         let label = (0..64).map(|i| u32::from(i % 8 >= 4)).collect();
         let chart_ownership = ChartOwnership::new(&Atlas { size: 8, label, covered: vec![true; 64] });
-        let mut map = ShParallax::zeros(0, 8);
+        let mut map = ParallaxCoefficients::zeros(Basis::Harmonics(0), 8);
         map.coefficients.fill(Vec2::new(0.05, 0.0));
         let before = map.clone();
         // Seen at a grazing angle, where a coefficient of 0.05 shifts by 0.056: only the last one crosses.

@@ -1,4 +1,4 @@
-//! The fit of an SH cutout (`parbake_render::cutout`): from where each point of the low-poly
+//! The fit of a cutout (`parbake_render::cutout`): from where each point of the low-poly
 //! is to be left out, because the high-poly is not there.
 //!
 //! Every pixel of the training views gives examples: where the high-poly fills it, the
@@ -12,10 +12,10 @@
 //! of threads.
 
 use parbake_image::pyramid::taps;
-use parbake_model::Wrap;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
+use parbake_model::{Basis, Wrap};
 use parbake_progress::{Stage, Watcher};
-use parbake_render::cutout::ShCutout;
+use parbake_render::cutout::CutoutCoefficients;
 use parbake_solve::adam::{Adam, AdamOptions};
 use parbake_solve::thin_plate::ThinPlate;
 use parbake_views::reference::Reference;
@@ -25,15 +25,15 @@ use rayon::prelude::*;
 /// How a cutout is fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutoutOptions {
-    /// Highest order of the functions, 0 to 7.
-    pub order: usize,
+    /// The functions whose coefficients are fitted: harmonics, or [`Basis::TangentCutout`].
+    pub basis: Basis,
     /// Texels along a side of the map.
     pub size: usize,
     /// Steps of Adam.
     pub steps: usize,
     /// Views that a step looks at.
     pub views_per_step: usize,
-    /// About how far a coefficient moves in a step; an opaque texel's first one is 3.5.
+    /// About how far a coefficient moves in a step; an opaque texel's first one is 1, of harmonics 3.5.
     pub rate: f32,
     /// How much neighbouring texels are alike, as a share of the mean pull on a texel of those
     /// examples that are wrong to begin with: a little makes outlines smooth that many maps
@@ -47,7 +47,15 @@ pub struct CutoutOptions {
 
 impl Default for CutoutOptions {
     fn default() -> Self {
-        Self { order: 4, size: 64, steps: 200, views_per_step: 24, rate: 0.3, stiffness: 0.01, bending: 0.01 }
+        Self {
+            basis: Basis::TangentCutout,
+            size: 64,
+            steps: 200,
+            views_per_step: 24,
+            rate: 0.4,
+            stiffness: 0.01,
+            bending: 0.01,
+        }
     }
 }
 
@@ -107,7 +115,7 @@ fn wanted(views: &[Vec<Example>], size: usize) -> Vec<bool> {
 }
 
 /// Adds half the gradient of the examples' loss.
-fn add_view(examples: &[Example], map: &ShCutout, into: &mut [f32]) {
+fn add_view(examples: &[Example], map: &CutoutCoefficients, into: &mut [f32]) {
     for example in examples {
         let direction = example.direction();
         let side = if example.opaque { 1.0 } else { -1.0 };
@@ -119,7 +127,7 @@ fn add_view(examples: &[Example], map: &ShCutout, into: &mut [f32]) {
 }
 
 /// Adds the gradient of `½ stiffness Σ |Oᵢ − Oⱼ|²` over side neighbours that both have a say.
-fn add_membrane(map: &ShCutout, wanted: &[bool], stiffness: f32, gradient: &mut [f32]) {
+fn add_membrane(map: &CutoutCoefficients, wanted: &[bool], stiffness: f32, gradient: &mut [f32]) {
     let (width, count) = (map.width, map.coefficients.len() / wanted.len());
     let of = |texel: usize| &map.coefficients[texel * count..(texel + 1) * count];
     gradient.par_chunks_mut(count).enumerate().filter(|(i, _)| wanted[*i]).for_each(|(i, into)| {
@@ -149,8 +157,8 @@ pub fn fit_cutout(
     views: &[Vec<Example>],
     options: &CutoutOptions,
     watcher: &impl Watcher,
-) -> (ShCutout, [f64; 2]) {
-    let mut map = ShCutout::opaque(options.order, options.size);
+) -> (CutoutCoefficients, [f64; 2]) {
+    let mut map = CutoutCoefficients::opaque(options.basis, options.size);
     let before = wrong(views, &map);
     let lanes = |values: &[f32]| -> Vec<Vec4> {
         let four = |c: &[f32]| Vec4::from(std::array::from_fn(|k| c.get(k).copied().unwrap_or(0.0)));
@@ -198,7 +206,7 @@ pub fn fit_cutout(
 }
 
 /// Share of the examples whose opacity has the wrong sign.
-fn wrong(views: &[Vec<Example>], map: &ShCutout) -> f64 {
+fn wrong(views: &[Vec<Example>], map: &CutoutCoefficients) -> f64 {
     let count = |view: &Vec<Example>| {
         view.iter().filter(|e| (map.opacity(e.uv, e.direction()) >= 0.0) != e.opaque).count()
     };
@@ -235,10 +243,10 @@ mod tests {
     /// say, which it must not move.
     #[test]
     fn the_membranes_gradient_is_its_energys() {
-        let mut map = ShCutout::opaque(1, 3);
+        let mut map = CutoutCoefficients::opaque(Basis::Harmonics(1), 3);
         map.coefficients.iter_mut().enumerate().for_each(|(i, c)| *c += ((7 * i) % 11) as f32 * 0.1);
         let wanted: Vec<bool> = (0..9).map(|i| i != 4).collect();
-        let energy = |map: &ShCutout| {
+        let energy = |map: &CutoutCoefficients| {
             let square = |i: usize, j: usize| -> f32 {
                 (0..4).map(|k| (map.coefficients[4 * i + k] - map.coefficients[4 * j + k]).powi(2)).sum()
             };

@@ -19,9 +19,10 @@ use crate::texels::{BAND, Texels, gather};
 use crate::view_gradient::Sums;
 use parbake_image::MapSet;
 use parbake_image::display_table::DisplayTable;
+use parbake_model::Basis;
 use parbake_model::glam::Vec4;
 use parbake_progress::{Stage, Watcher};
-use parbake_render::parallax::ShParallax;
+use parbake_render::parallax::ParallaxCoefficients;
 use parbake_render::parallax_variants::shift_map::ShiftMap;
 use parbake_render::shade::Brdf;
 use parbake_solve::adam::{Adam, AdamOptions, rate_at};
@@ -32,8 +33,8 @@ use rayon::prelude::*;
 /// How the map is fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParallaxOptions {
-    /// Highest order of the functions, 0 to 7.
-    pub order: usize,
+    /// The functions whose coefficients are fitted: harmonics, or [`Basis::TangentShift`].
+    pub basis: Basis,
     /// Texels along a side of the coefficient map.
     pub size: usize,
     /// Steps of Adam.
@@ -57,7 +58,7 @@ pub struct ParallaxOptions {
 impl Default for ParallaxOptions {
     fn default() -> Self {
         Self {
-            order: 2,
+            basis: Basis::TangentShift,
             size: 64,
             steps: 240,
             views_per_step: 12,
@@ -71,7 +72,7 @@ impl Default for ParallaxOptions {
 
 /// What moves together.
 #[derive(Clone, Debug)]
-pub struct State<M = ShParallax> {
+pub struct State<M = ParallaxCoefficients> {
     /// The parallax map.
     pub map: M,
     /// The material's maps, at least one.

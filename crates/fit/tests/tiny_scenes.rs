@@ -15,11 +15,11 @@ use parbake_image::display::{Curve, Display};
 use parbake_image::display_table::DisplayTable;
 use parbake_image::quantise::to_image;
 use parbake_model::glam::{Vec2, Vec3};
-use parbake_model::{Image, Material, Mesh, Model, TextureSlot};
+use parbake_model::{Basis, Image, Material, Mesh, Model, TextureSlot};
 use parbake_progress::{Message, Watcher};
 use parbake_render::camera::Projection;
 use parbake_render::interpretation::Interpretation;
-use parbake_render::parallax::{ShParallax, ViewDirection};
+use parbake_render::parallax::{ParallaxCoefficients, ViewDirection};
 use parbake_render::shade::Lambert;
 use parbake_views::high_poly::{Conventions, HighPoly, ViewSet};
 use parbake_views::low_poly::LowPoly;
@@ -111,7 +111,7 @@ impl Scene {
 
 fn plan(cutout: Option<CutoutOptions>, steps: usize) -> ParallaxPlan {
     let pass = |steps| ParallaxPass { texture_size: TEXELS, steps, rate: 2e-3 };
-    let parallax = ParallaxOptions { order: 2, size: 8, views_per_step: 8, ..ParallaxOptions::default() };
+    let parallax = ParallaxOptions { size: 8, views_per_step: 8, ..ParallaxOptions::default() };
     ParallaxPlan { views: 64, cutout, parallax, passes: [pass(steps), pass(0), pass(0)] }
 }
 
@@ -153,8 +153,7 @@ fn shifts_show_what_lies_deeper() {
 #[test]
 fn what_stands_out_is_cut() {
     let scene = Scene::new(&square("high", 0.7, 0.0), square("low", 1.0, 0.0), 32);
-    let options =
-        CutoutOptions { order: 1, size: 16, steps: 60, views_per_step: 8, ..CutoutOptions::default() };
+    let options = CutoutOptions { size: 16, steps: 60, views_per_step: 8, ..CutoutOptions::default() };
     let fitted = scene.parallax_maps(&plan(Some(options), 0));
     let [before, after] = fitted.report.unwrap().misplaced.unwrap();
     assert!(before > 0.3 && after < 0.2 * before, "{before} {after}");
@@ -174,7 +173,7 @@ fn a_views_gradient_is_its_losss() {
     let scene = sunken();
     let views = sample_views(&scene.sampler(), &scene.references[..2]);
     let display = DisplayTable::new(&DISPLAY);
-    let mut map = ShParallax::zeros(1, 4);
+    let mut map = ParallaxCoefficients::zeros(Basis::Harmonics(1), 4);
     map.coefficients.iter_mut().enumerate().for_each(|(i, c)| {
         *c = Vec2::new(((7 * i) % 11) as f32 - 5.0, ((5 * i) % 13) as f32 - 6.0) * 1e-3;
     });

@@ -1,23 +1,21 @@
-//! SH cutouts as a file holds them: 8-bit images of the opacity's coefficients, and what
-//! turns their numbers back. `docs/parallax_format.md` is the format, the renderer's
-//! `cutout.rs` the formula.
+//! Cutouts as a file holds them: 8-bit images of the opacity's coefficients, and what
+//! turns their numbers back. The renderer's `cutout.rs` is the formula.
 //!
-//! Packing: the coefficients o₀, o₁, … (one for each function k = l² + l + m) are the
-//! channels c = 0, 1, …; channel c is component c mod 3 (R, G, B) of image ⌊c / 3⌋. Its
-//! value is `offset[c] + scale[c] · stored / 255`. Components after the last channel are 0.
+//! The coefficients o₀, o₁, … (one for each function of the [`Basis`]) are the channels c = 0, 1, …, packed as
+//! those of a [`ParallaxMap`](crate::ParallaxMap) are.
 
-use crate::Image;
 use crate::parallax_fault::{Coefficients, ParallaxFault, check_images};
+use crate::{Basis, Image};
 
-/// From where a surface is not there: a part of a [`ShParallaxMap`](crate::ShParallaxMap),
+/// From where a surface is not there: a part of a [`ParallaxMap`](crate::ParallaxMap),
 /// whose wrap modes go for it too.
 ///
 /// Contract: [`CutoutMap::check`] finds no fault.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CutoutMap {
-    /// Highest order of the functions, 0 to 7.
-    pub order: usize,
-    /// Indices into `Model::images`, as many as [`CutoutMap::image_count`] says, all of one
+    /// The functions: harmonics, or [`Basis::TangentCutout`].
+    pub basis: Basis,
+    /// Indices into `Model::images`, as many as the basis says, all of one
     /// size, which need not be that of the parallax map's.
     pub images: Vec<usize>,
     /// What a channel's values span; finite, one for each channel.
@@ -27,23 +25,16 @@ pub struct CutoutMap {
 }
 
 impl CutoutMap {
-    /// Channels of a cutout of this order: one for each of (order + 1)² functions.
-    pub const fn channel_count(order: usize) -> usize {
-        (order + 1) * (order + 1)
-    }
-
-    /// Images of a cutout of this order: three channels each.
-    pub const fn image_count(order: usize) -> usize {
-        Self::channel_count(order).div_ceil(3)
-    }
-
-    /// Whether order, counts and numbers keep the contract.
+    /// Whether basis, counts and numbers keep the contract.
     ///
     /// # Errors
     /// The first fault.
     pub fn check_numbers(&self) -> Result<(), ParallaxFault> {
-        let Self { order, images, scale, offset } = self;
-        Coefficients { order: *order, images, scale, offset }.check_numbers(Self::channel_count)
+        let Self { basis, images, scale, offset } = self;
+        if *basis == Basis::TangentShift {
+            return Err(ParallaxFault::Basis);
+        }
+        Coefficients { basis: *basis, images, scale, offset }.check_numbers(Basis::count)
     }
 
     /// Whether the cutout keeps its contract, given the model's images.
@@ -52,6 +43,6 @@ impl CutoutMap {
     /// The first fault.
     pub fn check(&self, images: &[Image]) -> Result<(), ParallaxFault> {
         self.check_numbers()?;
-        check_images(&self.images, images)
+        check_images(&self.images, images, self.basis.layers(self.basis.count()))
     }
 }

@@ -8,6 +8,7 @@
 //!   texel of the first row, `v` grows downwards (OBJ's are flipped on reading);
 //! * images are 8-bit RGBA, row 0 on top.
 
+mod basis;
 mod cutout;
 mod image;
 mod material;
@@ -19,6 +20,7 @@ mod placement;
 mod rig;
 mod short_uv;
 
+pub use basis::Basis;
 pub use cutout::CutoutMap;
 pub use glam;
 pub use image::Image;
@@ -28,7 +30,7 @@ pub use material_extensions::{
     Transmission, Volume,
 };
 pub use mesh::Mesh;
-pub use parallax::{DepthMap, ShParallaxMap};
+pub use parallax::{DepthMap, ParallaxMap};
 pub use parallax_fault::ParallaxFault;
 pub use placement::{Bounds, Placement};
 pub use rig::{
@@ -40,7 +42,7 @@ pub use short_uv::{is_short, nearest_short, short_uv, short_uvs_pay};
 /// A textured model: one mesh, and what its triangles' materials name.
 ///
 /// Contract: every `Mesh::triangle_materials` entry indexes `materials`, and
-/// every [`TextureSlot::image`] indexes `images`; every [`ShParallaxMap`] passes its
+/// every [`TextureSlot::image`] indexes `images`; every [`ParallaxMap`] passes its
 /// check; a [`Rig`] fits the mesh. There is at least one material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {

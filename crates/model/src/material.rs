@@ -4,7 +4,7 @@
 //!
 //! Files carry all of it. What the renderer and the fit use of it is said there.
 
-use crate::{MaterialExtensions, ShParallaxMap};
+use crate::{MaterialExtensions, ParallaxMap};
 use glam::Vec2;
 
 /// What happens to texture coordinates outside `[0, 1)`.
@@ -121,7 +121,7 @@ pub struct Material {
     /// Whether the base colour is shown as it is, without lights (`KHR_materials_unlit`).
     pub unlit: bool,
     /// Shifts of the texture coordinates with the direction of view, and what is cut out.
-    pub parallax: Option<ShParallaxMap>,
+    pub parallax: Option<ParallaxMap>,
     /// What extensions say beyond all this; bakes project it and do not fit it.
     pub extensions: MaterialExtensions,
 }
@@ -172,7 +172,8 @@ impl Material {
     pub fn has_normal_map(&self) -> bool {
         let own = self.parallax.as_ref().is_some_and(|p| p.normal_texture.is_some());
         let clearcoat = self.extensions.clearcoat.is_some_and(|c| c.normal_texture.is_some());
-        self.normal_texture.is_some() || own || clearcoat || self.extensions.anisotropy.is_some()
+        let turns = self.parallax.as_ref().is_some_and(|p| p.basis.is_tangent());
+        self.normal_texture.is_some() || own || turns || clearcoat || self.extensions.anisotropy.is_some()
     }
 }
 

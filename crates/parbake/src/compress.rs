@@ -53,7 +53,11 @@ const BRIGHTENED: f32 = 0.5;
 pub fn compress(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<Baked, BakeError> {
     if options.parallax != Parallax::None {
         let (option, range) = ("parallax", "none where a model is compressed: its surface stays".into());
-        return Err(BakeError::Option { option, value: "sh".into(), range });
+        return Err(BakeError::Option {
+            option,
+            value: format!("{:?}", options.parallax).to_lowercase(),
+            range,
+        });
     }
     options.check()?;
     check_budget(options)?;

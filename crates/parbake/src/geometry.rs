@@ -15,7 +15,7 @@ use crate::options::{BakeOptions, UvMode};
 use crate::report::Work;
 use parbake_model::Model;
 use parbake_progress::{Clock, ProgressScope, Stage, Watcher};
-use parbake_render::parallax::ShParallax;
+use parbake_render::parallax::ParallaxCoefficients;
 use parbake_shape::paper_joint_fit::paper_joint_fit;
 use parbake_shape::stage::{ShapeReport, shape};
 use parbake_uv::surface::{Source, UvStageResult, optimise_uvs, repair_uvs_with_room};
@@ -29,7 +29,7 @@ pub struct Geometry {
     /// How vertices moved, where they did.
     pub shape: Option<ShapeReport>,
     /// The map of the paper's method, where it was asked for.
-    pub map: Option<ShParallax>,
+    pub map: Option<ParallaxCoefficients>,
 }
 
 /// Moves what the options ask for of a low-poly. One that is compressed is the high-poly itself, whose

@@ -115,8 +115,11 @@ pub enum Parallax {
     /// No maps: plain glTF.
     #[default]
     None,
-    /// A parallax map and a cutout of spherical harmonics in a material extension
-    /// (docs/parallax_format.md).
+    /// A parallax map and a cutout in the tangent frame: two textures and five fetches more than plain glTF, in the
+    /// material extension PARBAKE_materials_parallax (docs/parallax_format.md).
+    Tangent,
+    /// The paper's: spherical harmonics in the mesh's axes, in PARBAKE_materials_parallax_sh
+    /// (docs/parallax_sh_format.md); for research.
     Sh,
 }
 
@@ -196,7 +199,7 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "ORDER", default_value_t = 2, help_heading = heading::PARALLAX))]
     pub parallax_order: usize,
 
-    /// Fit no cutout (view-dependent opacity mask): outlines stay those of the triangles; needs --parallax sh
+    /// Fit no cutout (view-dependent opacity mask): outlines stay those of the triangles; needs --parallax
     #[cfg_attr(feature = "clap", arg(long, help_heading = heading::PARALLAX))]
     pub no_cutout: bool,
 
@@ -204,18 +207,18 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "ORDER", default_value_t = 4, help_heading = heading::PARALLAX))]
     pub cutout_order: usize,
 
-    /// Side of the cutout map in texels, 4 to 1024; needs --parallax sh
+    /// Side of the cutout map in texels, 4 to 1024; needs --parallax
     #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 128, value_parser = parse_texels, help_heading = heading::PARALLAX))]
     #[serde(deserialize_with = "texels")]
     pub cutout_size: usize,
 
-    /// Side of the parallax map in texels, 4 to 1024; needs --parallax sh
+    /// Side of the parallax map in texels, 4 to 1024; needs --parallax
     #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 64, value_parser = parse_texels, help_heading = heading::PARALLAX))]
     #[serde(deserialize_with = "texels")]
     pub parallax_size: usize,
 
     /// Padding between charts (UV islands) in texels, 0 to 64 [default: texture size / 256, at least 1, at most 8;
-    /// with --parallax sh and few charts two texels of the parallax map]
+    /// with --parallax and few charts two texels of the parallax map]
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "TEXELS", help_heading = heading::UV))]
     pub gutter: Option<f64>,
 
@@ -306,7 +309,7 @@ pub struct BakeOptions {
     pub no_content_aware: bool,
 
     /// Scale of the robust (Cauchy) loss of the texture solve, in display units, 0.01 to 1000. Lower it if
-    /// surfaces look mottled; 1000 is least squares [default: 1, with --parallax sh 0.5, with --method paper 1000]
+    /// surfaces look mottled; 1000 is least squares [default: 1, with --parallax 0.5, with --method paper 1000]
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "DIFFERENCE", help_heading = heading::RESEARCH))]
     pub robust_scale: Option<f32>,
 }
@@ -391,6 +394,10 @@ impl BakeOptions {
         within("time-budget", self.time_budget.unwrap_or(0.0), 0.0, 1e9)?;
         within("texture-quality", f64::from(self.write.texture_quality), 1.0, 100.0)?;
         check_shading(self.shading, self.convention)?;
+        if self.parallax == Parallax::Tangent && self.method == Method::Paper {
+            let range = "none or sh with --method paper".into();
+            return Err(BakeError::Option { option: "parallax", value: "tangent".into(), range });
+        }
         if self.shape == ShapeMode::Laplacian && self.method == Method::Paper {
             let range = "keep or normal with --method paper".into();
             return Err(BakeError::Option { option: "shape", value: "laplacian".into(), range });
@@ -459,6 +466,7 @@ mod tests {
         let own = BakeOptions::default;
         assert_eq!(scale(own()), 1.0);
         assert_eq!(scale(BakeOptions { parallax: Parallax::Sh, ..own() }), 0.5);
+        assert_eq!(scale(BakeOptions { parallax: Parallax::Tangent, ..own() }), 0.5);
         assert_eq!(scale(BakeOptions { parallax: Parallax::Sh, method: Method::Paper, ..own() }), 1000.0);
         assert_eq!(scale(BakeOptions { parallax: Parallax::Sh, robust_scale: Some(0.2), ..own() }), 0.2);
         assert!(BakeOptions { robust_scale: Some(0.0), ..own() }.check().is_err());

@@ -8,6 +8,7 @@ use parbake_fit::parallax::ParallaxOptions;
 use parbake_fit::parallax_maps::{ParallaxPass, ParallaxPlan};
 use parbake_fit::schedule::Schedule;
 use parbake_fit::separate_maps::SeparateSchedule;
+use parbake_model::Basis;
 use parbake_shape::paper::PaperOptions as PaperJointOptions;
 use parbake_shape::paper_joint_fit::PaperJointPlan;
 use parbake_shape::stage::ShapePlan;
@@ -113,16 +114,23 @@ impl BakeOptions {
             steps,
             rate,
         };
-        (self.parallax == Parallax::Sh && self.method == Method::Fit).then_some(ParallaxPlan {
+        let (of_shift, of_cutout, cutout_rate) = match self.parallax {
+            Parallax::None => return None,
+            Parallax::Tangent => (Basis::TangentShift, Basis::TangentCutout, CutoutOptions::default().rate),
+            // A step of harmonics moves the opacity less: their first function is 0.28.
+            Parallax::Sh => (Basis::Harmonics(self.parallax_order), Basis::Harmonics(self.cutout_order), 0.3),
+        };
+        (self.method == Method::Fit).then_some(ParallaxPlan {
             // What cannot be stopped half-way costs by the view.
             views: if self.time_budget.is_some() { views.min(HURRIED_VIEWS) } else { views },
             cutout: (!self.no_cutout).then_some(CutoutOptions {
-                order: self.cutout_order,
+                basis: of_cutout,
+                rate: cutout_rate,
                 size: self.cutout_size,
                 steps: cutout_steps,
                 ..CutoutOptions::default()
             }),
-            parallax: ParallaxOptions { order: self.parallax_order, size: self.parallax_size, ..own },
+            parallax: ParallaxOptions { basis: of_shift, size: self.parallax_size, ..own },
             // A texel is half as wide in each pass as in the one before; the rate falls faster,
             // for less is left to be moved.
             passes: [
@@ -135,7 +143,7 @@ impl BakeOptions {
 
     /// Whether the low-poly is cut at the high-poly's silhouettes.
     fn cuts(&self) -> bool {
-        self.parallax == Parallax::Sh && self.method == Method::Fit && !self.no_cutout
+        self.parallax != Parallax::None && self.method == Method::Fit && !self.no_cutout
     }
 
     /// The paper's optimiser for vertices and parallax; none where neither is asked for.
@@ -176,7 +184,7 @@ impl BakeOptions {
     fn robust_scale(&self) -> f32 {
         let own = match (self.method, self.parallax) {
             (Method::Paper, _) => 1000.0,
-            (Method::Fit, Parallax::Sh) => 0.5,
+            (Method::Fit, Parallax::Tangent | Parallax::Sh) => 0.5,
             (Method::Fit, Parallax::None) => 1.0,
         };
         self.robust_scale.unwrap_or(own)

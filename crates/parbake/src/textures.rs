@@ -18,7 +18,8 @@ use parbake_image::quantise::from_image;
 use parbake_model::Model;
 use parbake_model::glam::{Vec2, Vec3};
 use parbake_progress::{Clock, ProgressScope, Stage, Watcher};
-use parbake_render::parallax::{ShParallax, ViewDirection};
+use parbake_render::directions::{VertexFrame, sight};
+use parbake_render::parallax::ParallaxCoefficients;
 use parbake_render::shade::Lambert;
 use parbake_views::alpha_layers::{LayerKind, alpha_layers};
 use parbake_views::high_poly::{Conventions, ViewSet};
@@ -55,7 +56,7 @@ pub(crate) struct Subject<'a> {
 pub(crate) fn fit_views<W: Watcher>(
     order: &Order,
     subject: Subject,
-    given: Option<ShParallax>,
+    given: Option<ParallaxCoefficients>,
     scope: &ProgressScope<W>,
     clock: &mut Clock,
 ) -> Result<FittedTextures, BakeError> {
@@ -71,7 +72,10 @@ pub(crate) fn fit_views<W: Watcher>(
         (!whole || parallax_plan.is_some()).then(|| high.references(&set, &scope.share(shares::REFERENCE)));
     clock.lap(Stage::Reference);
 
-    let sampler = ViewSampler::new(placed, plan.reference.size, &display, options.beyond());
+    let mut sampler = ViewSampler::new(placed, plan.reference.size, &display, options.beyond());
+    if let Some(plan) = &parallax_plan {
+        sampler = sampler.in_basis(plan.parallax.basis);
+    }
     let parallax = match (parallax_plan, &references) {
         (Some(plan), Some(references)) => {
             let share = scope.share(shares::PARALLAX);
@@ -137,10 +141,10 @@ pub(crate) fn fit_views<W: Watcher>(
 }
 
 /// Where a point's maps are fetched, seen along a direction; none where it is cut out.
-fn shift_of(maps: &ParallaxMaps) -> impl Fn(Vec2, Vec3, Vec3) -> Option<Vec2> + Sync + '_ {
-    move |uv, direction, normal| {
-        let is_cut = maps.cutout.as_ref().is_some_and(|cutout| cutout.opacity(uv, direction) < 0.0);
-        let cosine = normal.normalize_or_zero().dot(direction);
-        (!is_cut).then(|| uv + maps.parallax.shift(uv, &ViewDirection { direction, cosine }))
+fn shift_of(maps: &ParallaxMaps) -> impl Fn(Vec2, Vec3, &VertexFrame) -> Option<Vec2> + Sync + '_ {
+    move |uv, to_viewer, frame| {
+        let sight = sight(maps.parallax.basis, frame, to_viewer);
+        let is_cut = maps.cutout.as_ref().is_some_and(|cutout| cutout.opacity(uv, sight.direction) < 0.0);
+        (!is_cut).then(|| uv + maps.parallax.shift(uv, &sight))
     }
 }

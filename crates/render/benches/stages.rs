@@ -20,14 +20,14 @@ use parbake_image::pyramid::Pyramid;
 use parbake_render::antialias::{Blends, find_blends};
 use parbake_render::background::{Background, Composer};
 use parbake_render::camera::{Camera, Projection};
-use parbake_render::cutout::ShCutout;
+use parbake_render::cutout::CutoutCoefficients;
 use parbake_render::edges::EdgeAdjacency;
 use parbake_render::frame::{TangentLight, tangent_light, tangent_light_adjoint};
 use parbake_render::interpolate::{
     Barycentrics, barycentrics, barycentrics_adjoint, footprint_adjoint, interpolate,
 };
 use parbake_render::loss::{Comparison, ImageLoss, Reference, compare};
-use parbake_render::parallax::{ShParallax, ViewDirection};
+use parbake_render::parallax::{ParallaxCoefficients, ViewDirection};
 use parbake_render::pipeline::{self, Gradients, View};
 use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 use parbake_render::scatter::{Fetch, Scatter};
@@ -270,7 +270,7 @@ fn sights(b: &Bench) -> Vec<(Vec2, ViewDirection)> {
 #[divan::bench(args = [0, 1, 2, 3, 4, 5, 6, 7])]
 fn parallax_forward(bencher: Bencher, order: usize) {
     let b = Bench::new();
-    let (map, sights) = (ShParallax::zeros(order, 64), sights(&b));
+    let (map, sights) = (ParallaxCoefficients::zeros(parbake_model::Basis::Harmonics(order), 64), sights(&b));
     bencher.counter(b.pixels()).bench_local(|| {
         for (uv, sight) in &sights {
             black_box(map.shift(*uv, sight));
@@ -281,7 +281,7 @@ fn parallax_forward(bencher: Bencher, order: usize) {
 #[divan::bench(args = [0, 1, 2, 3, 4, 5, 6, 7])]
 fn parallax_adjoint(bencher: Bencher, order: usize) {
     let b = Bench::new();
-    let (map, sights) = (ShParallax::zeros(order, 64), sights(&b));
+    let (map, sights) = (ParallaxCoefficients::zeros(parbake_model::Basis::Harmonics(order), 64), sights(&b));
     let mut into = map.zeros_like();
     bencher.counter(b.pixels()).bench_local(|| {
         for (uv, sight) in &sights {
@@ -293,7 +293,7 @@ fn parallax_adjoint(bencher: Bencher, order: usize) {
 #[divan::bench(args = [0, 1, 2, 3])]
 fn cutout_forward(bencher: Bencher, order: usize) {
     let b = Bench::new();
-    let (map, sights) = (ShCutout::opaque(order, 128), sights(&b));
+    let (map, sights) = (CutoutCoefficients::opaque(parbake_model::Basis::Harmonics(order), 128), sights(&b));
     bencher.counter(b.pixels()).bench_local(|| {
         for (uv, sight) in &sights {
             black_box(map.opacity(*uv, sight.direction));

@@ -1,5 +1,5 @@
-//! Channels of numbers to and from images of 8 bits a channel, three an image: channel c is
-//! component c mod 3 (R, G, B) of image ⌊c / 3⌋. What parallax maps and cutouts are kept in.
+//! Channels of numbers to and from images of 8 bits a channel, packed as a [`Basis`] says: three an image, or
+//! four in each layer of one image. What parallax maps and cutouts are kept in.
 //!
 //! Forward (pack): `stored = round(255 (value − offset) / scale)`. A channel spans its least
 //! to its greatest value; one that has a single value has scale 0 and stores 0. Back
@@ -9,7 +9,7 @@
 //! floats. Values are finite, and so is their span; where they are not, the checks of the
 //! maps refuse what comes of them.
 
-use parbake_model::Image;
+use parbake_model::{Basis, Image};
 
 /// What the stored numbers of a channel stand for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,39 +60,50 @@ impl Span {
 /// Adds the images of these channels, all of one size, to `images` and returns their places.
 /// `value` is asked with a texel and a channel, `name` with the number of an image.
 pub(crate) fn pack(
+    basis: Basis,
     spans: &[Span],
     [width, height]: [usize; 2],
     name: impl Fn(usize) -> String,
     images: &mut Vec<Image>,
     value: impl Fn(usize, usize) -> f32,
 ) -> Vec<usize> {
-    let first = images.len();
-    for (i, three) in spans.chunks(3).enumerate() {
+    let (first, side_by_side) = (images.len(), basis.channels_of_image());
+    let layers = spans.chunks(side_by_side).enumerate().map(|(layer, of_layer)| {
         let texel = |texel: usize| {
             let mut pixel = [0, 0, 0, 255];
-            for (k, span) in three.iter().enumerate() {
-                pixel[k] = span.stored(value(texel, 3 * i + k));
+            for (k, span) in of_layer.iter().enumerate() {
+                pixel[k] = span.stored(value(texel, side_by_side * layer + k));
             }
             pixel
         };
-        let pixels = (0..width * height).map(texel).collect();
-        images.push(Image { name: name(i), width, height, pixels });
+        (0..width * height).map(texel).collect::<Vec<_>>()
+    });
+    let mut image = |pixels: Vec<[u8; 4]>| {
+        let name = name(images.len() - first);
+        images.push(Image { name, width, height: pixels.len() / width.max(1), pixels });
+    };
+    match basis.is_tangent() {
+        true => image(layers.flatten().collect()),
+        false => layers.for_each(image),
     }
     (first..images.len()).collect()
 }
 
-/// Hands over all values of the channels in these images: texel, channel, value.
-///
-/// There must be an image for every three channels.
+/// Hands over all values of the channels in these images, which hold them as the basis says: texel, channel,
+/// value. `texels` is the number of those of a channel.
 pub(crate) fn unpack<'a>(
+    basis: Basis,
+    texels: usize,
     spans: impl Iterator<Item = Span>,
     image: impl Fn(usize) -> &'a Image,
     mut each: impl FnMut(usize, usize, f32),
 ) {
     for (channel, span) in spans.enumerate() {
         let values = span.values();
-        for (texel, pixel) in image(channel / 3).pixels.iter().enumerate() {
-            each(texel, channel, values[pixel[channel % 3] as usize]);
+        let (place, component) = (channel / basis.channels_of_image(), channel % basis.channels_of_image());
+        let (number, first) = if basis.is_tangent() { (0, place * texels) } else { (place, 0) };
+        for (texel, pixel) in image(number).pixels[first..first + texels].iter().enumerate() {
+            each(texel, channel, values[pixel[component] as usize]);
         }
     }
 }

@@ -1,9 +1,8 @@
-//! SH cutouts: a surface that is not there where it is seen from the wrong side.
+//! Cutouts: a surface that is not there where it is seen from the wrong side.
 //!
 //! Forward: a sample at t, seen along d, is opaque where `Σ_k O_k(t) Y_k(d) ≥ 0`, with O the
 //! coefficients of the opacity, fetched bilinearly at t (not at the coordinate that parallax
-//! shifts to), d the direction to the viewer in the mesh's own axes, and Y the functions of
-//! `spherical_harmonics.rs`. Elsewhere the sample is left out, and what lies behind it is
+//! shifts to), and Y the functions of a [`Basis`] at the direction d (`directions.rs`). Elsewhere the sample is left out, and what lies behind it is
 //! seen, if that is opaque.
 //!
 //! A point of a coarse mesh that stands out beyond the fine one is beside it for about half
@@ -13,37 +12,36 @@
 //!
 //! Contract: as of `parallax.rs`.
 
+use crate::directions::with_values;
 use crate::on_screen::Raster;
 use crate::raster::{NOTHING, Visibility};
-use crate::spherical_harmonics::{MOST_FUNCTIONS, as_constant, evaluate, functions};
 use parbake_image::pyramid::{Taps, taps};
-use parbake_model::Wrap;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
+use parbake_model::{Basis, Wrap};
 use rayon::prelude::*;
 
 /// The opacity map of a surface.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ShCutout {
-    /// Highest order of the functions, 0 to 7.
-    pub order: usize,
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutoutCoefficients {
+    /// The functions that they multiply; the first is the same from everywhere.
+    pub basis: Basis,
     /// Texels along u.
     pub width: usize,
     /// Texels along v.
     pub height: usize,
-    /// width × height texels, row 0 on top, each of (order + 1)² numbers.
+    /// width × height texels, row 0 on top, each of as many numbers as there are functions.
     pub coefficients: Vec<f32>,
     /// Wrap modes along u and v.
     pub wrap: [Wrap; 2],
 }
 
-impl ShCutout {
+impl CutoutCoefficients {
     /// A map with an opacity of 1 from all sides.
-    pub fn opaque(order: usize, size: usize) -> Self {
-        let mut values = [0.0; MOST_FUNCTIONS];
-        evaluate(0, Vec3::Z, &mut values);
-        let mut coefficients = vec![0.0; size * size * functions(order)];
-        coefficients.iter_mut().step_by(functions(order)).for_each(|c| *c = 1.0 / values[0]);
-        Self { order, width: size, height: size, coefficients, wrap: [Wrap::Clamp; 2] }
+    pub fn opaque(basis: Basis, size: usize) -> Self {
+        let first = with_values(basis, Vec3::Z, |_, values| values[0]);
+        let mut coefficients = vec![0.0; size * size * basis.count()];
+        coefficients.iter_mut().step_by(basis.count()).for_each(|c| *c = 1.0 / first);
+        Self { basis, width: size, height: size, coefficients, wrap: [Wrap::Clamp; 2] }
     }
 
     #[inline]
@@ -51,14 +49,12 @@ impl ShCutout {
         taps(uv, self.width, self.height, self.wrap)
     }
 
-    /// `Σ_k O_k(t) Y_k(d)`.
+    /// `Σ_k O_k(t) Y_k(d)`; `direction` as [`sight`](crate::directions::sight) has it.
     #[inline]
     pub fn opacity(&self, uv: Vec2, direction: Vec3) -> f32 {
         let at = self.taps(uv);
-        as_constant(self.order, |order| {
-            let (count, weights) = (functions(order), at.weights());
-            let mut values = [0.0; MOST_FUNCTIONS];
-            evaluate(order, direction, &mut values);
+        with_values(self.basis, direction, |count, values| {
+            let weights = at.weights();
             let of_texel = at.index.map(|index| &self.coefficients[index as usize * count..][..count]);
             let blended = |k: usize| -> f32 { (0..4).map(|i| of_texel[i][k] * weights[i]).sum() };
             let blended_lanes = |k: usize| -> Vec4 {
@@ -73,19 +69,16 @@ impl ShCutout {
         })
     }
 
-    /// Adjoint of [`ShCutout::opacity`] by the coefficients: adds to `into`, which has as
+    /// Adjoint of [`CutoutCoefficients::opacity`] by the coefficients: adds to `into`, which has as
     /// many as this map.
     #[inline]
     pub fn adjoint(&self, uv: Vec2, direction: Vec3, to_opacity: f32, into: &mut [f32]) {
         let at = self.taps(uv);
-        as_constant(self.order, |order| {
-            let count = functions(order);
-            let mut values = [0.0; MOST_FUNCTIONS];
-            evaluate(order, direction, &mut values);
+        with_values(self.basis, direction, |count, values| {
             for (index, weight) in at.index.into_iter().zip(at.weights()) {
                 let to_texel = to_opacity * weight;
                 let into = &mut into[index as usize * count..][..count];
-                into.iter_mut().zip(&values).for_each(|(to, y)| *to += to_texel * y);
+                into.iter_mut().zip(values).for_each(|(to, y)| *to += to_texel * y);
             }
         });
     }
@@ -136,7 +129,8 @@ mod tests {
     /// Protects the fit's gradient.
     #[test]
     fn adjoint_matches_differences() {
-        let mut map = ShCutout { width: 3, height: 2, ..ShCutout::opaque(2, 0) };
+        let mut map =
+            CutoutCoefficients { width: 3, height: 2, ..CutoutCoefficients::opaque(Basis::Harmonics(2), 0) };
         map.coefficients = (0..54).map(|i| ((i * 37 + 11) % 101) as f32 / 50.0 - 1.0).collect();
         let (uv, direction) = (Vec2::new(0.4, 0.6), Vec3::new(0.48, -0.6, 0.64));
         let mut into = vec![0.0; 54];
@@ -168,7 +162,7 @@ mod tests {
     /// Protects surfaces without a fitted cutout: all is there.
     #[test]
     fn a_new_map_is_opaque() {
-        let map = ShCutout::opaque(2, 4);
+        let map = CutoutCoefficients::opaque(Basis::Harmonics(2), 4);
         assert!((map.opacity(Vec2::new(0.3, 0.9), Vec3::X) - 1.0).abs() < 1e-6);
     }
 }

@@ -29,6 +29,7 @@ pub mod camera;
 mod channels;
 pub mod cutout;
 mod cutout_images;
+pub mod directions;
 pub mod edges;
 pub mod frame;
 pub mod interpolate;

@@ -1,34 +1,35 @@
-//! SH parallax: texture coordinates that shift with the direction they are seen from.
+//! Parallax: texture coordinates that shift with the direction they are seen from.
 //!
-//! Forward (Knodt et al. 2023, eqs. 4 and 5), for a point with coordinate t, seen along d:
+//! Forward (Knodt et al. 2023, eqs. 4 and 5, with other functions if need be), for a point with coordinate t,
+//! seen along d:
 //!
 //! `t' = t + D(t) / max(|n·d|, limit) · Σ_k T_k(t) Y_k(d)`
 //!
 //! with T the coefficients (a pair of numbers for each function, in texture widths), D the
-//! depth (1 where there is no map), Y the functions of `spherical_harmonics.rs`, n the
-//! interpolated vertex normal and d the direction to the viewer, both of unit length and
-//! in the mesh's own axes. All maps are fetched at t, bilinearly, without mip levels;
+//! depth (1 where there is no map), Y the functions of a [`Basis`] and d the direction that these are functions of
+//! (`directions.rs`), n the interpolated vertex normal, both of unit length. All maps are fetched at t, bilinearly, without mip levels;
 //! colours and normals are then fetched at t' with the footprint that they would have at t.
 //! Adjoint: by the product rule; what T and D are fetched with goes to their texels.
 //!
 //! Contract: n·d is in [−1, 1]; where it is below the limit it has no gradient.
 
-use crate::spherical_harmonics::{MOST_FUNCTIONS, adjoint as sh_adjoint, as_constant, evaluate, functions};
+use crate::directions::{adjoint as directions_adjoint, with_values};
+use crate::spherical_harmonics::MOST_FUNCTIONS;
 use parbake_image::FloatImage;
 use parbake_image::pyramid::{Taps, taps};
-use parbake_model::Wrap;
 use parbake_model::glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use parbake_model::{Basis, Wrap};
 
 /// The coefficient maps of a surface.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ShParallax {
-    /// Highest order of the functions, 0 to 7.
-    pub order: usize,
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParallaxCoefficients {
+    /// The functions that they multiply.
+    pub basis: Basis,
     /// Texels along u.
     pub width: usize,
     /// Texels along v.
     pub height: usize,
-    /// width × height texels, row 0 on top, each of (order + 1)² pairs.
+    /// width × height texels, row 0 on top, each of as many pairs as there are functions.
     pub coefficients: Vec<Vec2>,
     /// Multiplies the shift; 1 everywhere where there is none.
     pub depth: Option<FloatImage<[f32; 1]>>,
@@ -41,9 +42,9 @@ pub struct ShParallax {
 /// From where a point is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ViewDirection {
-    /// Unit vector to the viewer.
+    /// Unit vector to the viewer in the mesh's axes, or the line of sight in the tangent frame.
     pub direction: Vec3,
-    /// Cosine between that and the vertex normal, −1 … 1.
+    /// Cosine between that and the vertex normal, −1 … 1; of a line 0 … 1.
     pub cosine: f32,
 }
 
@@ -72,14 +73,14 @@ fn lanes(pairs: &[Vec2]) -> Vec4 {
     Vec4::new(pairs[0].x, pairs[0].y, pairs[1].x, pairs[1].y)
 }
 
-impl ShParallax {
+impl ParallaxCoefficients {
     /// A map that shifts nothing.
-    pub fn zeros(order: usize, size: usize) -> Self {
+    pub fn zeros(basis: Basis, size: usize) -> Self {
         Self {
-            order,
+            basis,
             width: size,
             height: size,
-            coefficients: vec![Vec2::ZERO; size * size * functions(order)],
+            coefficients: vec![Vec2::ZERO; size * size * basis.count()],
             depth: None,
             limit: 0.25,
             wrap: [Wrap::Clamp; 2],
@@ -102,7 +103,7 @@ impl ShParallax {
     /// The first coefficient of a texel.
     #[inline]
     fn texel(&self, index: u32) -> &[Vec2] {
-        let count = functions(self.order);
+        let count = self.basis.count();
         let start = index as usize * count;
         &self.coefficients[start..start + count]
     }
@@ -124,10 +125,8 @@ impl ShParallax {
     /// `Σ_k T_k(t) Y_k(d)`.
     #[inline]
     fn sum(&self, at: &Taps, direction: Vec3) -> Vec2 {
-        as_constant(self.order, |order| {
-            let (count, weights) = (functions(order), at.weights());
-            let mut values = [0.0; MOST_FUNCTIONS];
-            evaluate(order, direction, &mut values);
+        with_values(self.basis, direction, |count, values| {
+            let weights = at.weights();
             let of_texel = at.index.map(|index| &self.coefficients[index as usize * count..][..count]);
             let mut sum = Vec4::ZERO;
             for k in (0..count - 1).step_by(2) {
@@ -150,7 +149,7 @@ impl ShParallax {
         self.sum(&self.taps(uv), sight.direction) * (steepness * depth)
     }
 
-    /// The part of [`ShParallax::adjoint`] that goes to the maps: all that a fit needs whose
+    /// The part of [`ParallaxCoefficients::adjoint`] that goes to the maps: all that a fit needs whose
     /// surface stands still.
     #[inline]
     pub fn adjoint_of_maps(&self, uv: Vec2, sight: &ViewDirection, to_shift: Vec2, into: &mut Self) {
@@ -161,10 +160,7 @@ impl ShParallax {
             into.scatter(&taps(uv, map.width, map.height, self.wrap), &[sum.dot(to_shift) * steepness]);
         }
         let to_sum = to_shift * (steepness * depth);
-        as_constant(self.order, |order| {
-            let count = functions(order);
-            let mut values = [0.0; MOST_FUNCTIONS];
-            evaluate(order, sight.direction, &mut values);
+        with_values(self.basis, sight.direction, |count, values| {
             for (index, weight) in at.index.into_iter().zip(at.weights()) {
                 let to_texel = to_sum * weight;
                 let to_lanes = Vec4::new(to_texel.x, to_texel.y, to_texel.x, to_texel.y);
@@ -182,11 +178,10 @@ impl ShParallax {
         });
     }
 
-    /// The part of [`ShParallax::adjoint`] that goes to the point and to the direction.
+    /// The part of [`ParallaxCoefficients::adjoint`] that goes to the point and to the direction.
     pub fn sight_adjoint(&self, uv: Vec2, sight: &ViewDirection, to_shift: Vec2) -> ShiftGradient {
-        let mut values = [0.0; MOST_FUNCTIONS];
-        evaluate(self.order, sight.direction, &mut values);
-        let count = functions(self.order);
+        let values = with_values(self.basis, sight.direction, |_, values| *values);
+        let count = self.basis.count();
         let at = self.taps(uv);
         let weights = at.weights();
         let sums = at.index.map(|index| self.at_texel(index, &values));
@@ -213,12 +208,12 @@ impl ShParallax {
         let to_cosine = -along * depth * steepness * steepness * sight.cosine.signum();
         ShiftGradient {
             uv: to_uv,
-            direction: sh_adjoint(self.order, sight.direction, &to_values),
+            direction: directions_adjoint(self.basis, sight.direction, &to_values),
             cosine: if sight.cosine.abs() < self.limit { 0.0 } else { to_cosine },
         }
     }
 
-    /// Adjoint of [`ShParallax::shift`]: adds to the maps' gradients (`into` has this map's
+    /// Adjoint of [`ParallaxCoefficients::shift`]: adds to the maps' gradients (`into` has this map's
     /// shape) and returns those of the rest.
     pub fn adjoint(&self, uv: Vec2, sight: &ViewDirection, to_shift: Vec2, into: &mut Self) -> ShiftGradient {
         self.adjoint_of_maps(uv, sight, to_shift, into);
@@ -234,8 +229,12 @@ mod tests {
         ((i * 37 + 11) % 101) as f32 / 50.0 - 1.0
     }
 
-    fn map(with_depth: bool) -> ShParallax {
-        let mut map = ShParallax { width: 5, height: 4, ..ShParallax::zeros(3, 0) };
+    fn map(with_depth: bool) -> ParallaxCoefficients {
+        let mut map = ParallaxCoefficients {
+            width: 5,
+            height: 4,
+            ..ParallaxCoefficients::zeros(Basis::Harmonics(3), 0)
+        };
         map.coefficients = (0..5 * 4 * 16).map(|i| Vec2::new(noise(i), noise(3 * i + 1))).collect();
         map.depth = with_depth.then(|| FloatImage {
             width: 3,
@@ -251,7 +250,8 @@ mod tests {
         let to_shift = Vec2::new(0.7, -1.3);
         for with_depth in [false, true] {
             let map = map(with_depth);
-            let value = |map: &ShParallax, uv, sight: &ViewDirection| map.shift(uv, sight).dot(to_shift);
+            let value =
+                |map: &ParallaxCoefficients, uv, sight: &ViewDirection| map.shift(uv, sight).dot(to_shift);
             for i in 0..40 {
                 let uv = Vec2::new(0.5 + 0.4 * noise(7 * i), 0.5 + 0.4 * noise(11 * i + 5));
                 let direction = Vec3::new(noise(i), noise(2 * i + 3), 1.5 * noise(i + 8)).normalize();
@@ -299,7 +299,7 @@ mod tests {
     /// Protects from blow-ups: at grazing angles the division stops at the limit.
     #[test]
     fn grazing_views_are_limited() {
-        let mut map = ShParallax::zeros(0, 1);
+        let mut map = ParallaxCoefficients::zeros(Basis::Harmonics(0), 1);
         map.coefficients[0] = Vec2::new(1.0, 0.0);
         let shift = |cosine| map.shift(Vec2::splat(0.5), &ViewDirection { direction: Vec3::Z, cosine }).x;
         assert_eq!(shift(0.0), shift(0.25));

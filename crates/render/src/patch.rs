@@ -12,7 +12,7 @@
 use crate::camera::{Camera, Projection};
 use crate::frame::{TangentLight, tangent_light, tangent_light_adjoint};
 use crate::interpolate::{Barycentrics, barycentrics, footprint_adjoint, interpolate, planes_adjoint};
-use crate::parallax::{ShParallax, ViewDirection};
+use crate::parallax::{ParallaxCoefficients, ViewDirection};
 use crate::raster::ScreenTriangle;
 use crate::scatter::Fetch;
 use crate::shade::{Brdf, BrdfGradient};
@@ -80,7 +80,7 @@ pub struct ShiftUse {
 
 impl ShiftUse {
     /// Adds to the gradient of the map that it was a use of.
-    pub fn scatter(&self, map: &ShParallax, into: &mut ShParallax) {
+    pub fn scatter(&self, map: &ParallaxCoefficients, into: &mut ParallaxCoefficients) {
         map.adjoint_of_maps(self.uv, &self.sight, self.to_shift, into);
     }
 }

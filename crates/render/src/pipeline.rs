@@ -13,7 +13,7 @@ use crate::antialias::{BlendTape, Blends, find_blends};
 use crate::background::Composer;
 use crate::camera::Camera;
 use crate::loss::{Comparison, LossValue, Reference, compare};
-use crate::parallax::ShParallax;
+use crate::parallax::ParallaxCoefficients;
 use crate::patch::{CornerGradients, Patch, ShiftUse};
 use crate::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 use crate::scatter::{Fetch, Scatter};
@@ -62,7 +62,7 @@ pub struct Gradients {
     /// Of the normal texels, on all levels.
     pub normal: Option<Pyramid<3>>,
     /// Of the parallax map's coefficients and depth.
-    pub parallax: Option<ShParallax>,
+    pub parallax: Option<ParallaxCoefficients>,
     /// V positions' (empty if not asked for, as all that follow).
     pub positions: Vec<Vec3>,
     /// V normals'.
@@ -81,7 +81,7 @@ impl Gradients {
         Self {
             color: textures.color.zeros_like(),
             normal: textures.normal.map(Pyramid::zeros_like),
-            parallax: textures.parallax.map(ShParallax::zeros_like),
+            parallax: textures.parallax.map(ParallaxCoefficients::zeros_like),
             positions: vec![Vec3::ZERO; count],
             normals: vec![Vec3::ZERO; count],
             tangents: vec![Vec3::ZERO; count],

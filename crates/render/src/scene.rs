@@ -16,10 +16,9 @@ use crate::frame::{Orientation, orientation, tangent_light};
 use crate::interpolate::{barycentrics, interpolate};
 use crate::interpretation::Interpretation;
 use crate::on_screen::{AlphaClusters, OnScreen, Raster};
-use crate::parallax::ViewDirection;
 use crate::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility};
 pub use crate::scene_textures::unpack;
-use crate::scene_textures::{Builder, Map, Surface, Textures};
+use crate::scene_textures::{Builder, Map, SeenPoint, Surface, Textures};
 use crate::shade::Brdf;
 use parbake_image::display::encode_srgb;
 use parbake_image::material_maps::sheen_as_color;
@@ -338,9 +337,7 @@ impl Scene {
         let normal = interpolate(corners.map(|i| mesh.normals[i]), b.weights);
         let (textures, shift) = match &surface.shifted {
             Some(shifted) => {
-                let cosine = normal.normalize_or_zero().dot(to_viewer);
-                let sight = ViewDirection { direction: to_viewer, cosine };
-                (&shifted.textures, shifted.at(mesh, corners, b.weights, &sight))
+                (&shifted.textures, shifted.at(&SeenPoint { mesh, corners, at: &b, to_viewer, footprint }))
             }
             None => (&surface.plain, Vec2::ZERO),
         };
@@ -373,10 +370,11 @@ impl Scene {
             let mesh = &self.mesh;
             let surface = &self.surfaces[mesh.triangle_materials[triangle] as usize];
             let Some(shifted) = &surface.shifted else { return true };
-            let weights = barycentrics(&screen.triangle(triangle), x, y).weights;
+            let at = barycentrics(&screen.triangle(triangle), x, y);
             let corners = mesh.triangles[triangle].map(|i| i as usize);
-            let point = interpolate(corners.map(|i| mesh.positions[i]), weights);
-            shifted.is_opaque(mesh, corners, weights, camera.view_direction(point))
+            let to_viewer =
+                camera.view_direction(interpolate(corners.map(|i| mesh.positions[i]), at.weights));
+            shifted.is_opaque(&SeenPoint { mesh, corners, at: &at, to_viewer, footprint: 1.0 })
         });
         seen
     }

@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::camera::Projection;
-use crate::cutout::ShCutout;
+use crate::cutout::CutoutCoefficients;
 use crate::shade::Unlit;
 use crate::spherical_harmonics::{MOST_FUNCTIONS, evaluate};
-use parbake_model::{ShParallaxMap, TextureSlot, UvTransform, Wrap};
+use parbake_model::{Basis, ParallaxMap, TextureSlot, UvTransform, Wrap};
 
 /// Two squares, in the planes z = 0 (material 0) and z = −0.5 (material 1).
 fn squares() -> Mesh {
@@ -25,11 +25,11 @@ fn squares() -> Mesh {
 fn material(colour: [u8; 3], images: &mut Vec<Image>) -> Material {
     images.push(Image::solid("", 1, 1, [colour[0], colour[1], colour[2], 255]));
     images.push(Image::solid("", 1, 1, [0; 4]));
-    let map = ShParallaxMap {
+    let map = ParallaxMap {
         images: vec![images.len() - 1],
         scale: vec![0.0; 2],
         offset: vec![0.5 / 0.282_095, 0.0],
-        ..ShParallaxMap::default()
+        ..ParallaxMap::default()
     };
     let slot = TextureSlot { image: images.len() - 2, ..TextureSlot::default() };
     Material { base_color_texture: Some(slot), parallax: Some(map), ..Material::default() }
@@ -37,12 +37,18 @@ fn material(colour: [u8; 3], images: &mut Vec<Image>) -> Material {
 
 /// Order 1, 2 × 1 texels: the left one is there where it is seen from z > 0 and left out
 /// otherwise, the right one the other way round.
-fn two_sided() -> ShCutout {
+fn two_sided() -> CutoutCoefficients {
     let mut values = [0.0; MOST_FUNCTIONS];
     evaluate(1, Vec3::Z, &mut values);
     let z = 1.0 / values[2];
     let coefficients = vec![0.0, 0.0, z, 0.0, 0.0, 0.0, -z, 0.0];
-    ShCutout { order: 1, width: 2, height: 1, coefficients, wrap: [Wrap::Clamp; 2] }
+    CutoutCoefficients {
+        basis: Basis::Harmonics(1),
+        width: 2,
+        height: 1,
+        coefficients,
+        wrap: [Wrap::Clamp; 2],
+    }
 }
 
 const RED: [u8; 3] = [255, 0, 0];

@@ -19,7 +19,7 @@ use crate::frame::Orientation;
 use crate::interpolate::{barycentrics, interpolate};
 use crate::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility, rasterise};
 use crate::scene::{Picture, Scene, Seen};
-use crate::scene_textures::Map;
+use crate::scene_textures::{Map, SeenPoint};
 use crate::shade::Brdf;
 use parbake_image::MapValues;
 use parbake_image::maps::MapKind;
@@ -135,7 +135,8 @@ impl Scene {
         let b = barycentrics(on_screen, at.0, at.1);
         if let Some(shifted) = &surface.shifted {
             let point: Vec3 = interpolate(corners.map(|i| mesh.positions[i]), b.weights);
-            if !shifted.is_opaque(mesh, corners, b.weights, camera.view_direction(point)) {
+            let to_viewer = camera.view_direction(point);
+            if !shifted.is_opaque(&SeenPoint { mesh, corners, at: &b, to_viewer, footprint: 1.0 }) {
                 return false;
             }
         }

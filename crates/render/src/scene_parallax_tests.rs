@@ -4,7 +4,7 @@ use super::*;
 use crate::camera::Projection;
 use crate::shade::Lambert;
 use crate::spherical_harmonics::{MOST_FUNCTIONS, evaluate};
-use parbake_model::{ShParallaxMap, TextureSlot, UvTransform, Wrap};
+use parbake_model::{Basis, ParallaxMap, TextureSlot, UvTransform, Wrap};
 
 /// A square in the plane z = 0, as large as its texture.
 fn square() -> Mesh {
@@ -34,12 +34,21 @@ fn material() -> Material {
 }
 
 /// One coefficient map of one texel: order 1, images 2 to 4.
-fn map() -> (ShParallaxMap, Vec<Image>) {
+fn map() -> (ParallaxMap, Vec<Image>) {
     let solid = |rgb: [u8; 3]| Image::solid("", 1, 1, [rgb[0], rgb[1], rgb[2], 255]);
     let mut images = vec![noise("colour", 0), noise("normal", 40)];
     images.extend([solid([255, 0, 51]), solid([102, 204, 255]), solid([0, 51, 0])]);
     let (scale, offset) = (vec![0.4; 8], vec![-0.1; 8]);
-    (ShParallaxMap { order: 1, images: vec![2, 3, 4], scale, offset, ..Default::default() }, images)
+    (
+        ParallaxMap {
+            basis: Basis::Harmonics(1),
+            images: vec![2, 3, 4],
+            scale,
+            offset,
+            ..Default::default()
+        },
+        images,
+    )
 }
 
 /// What the map shifts by, from its numbers.

@@ -5,10 +5,11 @@
 //! Contract: one interpretation goes for all of them; parallax maps that it leaves out, or
 //! that break their contract, are not there.
 
-use crate::cutout::ShCutout;
-use crate::interpolate::interpolate;
+use crate::cutout::CutoutCoefficients;
+use crate::directions::{VertexFrame, sight};
+use crate::interpolate::{Barycentrics, interpolate};
 use crate::interpretation::Interpretation;
-use crate::parallax::{ShParallax, ViewDirection};
+use crate::parallax::ParallaxCoefficients;
 use parbake_image::display::encode_srgb;
 use parbake_image::maps::KINDS;
 use parbake_image::material_maps::{
@@ -44,28 +45,66 @@ pub(crate) type Textures = [Option<Map>; KINDS];
 /// A look whose coordinates shift, by what, and what is left out of it.
 pub(crate) struct Shifted {
     pub textures: Textures,
-    pub parallax: ShParallax,
-    pub cutout: Option<ShCutout>,
+    pub parallax: ParallaxCoefficients,
+    pub cutout: Option<CutoutCoefficients>,
+    /// As in [`parbake_model::ParallaxMap`].
+    pub fade: f32,
+}
+
+/// A point of a triangle on the screen, and from where it is seen.
+#[derive(Clone, Copy)]
+pub(crate) struct SeenPoint<'a> {
+    pub mesh: &'a Mesh,
+    pub corners: [usize; 3],
+    pub at: &'a Barycentrics,
+    /// Unit vector.
+    pub to_viewer: Vec3,
+    /// Scales the pixel that `at` knows.
+    pub footprint: f32,
+}
+
+impl SeenPoint<'_> {
+    /// The interpolated vertex frame; without tangents one with no tangent, in which lines stand upright.
+    fn frame(&self) -> VertexFrame {
+        let Self { mesh, corners, at, .. } = *self;
+        let of = |i: usize| mesh.tangents.get(i).copied().unwrap_or_default();
+        VertexFrame {
+            normal: interpolate(corners.map(|i| mesh.normals[i]), at.weights),
+            tangent: interpolate(corners.map(|i| of(i).truncate()), at.weights),
+            handedness: of(corners[0]).w,
+        }
+    }
 }
 
 impl Shifted {
     /// Where the maps are fetched at a point of a triangle: at the base colour's coordinate,
     /// or at the normal's where there is no colour.
-    fn anchor(&self, mesh: &Mesh, corners: [usize; 3], weights: [f32; 3]) -> Option<Vec2> {
+    /// With how much of the maps is left under this pixel, 0 … 1.
+    fn anchor(&self, seen: &SeenPoint) -> Option<(Vec2, f32)> {
         let [color, normal] = [MapKind::BaseColor, MapKind::Normal].map(|kind| &self.textures[kind as usize]);
         let map = color.as_ref().or(normal.as_ref())?;
-        Some(interpolate(map.uvs(mesh, corners), weights))
+        let uvs = map.uvs(seen.mesh, seen.corners);
+        let along = |w: [f32; 3]| -> Vec2 { interpolate(uvs, w) };
+        let reach = along(seen.at.per_x).length().max(along(seen.at.per_y).length()) * seen.footprint;
+        Some((along(seen.at.weights), (2.0 - reach / self.fade).clamp(0.0, 1.0)))
     }
 
-    /// How far coordinates move at a point of a triangle, seen from there.
-    pub fn at(&self, mesh: &Mesh, corners: [usize; 3], weights: [f32; 3], sight: &ViewDirection) -> Vec2 {
-        self.anchor(mesh, corners, weights).map_or(Vec2::ZERO, |uv| self.parallax.shift(uv, sight))
+    /// How far coordinates move at a point of a triangle.
+    pub fn at(&self, seen: &SeenPoint) -> Vec2 {
+        let shift = |(uv, left): (Vec2, f32)| {
+            left * self.parallax.shift(uv, &sight(self.parallax.basis, &seen.frame(), seen.to_viewer))
+        };
+        self.anchor(seen).map_or(Vec2::ZERO, shift)
     }
 
-    /// Whether a point of a triangle is there, seen along this direction to the viewer.
-    pub fn is_opaque(&self, mesh: &Mesh, corners: [usize; 3], weights: [f32; 3], direction: Vec3) -> bool {
+    /// Whether a point of a triangle is there.
+    pub fn is_opaque(&self, seen: &SeenPoint) -> bool {
         let Some(cutout) = &self.cutout else { return true };
-        self.anchor(mesh, corners, weights).is_none_or(|uv| cutout.opacity(uv, direction) >= 0.0)
+        let opacity = |(uv, left): (Vec2, f32)| {
+            let direction = sight(cutout.basis, &seen.frame(), seen.to_viewer).direction;
+            1.0 + left * (cutout.opacity(uv, direction) - 1.0)
+        };
+        self.anchor(seen).is_none_or(|anchor| opacity(anchor) >= 0.0)
     }
 }
 
@@ -175,10 +214,10 @@ impl<'a> Builder<'a> {
 
     fn shifted(&mut self, material: &Material) -> Option<Shifted> {
         let map = material.parallax.as_ref().filter(|_| self.interpretation.parallax)?;
-        let parallax = ShParallax::unpack(map, self.images)?;
-        let cutout = map.cutout.as_ref().and_then(|c| ShCutout::unpack(c, map.wrap, self.images));
+        let parallax = ParallaxCoefficients::unpack(map, self.images)?;
+        let cutout = map.cutout.as_ref().and_then(|c| CutoutCoefficients::unpack(c, map.wrap, self.images));
         let textures = MapKind::ALL.map(|kind| self.map(kind, shifted_texture_slot(material, kind)));
-        Some(Shifted { textures, parallax, cutout })
+        Some(Shifted { textures, parallax, cutout, fade: map.fade })
     }
 
     fn map(&mut self, kind: MapKind, slot: Option<TextureSlot>) -> Option<Map> {

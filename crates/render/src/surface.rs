@@ -4,7 +4,7 @@
 //! Contract: one entry a vertex in each slice that is not empty; finite numbers.
 
 use crate::edges::EdgeAdjacency;
-use crate::parallax::ShParallax;
+use crate::parallax::ParallaxCoefficients;
 use parbake_image::pyramid::Pyramid;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 
@@ -33,7 +33,7 @@ pub struct Textures<'a> {
     /// Tangent-space normals, not normalised.
     pub normal: Option<&'a Pyramid<3>>,
     /// How coordinates shift before both are fetched.
-    pub parallax: Option<&'a ShParallax>,
+    pub parallax: Option<&'a ParallaxCoefficients>,
     /// Both have the same sizes and wrap modes: most of the work on fetches is done once.
     pub(crate) shared: bool,
 }
@@ -45,7 +45,7 @@ impl<'a> Textures<'a> {
     }
 
     /// The same behind a parallax map.
-    pub fn with_parallax(self, parallax: Option<&'a ShParallax>) -> Self {
+    pub fn with_parallax(self, parallax: Option<&'a ParallaxCoefficients>) -> Self {
         Self { parallax, ..self }
     }
 }

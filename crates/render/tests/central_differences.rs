@@ -9,13 +9,13 @@
 use parbake_image::FloatImage;
 use parbake_image::display::{Curve, Display};
 use parbake_image::pyramid::Pyramid;
-use parbake_model::Wrap;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
+use parbake_model::{Basis, Wrap};
 use parbake_render::background::{Background, Composer};
 use parbake_render::camera::{Camera, Projection};
 use parbake_render::edges::EdgeAdjacency;
 use parbake_render::loss::{Comparison, ImageLoss, Reference};
-use parbake_render::parallax::ShParallax;
+use parbake_render::parallax::ParallaxCoefficients;
 use parbake_render::pipeline::{Gradients, Tape, View, adjoint, forward};
 use parbake_render::shade::{Lambert, Unlit};
 use parbake_render::surface::{Surface, Textures};
@@ -56,7 +56,7 @@ struct Scene {
     comparison: Comparison,
     antialias: bool,
     lit: bool,
-    parallax: Option<ShParallax>,
+    parallax: Option<ParallaxCoefficients>,
 }
 
 /// A lumpy torus with one texture seam each way. Odd seeds are turned inside out:
@@ -305,7 +305,10 @@ fn whole_view_trilinear() {
 fn whole_view_with_parallax() {
     for seed in 0..4 {
         let mut random = Random(seed + 400);
-        let mut map = ShParallax { wrap: [Wrap::Repeat; 2], ..ShParallax::zeros(2, 6) };
+        let mut map = ParallaxCoefficients {
+            wrap: [Wrap::Repeat; 2],
+            ..ParallaxCoefficients::zeros(Basis::Harmonics(2), 6)
+        };
         let mut shift = || Vec2::new(random.signed(), random.signed()) * 0.02;
         map.coefficients.iter_mut().for_each(|c| *c = shift());
         let texels = (0..25).map(|i| [0.5 + (i % 7) as f32 * 0.2]).collect();

@@ -17,10 +17,11 @@ use crate::views::{Judgement, Views};
 use glam::{Vec2, Vec3, Vec4};
 use parbake_image::FloatImage;
 use parbake_image::maps::lift_to_hemisphere;
+use parbake_model::Basis;
 use parbake_model::Mesh;
 use parbake_progress::{Stage, Watcher};
 use parbake_render::edges::EdgeAdjacency;
-use parbake_render::parallax::ShParallax;
+use parbake_render::parallax::ParallaxCoefficients;
 use parbake_render::surface::{Surface, Textures};
 use parbake_solve::adam::{Adam, AdamOptions, rate_at};
 use parbake_solve::random::unit_interval;
@@ -77,15 +78,15 @@ pub struct PaperResult {
     /// V positions in the common frame.
     pub positions: Vec<Vec3>,
     /// The parallax map with its depth, where one was asked for.
-    pub map: Option<ShParallax>,
+    pub map: Option<ParallaxCoefficients>,
     /// L_diff of each step.
     pub losses: Vec<f64>,
     /// Mean and longest way of a point, in the common frame.
     pub moved: [f32; 2],
 }
 
-fn start_map(order: usize, size: usize, epsilon: f32) -> ShParallax {
-    let mut map = ShParallax::zeros(order, size);
+fn start_map(order: usize, size: usize, epsilon: f32) -> ParallaxCoefficients {
+    let mut map = ParallaxCoefficients::zeros(Basis::Harmonics(order), size);
     let noise = |i: usize| (2.0 * unit_interval(i as u64) as f32 - 1.0) * epsilon;
     for (i, c) in map.coefficients.iter_mut().enumerate() {
         *c = Vec2::new(noise(2 * i), noise(2 * i + 1));
@@ -95,7 +96,7 @@ fn start_map(order: usize, size: usize, epsilon: f32) -> ShParallax {
 }
 
 /// Coefficients and depth of a map, in lanes of four.
-fn map_lanes(map: &ShParallax) -> [Vec<Vec4>; 2] {
+fn map_lanes(map: &ParallaxCoefficients) -> [Vec<Vec4>; 2] {
     let pairs = map.coefficients.iter().map(|c| Vec4::new(c.x, c.y, 0.0, 0.0)).collect();
     let depth = map.depth.iter().flat_map(|d| &d.texels).map(|d| Vec4::new(d[0], 0.0, 0.0, 0.0)).collect();
     [pairs, depth]
@@ -103,7 +104,7 @@ fn map_lanes(map: &ShParallax) -> [Vec<Vec4>; 2] {
 
 /// A parallax map on its way.
 struct MovingMap {
-    map: ShParallax,
+    map: ParallaxCoefficients,
     /// Of coefficients and of depth.
     values: [Vec<Vec4>; 2],
     adams: [Adam; 2],
@@ -119,7 +120,7 @@ impl MovingMap {
         Self { map, values, adams }
     }
 
-    fn step(&mut self, to_map: &ShParallax, share: f32) {
+    fn step(&mut self, to_map: &ParallaxCoefficients, share: f32) {
         for ((adam, values), gradient) in self.adams.iter_mut().zip(&mut self.values).zip(map_lanes(to_map)) {
             adam.step(values, &gradient, share);
         }

@@ -12,7 +12,7 @@ use parbake_model::Model;
 use parbake_progress::Watcher;
 use parbake_render::background::Background;
 use parbake_render::loss::{Comparison, ImageLoss};
-use parbake_render::parallax::ShParallax;
+use parbake_render::parallax::ParallaxCoefficients;
 use parbake_views::PrepareError;
 use parbake_views::high_poly::HighPoly;
 use parbake_views::low_poly::LowPoly;
@@ -36,7 +36,7 @@ pub struct Outcome {
     /// How vertices moved; none where they were kept.
     pub report: Option<ShapeReport>,
     /// The parallax map, as a reader sees it.
-    pub map: Option<ShParallax>,
+    pub map: Option<ParallaxCoefficients>,
 }
 
 /// Runs it on a low-poly that `frame` places; its vertices are moved.

@@ -23,14 +23,15 @@ use parbake_model::glam::{DVec3, Mat3, Vec2, Vec3};
 use parbake_progress::Watcher;
 use parbake_render::camera::Camera;
 use parbake_render::cutout::rasterise_cut;
+use parbake_render::directions::VertexFrame;
 use parbake_render::interpolate::{barycentrics, interpolate};
 use parbake_render::on_screen::{OnScreen, Raster};
 use parbake_render::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility};
 use rayon::prelude::*;
 
 /// Where the maps are fetched for a texture coordinate, the unit direction to the viewer and the interpolated
-/// vertex normal, both in the common frame; none where the surface is cut out.
-pub type Shift<'a> = &'a (dyn Fn(Vec2, Vec3, Vec3) -> Option<Vec2> + Sync);
+/// vertex frame, both in the common frame; none where the surface is cut out.
+pub type Shift<'a> = &'a (dyn Fn(Vec2, Vec3, &VertexFrame) -> Option<Vec2> + Sync);
 
 /// What the views of a set are sampled for.
 pub struct MaterialSampler<'a> {
@@ -106,7 +107,7 @@ impl MaterialSampler<'_> {
             None => low.screen.rasterise(size, jitter, None, &mut seen),
             Some(shift) => rasterise_cut(&low.screen, size, jitter, &mut seen, |triangle, at| {
                 let point = Point::of(self.low, low.triangle(triangle), &low.screen.triangle(triangle), at);
-                shift(point.uv, camera.view_direction(point.position), point.normal).is_some()
+                shift(point.uv, camera.view_direction(point.position), &point.frame()).is_some()
             }),
         }
         let has_gaps = layer.mode != AlphaMode::Opaque;
@@ -120,7 +121,7 @@ impl MaterialSampler<'_> {
             let point = Point::of(self.low, low.triangle(under), &below, at);
             let direction = camera.view_direction(point.position);
             let Some(uv) =
-                self.shift.map_or(Some(point.uv), |shift| shift(point.uv, direction, point.normal))
+                self.shift.map_or(Some(point.uv), |shift| shift(point.uv, direction, &point.frame()))
             else {
                 continue;
             };
@@ -204,6 +205,10 @@ impl Point {
             handedness: mesh.tangents[corners[0]].w,
             face_normal: mesh.area_normal(triangle),
         }
+    }
+
+    fn frame(&self) -> VertexFrame {
+        VertexFrame { normal: self.normal, tangent: self.tangent, handedness: self.handedness }
     }
 
     /// A world normal in the tangent frame of the side that is seen, of unit length.

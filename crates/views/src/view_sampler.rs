@@ -8,10 +8,11 @@
 
 use crate::reference::Reference;
 use parbake_image::display::Display;
-use parbake_model::Mesh;
 use parbake_model::glam::{Vec2, Vec3};
+use parbake_model::{Basis, Mesh};
 use parbake_render::camera::Camera;
-use parbake_render::cutout::{ShCutout, rasterise_cut};
+use parbake_render::cutout::{CutoutCoefficients, rasterise_cut};
+use parbake_render::directions::{VertexFrame, sight};
 use parbake_render::frame::{TangentLight, tangent_light};
 use parbake_render::interpolate::{barycentrics, interpolate};
 use parbake_render::parallax::ViewDirection;
@@ -39,7 +40,9 @@ pub struct ViewSampler<'a> {
     size: usize,
     display: &'a Display,
     beyond: UncoveredPixels,
-    cutout: Option<&'a ShCutout>,
+    /// The functions of directions that fragments are for.
+    basis: Basis,
+    cutout: Option<&'a CutoutCoefficients>,
 }
 
 /// One pixel that shows the low-poly.
@@ -47,7 +50,7 @@ pub struct ViewSampler<'a> {
 pub struct Fragment {
     /// Where it falls on the texture.
     pub uv: Vec2,
-    /// From where it is seen.
+    /// From where it is seen, as the sampler's basis has it.
     pub sight: ViewDirection,
     /// How the light meets it.
     pub light: TangentLight,
@@ -61,11 +64,16 @@ impl<'a> ViewSampler<'a> {
     /// For views of `size`² pixels.
     pub fn new(low: &'a Mesh, size: usize, display: &'a Display, beyond: UncoveredPixels) -> Self {
         let face_normals = (0..low.triangles.len()).map(|t| low.area_normal(t)).collect();
-        Self { low, face_normals, size, display, beyond, cutout: None }
+        Self { low, face_normals, size, display, beyond, basis: Basis::Harmonics(0), cutout: None }
+    }
+
+    /// The same for maps of these functions: directions are those that [`sight`] gives.
+    pub fn in_basis(self, basis: Basis) -> Self {
+        Self { basis, ..self }
     }
 
     /// The same with what this leaves out.
-    pub fn with_cutout(self, cutout: Option<&'a ShCutout>) -> Self {
+    pub fn with_cutout(self, cutout: Option<&'a CutoutCoefficients>) -> Self {
         Self { cutout, ..self }
     }
 
@@ -79,7 +87,16 @@ impl<'a> ViewSampler<'a> {
         let b = barycentrics(triangle, at.0, at.1).weights;
         let corners = self.low.triangles[index].map(|i| i as usize);
         let point = interpolate(corners.map(|i| self.low.positions[i]), b);
-        (interpolate(corners.map(|i| self.low.uvs[i]), b), camera.view_direction(point))
+        let direction = sight(self.basis, &self.frame(corners, b), camera.view_direction(point)).direction;
+        (interpolate(corners.map(|i| self.low.uvs[i]), b), direction)
+    }
+
+    fn frame(&self, corners: [usize; 3], weights: [f32; 3]) -> VertexFrame {
+        VertexFrame {
+            normal: interpolate(corners.map(|i| self.low.normals[i]), weights),
+            tangent: interpolate(corners.map(|i| self.low.tangents[i].truncate()), weights),
+            handedness: self.low.tangents[corners[0]].w,
+        }
     }
 
     /// Hands over all layers of the view's pixels, the nearest first: the high-poly's coverage
@@ -126,14 +143,14 @@ impl<'a> ViewSampler<'a> {
             let b = barycentrics(&screen.triangles[triangle as usize], at.0, at.1).weights;
             let corners = low.triangles[triangle as usize].map(|i| i as usize);
             let point = interpolate(corners.map(|i| low.positions[i]), b);
-            let normal: Vec3 = interpolate(corners.map(|i| low.normals[i]), b);
-            let tangent = interpolate(corners.map(|i| low.tangents[i].truncate()), b);
+            let frame = self.frame(corners, b);
+            let VertexFrame { normal, tangent, handedness } = frame;
             let direction = camera.view_direction(point);
             let facing = if direction.dot(self.face_normals[triangle as usize]) < 0.0 { -1.0 } else { 1.0 };
             each(Fragment {
                 uv: interpolate(corners.map(|i| low.uvs[i]), b),
-                sight: ViewDirection { direction, cosine: normal.normalize_or_zero().dot(direction) },
-                light: tangent_light(normal, tangent, low.tangents[corners[0]].w, direction, facing),
+                sight: sight(self.basis, &frame, direction),
+                light: tangent_light(normal, tangent, handedness, direction, facing),
                 target,
                 weight,
             });

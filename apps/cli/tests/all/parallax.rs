@@ -2,6 +2,7 @@
 
 use crate::common::{SMALL, demo_pair, parbake, run, text};
 use parbake::{Limits, Model, read_model, write_glb};
+use parbake_model::{Basis, CutoutMap};
 use serde_json::Value;
 use std::path::Path;
 
@@ -27,9 +28,12 @@ fn add_map(model: &mut Model, shift: f32) {
 fn add_cutout(model: &mut Model, coefficients: [f32; 4]) {
     for map in model.materials.iter_mut().filter_map(|m| m.parallax.as_mut()) {
         let image = map.images[0];
-        let cutout = map.cutout.get_or_insert_default();
-        (cutout.order, cutout.images) = (1, vec![image; 2]);
-        (cutout.scale, cutout.offset) = (vec![0.0; 4], coefficients.to_vec());
+        map.cutout = Some(CutoutMap {
+            basis: Basis::Harmonics(1),
+            images: vec![image; 2],
+            scale: vec![0.0; 4],
+            offset: coefficients.to_vec(),
+        });
     }
 }
 
@@ -110,18 +114,21 @@ fn a_broken_map_is_mentioned() {
     assert!(text(&output.stdout).contains("100.000"), "{}", text(&output.stdout));
 }
 
-/// Protects `bake --parallax sh`: the file holds the map and its cutout, and shows them.
+/// Protects `bake --parallax`: the file holds the map and its cutout, and shows them.
 #[test]
 fn a_bake_writes_maps_that_are_read_again() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     demo_pair(folder);
     let arguments = ["bake", "demo_high.glb", "demo_low.glb", "-o", "deep.glb", "-q", "--preset", "fast"];
-    let maps = ["--parallax", "sh", "--parallax-size", "16", "--cutout-size", "32", "--json", "deep.json"];
+    let maps =
+        ["--parallax", "tangent", "--parallax-size", "16", "--cutout-size", "32", "--json", "deep.json"];
     run(folder, &[&arguments[..], &maps, &SMALL].concat());
     let model = read_model(&folder.join("deep.glb"), &Limits::default()).unwrap().model;
     let map = model.materials[0].parallax.as_ref().unwrap();
-    assert_eq!((map.order, map.cutout.as_ref().unwrap().order), (2, 4));
+    let cutout = map.cutout.as_ref().unwrap();
+    assert_eq!((map.basis, cutout.basis), (Basis::TangentShift, Basis::TangentCutout));
+    assert_eq!(map.images.len() + cutout.images.len(), 2, "one texture each");
     let report = crate::common::json(&folder.join("deep.json"));
     assert!(report["parallax_maps"]["steps"].as_u64().unwrap() > 0);
     assert!(report["shape"]["moved"][1].as_f64().unwrap() > 0.0);
@@ -137,7 +144,7 @@ fn maps_are_refused_where_there_is_no_place_for_them() {
     let folder = folder.path();
     demo_pair(folder);
     for arguments in [
-        ["bake", "demo_high.glb", "demo_low.glb", "-o", "deep.obj", "--parallax", "sh"].as_slice(),
+        ["bake", "demo_high.glb", "demo_low.glb", "-o", "deep.obj", "--parallax", "tangent"].as_slice(),
         ["compress", "demo_high.glb", "-o", "small.glb", "--parallax", "sh"].as_slice(),
     ] {
         let output = parbake(folder).args(arguments).output().unwrap();

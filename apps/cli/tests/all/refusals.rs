@@ -116,11 +116,11 @@ fn options_without_effect_are_refused() {
     let compress = ["compress", "model.glb", "-o", "never.glb"];
     let image = ["image", "picture.png", "-o", "never.glb"];
     let cases: [(&[&str], &[&str], &str); 20] = [
-        (&bake, &["--parallax-order", "2"], "--parallax-order does nothing without --parallax sh"),
-        (&bake, &["--parallax-size", "64"], "--parallax-size does nothing without --parallax sh"),
-        (&bake, &["--no-cutout"], "--no-cutout does nothing without --parallax sh"),
-        (&bake, &["--cutout-order", "3"], "--cutout-order does nothing without --parallax sh"),
-        (&bake, &["--cutout-size", "32"], "--cutout-size does nothing without --parallax sh"),
+        (&bake, &["--parallax-order", "2"], "--parallax-order does nothing without --parallax"),
+        (&bake, &["--parallax-size", "64"], "--parallax-size does nothing without --parallax"),
+        (&bake, &["--no-cutout"], "--no-cutout does nothing without --parallax"),
+        (&bake, &["--cutout-order", "3"], "--cutout-order does nothing without --parallax"),
+        (&bake, &["--cutout-size", "32"], "--cutout-size does nothing without --parallax"),
         (&bake, &["--options", "maps.json"], "maps.json: --parallax-size does nothing"),
         (&bake, &["--parallax", "sh", "--no-cutout", "--cutout-size", "32"], "with --no-cutout"),
         (&bake, &["--parallax", "sh", "--method", "paper", "--cutout-size", "32"], "with --method paper"),

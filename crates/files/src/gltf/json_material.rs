@@ -46,6 +46,8 @@ pub(super) struct MaterialExtensions {
     pub unlit: Option<Ignored>,
     #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
     pub specular_glossiness: Option<SpecularGlossiness>,
+    #[serde(rename = "PARBAKE_materials_parallax")]
+    pub parallax: Option<Box<ParallaxTangent>>,
     #[serde(rename = "PARBAKE_materials_parallax_sh")]
     pub parallax_sh: Option<Box<ParallaxSh>>,
     #[serde(rename = "KHR_materials_clearcoat")]
@@ -76,7 +78,32 @@ pub(super) struct EmissiveStrength {
     pub emissive_strength: Option<f32>,
 }
 
-/// Parbake's own: `docs/parallax_format.md`.
+/// Parbake's own, in the tangent frame: `docs/parallax_format.md`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct ParallaxTangent {
+    #[serde(deserialize_with = "optional_integer")]
+    pub version: Option<usize>,
+    pub texture: Option<TextureInfo>,
+    pub scale: Vec<f32>,
+    pub offset: Vec<f32>,
+    pub limit: Option<f32>,
+    pub fade_footprint: Option<f32>,
+    pub cutout: Option<CutoutTangent>,
+    pub base_color_texture: Option<TextureInfo>,
+    pub normal_texture: Option<TextureInfo>,
+}
+
+/// The cutout in such a map.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct CutoutTangent {
+    pub texture: Option<TextureInfo>,
+    pub scale: Vec<f32>,
+    pub offset: Vec<f32>,
+}
+
+/// Parbake's own, of spherical harmonics: `docs/parallax_sh_format.md`.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
 pub(super) struct ParallaxSh {

@@ -82,9 +82,7 @@ fn material(
     let strength = json.extensions.emissive_strength.as_ref().and_then(|e| e.emissive_strength);
     material.emissive_strength = from_zero(strength, material.emissive_strength);
     material.extensions = material_extensions::read(textures, &json.extensions, &here, scale)?;
-    if let Some(json) = &json.extensions.parallax_sh {
-        material.parallax = parallax::read(textures, json, &here, &material.name);
-    }
+    material.parallax = parallax::read(textures, &json.extensions, &here, &material.name);
     Ok(material)
 }
 

@@ -1,36 +1,100 @@
-//! SH parallax maps and their cutouts in: the material extension `PARBAKE_materials_parallax_sh`, as
-//! `docs/parallax_format.md` has it.
+//! Parallax maps and their cutouts in: the material extensions `PARBAKE_materials_parallax`, as
+//! `docs/parallax_format.md` has it, and `PARBAKE_materials_parallax_sh` (`docs/parallax_sh_format.md`).
 //!
 //! Contract: a model looks right without its parallax maps. So a map that breaks the format
 //! is left out with a warning that says why, whatever is wrong with it; only JSON of the
 //! wrong types and pictures that cannot be decoded are errors, as everywhere in a document.
 
 use super::buffers::pointer;
-use super::json_material::{CutoutSh, ParallaxSh};
+use super::json_material::{CutoutSh, MaterialExtensions, ParallaxSh, ParallaxTangent};
 use super::json_texture::TextureInfo;
 use super::textures::TextureReader;
 use crate::FileError;
 use crate::context::{Context, Textures};
 use parbake_model::glam::DMat3;
-use parbake_model::{CutoutMap, DepthMap, Image, Material, ShParallaxMap, TextureSlot, Wrap};
+use parbake_model::{Basis, CutoutMap, DepthMap, Image, Material, ParallaxMap, TextureSlot, Wrap};
 
-/// The extension's name in a document.
-pub(super) const NAME: &str = "PARBAKE_materials_parallax_sh";
+/// The name in a document of maps in the tangent frame.
+pub(super) const NAME: &str = "PARBAKE_materials_parallax";
+/// That of spherical harmonics.
+pub(super) const NAME_SH: &str = "PARBAKE_materials_parallax_sh";
+/// The version of the format in the tangent frame.
+pub(super) const VERSION: usize = 2;
 
-/// The map that a material's extension describes, its images yet to be decoded; `None`
-/// where pictures are not wanted, or with a warning.
+/// The map that a material's extensions describe, its images yet to be decoded; `None` where there is
+/// none or pictures are not wanted, or with a warning. A map in the tangent frame goes before harmonics.
 pub(super) fn read(
     reader: &mut TextureReader<'_, '_>,
-    json: &ParallaxSh,
+    extensions: &MaterialExtensions,
     here: &str,
     material: &str,
-) -> Option<ShParallaxMap> {
+) -> Option<ParallaxMap> {
     let context = reader.buffers.context;
     if context.textures == Textures::Skip {
         return None;
     }
-    let here = format!("{here}/extensions/{NAME}");
-    map(reader, json, &here).map_err(|error| left_out(context, material, &reason(error))).ok()
+    let warn = |error| left_out(context, material, &reason(error));
+    if let Some(json) = &extensions.parallax {
+        return tangent(reader, json, &format!("{here}/extensions/{NAME}")).map_err(warn).ok();
+    }
+    let json = extensions.parallax_sh.as_ref()?;
+    harmonics(reader, json, &format!("{here}/extensions/{NAME_SH}")).map_err(warn).ok()
+}
+
+fn tangent(
+    reader: &mut TextureReader<'_, '_>,
+    json: &ParallaxTangent,
+    here: &str,
+) -> Result<ParallaxMap, FileError> {
+    let context = reader.buffers.context;
+    let refuse = |reason: String| context.invalid(pointer(here.into()), reason);
+    match json.version {
+        Some(VERSION) => {}
+        Some(version) => {
+            return Err(refuse(format!("its version is {version}, and this reads version {VERSION}")));
+        }
+        None => return Err(refuse("it has no version".into())),
+    }
+    let default = ParallaxMap::default();
+    let cutout = json.cutout.as_ref().map(|json| CutoutMap {
+        basis: Basis::TangentCutout,
+        images: vec![0],
+        scale: json.scale.clone(),
+        offset: json.offset.clone(),
+    });
+    let mut map = ParallaxMap {
+        basis: Basis::TangentShift,
+        images: vec![0],
+        scale: json.scale.clone(),
+        offset: json.offset.clone(),
+        limit: json.limit.unwrap_or(default.limit),
+        fade: json.fade_footprint.unwrap_or(default.fade),
+        cutout,
+        ..default
+    };
+    map.check_numbers().map_err(|fault| refuse(fault.to_string()))?;
+    let missing = || refuse("a texture of it is missing".into());
+    let shift = json.texture.as_ref().ok_or_else(missing)?;
+    map.images[0] = slot(reader, shift, &format!("{here}/texture"))?.image;
+    if let (Some(map), Some(json)) = (&mut map.cutout, &json.cutout) {
+        let info = json.texture.as_ref().ok_or_else(missing)?;
+        map.images[0] = slot(reader, info, &format!("{here}/cutout/texture"))?.image;
+    }
+    [map.base_color_texture, map.normal_texture] =
+        own_textures(reader, [&json.base_color_texture, &json.normal_texture], here)?;
+    Ok(map)
+}
+
+/// The textures that a map has instead of the material's: base colour and normal.
+fn own_textures(
+    reader: &mut TextureReader<'_, '_>,
+    [color, normal]: [&Option<TextureInfo>; 2],
+    here: &str,
+) -> Result<[Option<TextureSlot>; 2], FileError> {
+    let mut own = |info: &Option<TextureInfo>, name: &str| {
+        info.as_ref().map(|info| slot(reader, info, &format!("{here}/{name}"))).transpose()
+    };
+    Ok([own(color, "baseColorTexture")?, own(normal, "normalTexture")?])
 }
 
 fn left_out(context: &Context<'_>, material: &str, reason: &str) {
@@ -45,21 +109,21 @@ fn reason(error: FileError) -> String {
     }
 }
 
-fn map(
+fn harmonics(
     reader: &mut TextureReader<'_, '_>,
     json: &ParallaxSh,
     here: &str,
-) -> Result<ShParallaxMap, FileError> {
+) -> Result<ParallaxMap, FileError> {
     let context = reader.buffers.context;
     let refuse = |reason: String| context.invalid(pointer(here.into()), reason);
-    let default = ShParallaxMap::default();
+    let default = ParallaxMap::default();
     let depth = json.depth_texture.as_ref().map(|_| DepthMap {
         image: 0,
         scale: json.depth_scale.unwrap_or(1.0),
         offset: json.depth_offset.unwrap_or(0.0),
     });
-    let mut map = ShParallaxMap {
-        order: json.order.ok_or_else(|| refuse("it has no order".into()))?,
+    let mut map = ParallaxMap {
+        basis: Basis::Harmonics(json.order.ok_or_else(|| refuse("it has no order".into()))?),
         images: vec![0; json.coefficient_textures.len()],
         scale: json.scale.clone(),
         offset: json.offset.clone(),
@@ -90,18 +154,15 @@ fn map(
         }
     }
     map.wrap = wrap.unwrap_or(map.wrap);
-    let mut own = |info: &Option<TextureInfo>, name: &str| {
-        info.as_ref().map(|info| slot(reader, info, &format!("{here}/{name}"))).transpose()
-    };
-    map.base_color_texture = own(&json.base_color_texture, "baseColorTexture")?;
-    map.normal_texture = own(&json.normal_texture, "normalTexture")?;
+    [map.base_color_texture, map.normal_texture] =
+        own_textures(reader, [&json.base_color_texture, &json.normal_texture], here)?;
     Ok(map)
 }
 
 /// The cutout's numbers; its images are yet to be found.
 fn cutout(json: &CutoutSh, refuse: impl Fn(String) -> FileError) -> Result<CutoutMap, FileError> {
     Ok(CutoutMap {
-        order: json.order.ok_or_else(|| refuse("its cutout has no order".into()))?,
+        basis: Basis::Harmonics(json.order.ok_or_else(|| refuse("its cutout has no order".into()))?),
         images: vec![0; json.coefficient_textures.len()],
         scale: json.scale.clone(),
         offset: json.offset.clone(),
@@ -136,7 +197,7 @@ pub(super) fn leave_out(
                 .data_images()
                 .filter_map(|i| images.get(i))
                 .fold(texels, |sum, image| sum.saturating_add(image.pixels.len() as u64));
-            if turned.get(i) == Some(&true) {
+            if !map.basis.is_tangent() && turned.get(i) == Some(&true) {
                 Some("a node turns or stretches a mesh that has it, which is not supported".into())
             } else {
                 (texels > limit).then(|| format!("all maps together have more than {limit} texels"))

@@ -71,7 +71,11 @@ fn textures(material: &Material) -> impl Iterator<Item = &TextureInfo> {
         let shown = map.base_color_texture.iter().chain(&map.normal_texture);
         shown.chain(&map.coefficient_textures).chain(cutout).chain(&map.depth_texture)
     });
-    own.into_iter().flatten().chain(parallax).chain(extensions(material))
+    let tangent = material.extensions.parallax.iter().flat_map(|map| {
+        let shown = map.base_color_texture.iter().chain(&map.normal_texture);
+        shown.chain(&map.texture).chain(map.cutout.iter().filter_map(|c| c.texture.as_ref()))
+    });
+    own.into_iter().flatten().chain(parallax).chain(tangent).chain(extensions(material))
 }
 
 /// The textures of extensions.

@@ -162,6 +162,7 @@ fn to_bytes(
         (UNLIT, materials.uses_unlit, false),
         ("KHR_texture_transform", materials.uses_transforms, false),
         (super::parallax::NAME, materials.uses_parallax, false),
+        (super::parallax::NAME_SH, materials.uses_harmonics, false),
         (WEBP, uses_webp, true),
         (KTX2, uses_ktx2, true),
         (QUANTIZATION, grid.is_some(), true),

@@ -8,7 +8,7 @@
 use super::write_extensions;
 use crate::ktx2_out::Content;
 use crate::texture_out::{Purpose, Use};
-use parbake_model::{AlphaMode, Material, Model, ShParallaxMap, TextureSlot, UvTransform, Wrap};
+use parbake_model::{AlphaMode, Material, Model, ParallaxMap, TextureSlot, UvTransform, Wrap};
 use serde_json::{Value, json};
 
 pub(super) const EMISSIVE_STRENGTH: &str = "KHR_materials_emissive_strength";
@@ -27,6 +27,8 @@ pub(super) struct Materials {
     pub samplers: Vec<Value>,
     pub uses_transforms: bool,
     pub uses_parallax: bool,
+    /// Parallax maps of spherical harmonics.
+    pub uses_harmonics: bool,
     pub uses_emissive_strength: bool,
     pub uses_unlit: bool,
     /// Whether the mesh says which way its tangent frames look.
@@ -184,7 +186,7 @@ pub(super) fn purpose_of(model: &Model, image: usize) -> Purpose {
     let is = |slot: &Option<TextureSlot>| slot.is_some_and(|s| s.image == image);
     let materials = || model.materials.iter();
     let maps = || materials().filter_map(|m| m.parallax.as_ref());
-    let is_exact = |map: &ShParallaxMap| {
+    let is_exact = |map: &ParallaxMap| {
         map.images.contains(&image)
             || map.depth.as_ref().is_some_and(|depth| depth.image == image)
             || map.cutout.as_ref().is_some_and(|cutout| cutout.images.contains(&image))

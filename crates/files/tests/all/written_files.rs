@@ -10,8 +10,8 @@ use parbake_files::{
 };
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{
-    AlphaMode, CutoutMap, DepthMap, Image, Material, Mesh, Model, ShParallaxMap, TextureSlot, UvTransform,
-    Wrap,
+    AlphaMode, Basis, CutoutMap, DepthMap, Image, Material, Mesh, Model, ParallaxMap, TextureSlot,
+    UvTransform, Wrap,
 };
 use std::path::Path;
 
@@ -58,20 +58,20 @@ fn rich(side: u32) -> Model {
     plain.alpha_mode = AlphaMode::Blend;
     plain.base_color_texture =
         Some(TextureSlot { image: 0, uv_set: 1, wrap: [Wrap::Mirror, Wrap::Repeat], transform });
-    base.parallax = Some(ShParallaxMap {
-        order: 2,
+    base.parallax = Some(ParallaxMap {
+        basis: Basis::Harmonics(2),
         images: (2..8).collect(),
         scale: (0..18).map(|i| 0.01 * i as f32).collect(),
         offset: vec![-0.05; 18],
         depth: Some(DepthMap { image: 8, scale: 2.0, offset: 0.5 }),
         cutout: Some(CutoutMap {
-            order: 1,
+            basis: Basis::Harmonics(1),
             images: vec![9, 10],
             scale: vec![0.1, 0.0, 6.5, 1e-7],
             offset: vec![3.544_907_7, 0.0, -1.0 / 3.0, 1e7],
         }),
         base_color_texture: plain.base_color_texture,
-        ..ShParallaxMap::default()
+        ..ParallaxMap::default()
     });
     let data = |i| Image::solid(&format!("parallax {i}"), 8, 8, [i, 2 * i, 3 * i, 255]);
     model.images.extend((2..11).map(data));

@@ -51,8 +51,9 @@ impl MapPlate {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use parbake_model::Basis;
     use parbake_model::glam::Vec2;
-    use parbake_render::parallax::ShParallax;
+    use parbake_render::parallax::ParallaxCoefficients;
     use parbake_render::parallax_variants::shift_map::Unshifted;
 
     /// A pixel that fetches the texel in this column and row of three.
@@ -65,7 +66,7 @@ mod tests {
     /// middle of what is seen is pulled down, its neighbours up, and nothing else moves.
     #[test]
     fn a_bump_is_pulled_flat_where_views_look() {
-        let mut map = ShParallax::zeros(0, 3);
+        let mut map = ParallaxCoefficients::zeros(Basis::Harmonics(0), 3);
         map.coefficients[4] = Vec2::new(1.0, -2.0);
         let row: Vec<ViewSample> = (0..3).map(|u| at(u, 1)).collect();
         let pull = MapPlate::new(&[row], &map).unwrap().pull(&map, 9.0);

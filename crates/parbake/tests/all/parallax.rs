@@ -31,8 +31,8 @@ fn baked(high: &Model, low: &Model, parallax: Parallax, threads: usize) -> Baked
 #[test]
 fn maps_improve_the_look_whatever_the_number_of_threads() {
     let (high, low) = demo_pair();
-    let with = baked(&high, &low, Parallax::Sh, 1);
-    assert!(with.model == baked(&high, &low, Parallax::Sh, 3).model, "threads change the result");
+    let with = baked(&high, &low, Parallax::Tangent, 1);
+    assert!(with.model == baked(&high, &low, Parallax::Tangent, 3).model, "threads change the result");
     let without = baked(&high, &low, Parallax::None, 2);
     assert!(without.model.materials[0].parallax.is_none());
     for background in ["white", "0.9,0.1,0.2"] {
@@ -62,7 +62,7 @@ fn maps_improve_the_look_whatever_the_number_of_threads() {
 fn a_map_without_depth_to_show_begins_anew() {
     let (high, low) = demo_pair();
     // More than the first pass's 128 texels, so that there is a finer texture.
-    let options = BakeOptions { texture_size: 256, ..quick(Parallax::Sh) };
+    let options = BakeOptions { texture_size: 256, ..quick(Parallax::Tangent) };
     let begun_anew = |high: &Model, low: &Model| {
         let baked = bake(high, low, &options, &()).unwrap();
         baked.report.parallax_maps.unwrap().begun_anew

@@ -7,7 +7,8 @@
 //! on the number of threads.
 
 use crate::frame::TangentLight;
-use crate::parallax::{ShParallax, ViewDirection};
+use crate::parallax::{ParallaxCoefficients, ViewDirection};
+use parbake_model::Basis;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 
 /// From where a point is seen, in the mesh's axes and in the surface's own.
@@ -92,19 +93,19 @@ impl ShiftMap for Unshifted {
 }
 
 /// Coefficients are fitted; a depth map stays as it is, since it could only scale them.
-impl ShiftMap for ShParallax {
+impl ShiftMap for ParallaxCoefficients {
     #[inline]
     fn shift(&self, uv: Vec2, from: &TangentView) -> Vec2 {
-        ShParallax::shift(self, uv, &from.sight)
+        ParallaxCoefficients::shift(self, uv, &from.sight)
     }
 
     #[inline]
     fn adjoint_of_maps(&self, uv: Vec2, from: &TangentView, to_shift: Vec2, into: &mut Self) {
-        ShParallax::adjoint_of_maps(self, uv, &from.sight, to_shift, into);
+        ParallaxCoefficients::adjoint_of_maps(self, uv, &from.sight, to_shift, into);
     }
 
     fn zeros_like(&self) -> Self {
-        ShParallax::zeros_like(self)
+        ParallaxCoefficients::zeros_like(self)
     }
 
     fn parameters(&self) -> Vec<Vec4> {
@@ -130,8 +131,9 @@ impl ShiftMap for ShParallax {
     /// Short for functions of high order: there are many, and steps in all of them at once would
     /// throw a shift about farther than they can turn it.
     fn parameter_scales(&self) -> Vec<Vec4> {
+        let Basis::Harmonics(order) = self.basis else { return Vec::new() };
         let by_function: Vec<f32> =
-            (0..=self.order).flat_map(|l| std::iter::repeat_n(stride(l), 2 * l + 1)).collect();
+            (0..=order).flat_map(|l| std::iter::repeat_n(stride(l), 2 * l + 1)).collect();
         let of = |i: usize| by_function[i % by_function.len()];
         let pairs = self.coefficients.len().div_ceil(2);
         (0..pairs)
@@ -161,7 +163,7 @@ pub(super) mod tests {
     /// Protects high orders from too long steps, and each coefficient from another one's stride.
     #[test]
     fn strides_follow_their_functions() {
-        let map = ShParallax::zeros(3, 5);
+        let map = ParallaxCoefficients::zeros(Basis::Harmonics(3), 5);
         let parameter_scales = map.parameter_scales();
         assert_eq!(parameter_scales.len(), map.parameters().len());
         let flat: Vec<f32> = parameter_scales.iter().flat_map(|lane| lane.to_array()).collect();
@@ -169,7 +171,12 @@ pub(super) mod tests {
             let whole = coefficient % 16 < 9;
             assert_eq!(pair, [if whole { 1.0 } else { 0.625 }; 2], "{coefficient}");
         }
-        assert!(ShParallax::zeros(2, 4).parameter_scales().iter().all(|lane| *lane == Vec4::ONE));
+        assert!(
+            ParallaxCoefficients::zeros(Basis::Harmonics(2), 4)
+                .parameter_scales()
+                .iter()
+                .all(|lane| *lane == Vec4::ONE)
+        );
     }
 
     use crate::frame::tangent_light;
@@ -222,7 +229,11 @@ pub(super) mod tests {
     /// comes back from its lanes, and the gradient is that of the shift.
     #[test]
     fn coefficients_pass_through_lanes() {
-        let mut map = ShParallax { width: 3, height: 1, ..ShParallax::zeros(0, 0) };
+        let mut map = ParallaxCoefficients {
+            width: 3,
+            height: 1,
+            ..ParallaxCoefficients::zeros(Basis::Harmonics(0), 0)
+        };
         map.coefficients = (0..3).map(|i| Vec2::new(noise(i), noise(i + 7))).collect();
         let mut back = map.zeros_like();
         back.set_parameters(&map.parameters());

@@ -14,7 +14,7 @@ use crate::page::text::{bytes, change, count, decimal, duration, escape, verdict
 use crate::page::{document, section};
 use parbake::BakeError;
 use parbake::BakeReport;
-use parbake::{Baked, BeforeAndAfter, Comparison, Shading};
+use parbake::{Baked, BeforeAndAfter, Comparison, Parallax, Shading};
 use parbake_model::Model;
 use std::fmt::Write;
 
@@ -162,7 +162,11 @@ fn header(name: &str, high: &Model, report: &BakeReport, compared: &Comparison) 
     }
     if report.parallax_maps.is_some() {
         let options = &report.options;
-        facts.push(("parallax", format!("order {}, {}²", options.parallax_order, options.parallax_size)));
+        let kind = match options.parallax {
+            Parallax::Sh => format!("harmonics of order {}", options.parallax_order),
+            _ => "tangent frame".into(),
+        };
+        facts.push(("parallax", format!("{kind}, {}²", options.parallax_size)));
     }
     if let Some(peak) = report.peak_memory {
         facts.push(("peak memory", bytes(peak)));

@@ -24,8 +24,8 @@ pub use report::{VariantFigures, VariantsReport};
 use ground::Ground;
 use parbake::{BakeError, ProgressScope, Watcher};
 use parbake_metric::Rgb;
-use parbake_model::Model;
-use parbake_render::parallax::ShParallax;
+use parbake_model::{Basis, Model};
+use parbake_render::parallax::ParallaxCoefficients;
 use parbake_render::parallax_variants::height::{HeightParallax, Variant};
 use parbake_render::parallax_variants::heights::Heights;
 use parbake_render::parallax_variants::neural::NeuralParallax;
@@ -68,7 +68,7 @@ pub fn compare_variants(
             None => flat,
         }
     };
-    let harmonics = |order| ShParallax::zeros(order, options.parallax_size);
+    let harmonics = |order| ParallaxCoefficients::zeros(Basis::Harmonics(order), options.parallax_size);
     let variants = [
         Some(ground.variant("no parallax", Unshifted, &bridge)),
         ground.next("parallax", || heights(Variant::Parallax), &bridge),

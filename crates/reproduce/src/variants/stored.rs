@@ -1,7 +1,7 @@
 //! What maps cost once they are kept: their bytes, what rounding to these leaves of them, and
 //! what a pixel has to fetch.
 
-use parbake_render::parallax::ShParallax;
+use parbake_render::parallax::ParallaxCoefficients;
 use parbake_render::parallax_variants::height::HeightParallax;
 use parbake_render::parallax_variants::march::LAYERS;
 use parbake_render::parallax_variants::neural::NeuralParallax;
@@ -35,12 +35,12 @@ impl Stored for Unshifted {
     }
 }
 
-impl Stored for ShParallax {
+impl Stored for ParallaxCoefficients {
     fn stored(self) -> (Self, Cost) {
         let mut images = Vec::new();
         let packed = self.pack(&mut images);
         let bytes = images.iter().map(|image| 3 * image.pixels.len()).sum();
-        let back = ShParallax::unpack(&packed, &images).unwrap_or(self);
+        let back = ParallaxCoefficients::unpack(&packed, &images).unwrap_or(self);
         (back, Cost { bytes, places: 1, fetches: images.len() })
     }
 }
@@ -81,7 +81,10 @@ mod tests {
     /// Protects the costs that the report states, and that rounding is half a step at most.
     #[test]
     fn costs_are_as_kept() {
-        assert_eq!(ShParallax::zeros(3, 8).stored().1, Cost { bytes: 8 * 8 * 33, places: 1, fetches: 11 });
+        assert_eq!(
+            ParallaxCoefficients::zeros(parbake_model::Basis::Harmonics(3), 8).stored().1,
+            Cost { bytes: 8 * 8 * 33, places: 1, fetches: 11 }
+        );
         let mut map = HeightParallax::flat(Variant::Steep, 2, 1e-2);
         map.heights.level.texels = vec![[0.0], [0.3], [0.5], [1.0]];
         let (back, cost) = map.clone().stored();

@@ -3,7 +3,7 @@
 use super::*;
 use crate::{encode_png, write_obj};
 use parbake_model::{
-    CutoutMap, DepthMap, Image, Material, Mesh, ShParallaxMap, TextureSlot, UvTransform, Wrap,
+    Basis, CutoutMap, DepthMap, Image, Material, Mesh, ParallaxMap, TextureSlot, UvTransform, Wrap,
 };
 
 /// A triangle with a map of order 1: images 2 to 4, depth 5, cutout 6 to 8, own textures 9 and 1.
@@ -19,20 +19,21 @@ fn model() -> Model {
     };
     let slot = |image| Some(TextureSlot { image, ..TextureSlot::default() });
     let transform = UvTransform { rotation: 0.7, ..UvTransform::default() };
-    let map = ShParallaxMap {
-        order: 1,
+    let map = ParallaxMap {
+        basis: Basis::Harmonics(1),
         images: vec![2, 3, 4],
         scale: (0..8).map(|i| 0.1 / (i + 1) as f32).collect(),
         offset: (0..8).map(|i| -0.07 * (i + 1) as f32).collect(),
         limit: 0.1,
         depth: Some(DepthMap { image: 5, scale: 1.3, offset: -0.3 }),
         cutout: Some(CutoutMap {
-            order: 2,
+            basis: Basis::Harmonics(2),
             images: vec![6, 7, 8],
             scale: (0..9).map(|i| 0.3 * (i + 1) as f32).collect(),
             offset: (0..9).map(|i| -0.7 / (i + 1) as f32).collect(),
         }),
         wrap: [Wrap::Clamp, Wrap::Mirror],
+        fade: f32::INFINITY,
         base_color_texture: slot(9).map(|s| TextureSlot { uv_set: 1, transform, ..s }),
         normal_texture: slot(1),
     };
@@ -47,6 +48,82 @@ fn model() -> Model {
     let image = |(i, (w, h))| Image::solid(&format!("i{i}"), w, h, [i as u8, 2, 3, 255]);
     let images = sizes.into_iter().enumerate().map(image).collect();
     Model { name: "x".into(), mesh, materials: vec![material], images, rig: None }
+}
+
+/// The same triangle with a map in the tangent frame: images 2 and 3.
+fn tangent_model() -> Model {
+    let mut model = model();
+    model.mesh.tangents = vec![Vec4::new(1.0, 0.0, 0.0, -1.0); 3];
+    let map = ParallaxMap {
+        basis: Basis::TangentShift,
+        images: vec![2],
+        scale: (0..8).map(|i| 0.1 / (i + 1) as f32).collect(),
+        offset: (0..8).map(|i| -0.07 * (i + 1) as f32).collect(),
+        limit: 0.2,
+        fade: 0.03,
+        cutout: Some(CutoutMap {
+            basis: Basis::TangentCutout,
+            images: vec![3],
+            scale: (0..12).map(|i| 0.3 * (i + 1) as f32).collect(),
+            offset: (0..12).map(|i| -0.7 / (i + 1) as f32).collect(),
+        }),
+        ..ParallaxMap::default()
+    };
+    let image = |i: u8, w, h| Image::solid(&format!("i{i}"), w, h, [i, 2, 3, 90]);
+    model.images.truncate(2);
+    model.images.extend([image(2, 4, 8), image(3, 4, 12)]);
+    model.materials[0].parallax = Some(map);
+    model
+}
+
+/// Protects every bit of a map in the tangent frame on its way through a file, alpha included; and that whatever
+/// breaks one leaves the map out and keeps the model.
+#[test]
+fn maps_in_the_tangent_frame_come_back_the_same() {
+    let model = tangent_model();
+    let loaded = read_glb(&model);
+    assert_eq!(loaded.warnings, [""; 0]);
+    assert_eq!(loaded.model.materials, model.materials);
+    assert_eq!(loaded.model.images, model.images);
+    let document = written(&model);
+    assert_eq!(document["extensionsUsed"], json!(["PARBAKE_materials_parallax"]));
+    type Breakage = fn(&mut Value);
+    let breakages: [(Breakage, &str); 5] = [
+        (|map| map["version"] = 3.into(), "its version is 3, and this reads version 2"),
+        (|map| _ = map.as_object_mut().unwrap().remove("version"), "it has no version"),
+        (|map| map["scale"] = json!([1.0]), "it has 1 scales, and its functions ask for 8"),
+        (|map| _ = map.as_object_mut().unwrap().remove("texture"), "a texture of it is missing"),
+        (|map| map["cutout"]["offset"] = json!([1.0]), "its cutout is broken: it has 1 offsets"),
+    ];
+    for (breakage, expected) in breakages {
+        let mut document = written(&model);
+        breakage(&mut document["materials"][0]["extensions"]["PARBAKE_materials_parallax"]);
+        let bytes = glb_of(&model, &document);
+        let loaded = read_gltf_bytes(Path::new("x.glb"), &bytes, &NoResources, &Limits::default()).unwrap();
+        assert!(loaded.model.materials[0].parallax.is_none());
+        assert!(
+            loaded.warnings.iter().any(|w| w.to_string().contains(expected)),
+            "{expected}: {:?}",
+            loaded.warnings
+        );
+    }
+}
+
+/// A GLB file of a model with another document.
+fn glb_of(model: &Model, document: &Value) -> Vec<u8> {
+    let bytes = glb_bytes(model).unwrap();
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let mut text = serde_json::to_vec(document).unwrap();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let binary = &bytes[20 + length..];
+    let total = 20 + text.len() + binary.len();
+    let mut out = bytes[..8].to_vec();
+    out.extend((total as u32).to_le_bytes());
+    out.extend((text.len() as u32).to_le_bytes());
+    out.extend(&bytes[16..20]);
+    out.extend(text);
+    out.extend(binary);
+    out
 }
 
 fn read_glb(model: &Model) -> Loaded {
@@ -124,15 +201,16 @@ fn defaults_are_those_of_the_page() {
     };
     let mut document = small();
     let (scale, offset) = (vec![0.5, 0.25], vec![0.0, -0.5]);
-    let expected = ShParallaxMap { images: vec![0], scale, offset, ..ShParallaxMap::default() };
+    let expected = ParallaxMap { images: vec![0], scale, offset, ..ParallaxMap::default() };
     assert_eq!(map(&document), expected);
     document["nodes"][0]["scale"] = json!([3, 3, 3]);
     document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"]["depthTexture"] =
         json!({ "index": 0 });
     let depth = Some(DepthMap { image: 0, scale: 1.0, offset: 0.0 });
     document["materials"][0]["extensions"]["PARBAKE_materials_parallax_sh"]["cutout"] = small_cutout();
-    let cutout = CutoutMap { order: 0, images: vec![0], scale: vec![2.0], offset: vec![-0.5] };
-    assert_eq!(map(&document), ShParallaxMap { depth, cutout: Some(cutout), ..expected });
+    let cutout =
+        CutoutMap { basis: Basis::Harmonics(0), images: vec![0], scale: vec![2.0], offset: vec![-0.5] };
+    assert_eq!(map(&document), ParallaxMap { depth, cutout: Some(cutout), ..expected });
 }
 
 /// Protects models from broken maps: they are read without them, and the warning says why.
