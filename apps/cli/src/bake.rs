@@ -5,7 +5,7 @@ use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::formats::{check_formats, write_model};
 use crate::options_file::merged;
-use crate::outputs::{check_beside, check_maps, check_not_input, check_output, is_stdout};
+use crate::outputs::{check_beside, check_maps, check_not_input, check_output, is_obj, is_stdout};
 use crate::progress::{Console, interrupted};
 use crate::rules;
 use clap::ArgMatches;
@@ -31,6 +31,7 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
     check_maps(output, &options)?;
     check_output(output)?;
     check_formats(output, &options.write)?;
+    check_parts(output, &options)?;
     check_not_input(output, &inputs)?;
     check_beside(Some(output), command.json.as_ref(), command.report.as_ref(), &inputs)?;
     let console = Console::for_bake(command.talk, options.time_budget).confined(command.reading);
@@ -72,6 +73,17 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
 /// Interrupted only if that cost anything: a report is finished all the same.
 pub fn ending(report: &BakeReport) -> Ending {
     if interrupted() && report.stopped_early { Ending::Interrupted } else { Ending::Finished }
+}
+
+/// Refuses parts that stay apart in a file that has no nodes.
+fn check_parts(output: &Path, options: &BakeOptions) -> Result<(), Failure> {
+    match options.keep_parts.is_empty() || !is_obj(output) {
+        true => Ok(()),
+        false => Err(Failure::Usage(format!(
+            "--keep-parts acts on GLB files only, since an OBJ has no nodes; {} is an OBJ",
+            output.display()
+        ))),
+    }
 }
 
 /// Refuses the name that elsewhere means standard input.

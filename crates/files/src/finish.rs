@@ -1,7 +1,7 @@
 //! The last step of every reader: makes the mesh keep its contract, and says what
 //! had to be done for it.
 //!
-//! * triangles without area go (two corners at one place, or all on one line);
+//! * triangles without area go (two corners at one place, or all on one line), and with them what is said of them;
 //! * normals become unit vectors; one without a direction is replaced by the
 //!   area-weighted mean of its triangles' normals;
 //! * texture coordinates and colours that are no numbers become 0 and white.
@@ -13,7 +13,7 @@ use crate::unit::{unit, unit_tangent};
 use crate::words::count;
 use crate::{Contents, FileError, Loaded, Place};
 use parbake_model::glam::{DVec3, Vec2, Vec3, Vec4};
-use parbake_model::{Mesh, Model};
+use parbake_model::{Hierarchy, Mesh, Model};
 
 /// Ends a reading. `empty_detail` explains an empty mesh, in words that follow
 /// "the model has no triangles".
@@ -23,7 +23,7 @@ pub(crate) fn finish(
     empty_detail: &str,
 ) -> Result<Loaded, FileError> {
     let mesh = &mut model.mesh;
-    let degenerate = drop_degenerate(mesh);
+    let degenerate = drop_degenerate(mesh, model.nodes.as_mut());
     if mesh.triangles.is_empty() {
         let detail = match degenerate {
             0 => empty_detail.into(),
@@ -55,7 +55,7 @@ fn area_normal(mesh: &Mesh, triangle: usize) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-fn drop_degenerate(mesh: &mut Mesh) -> usize {
+fn drop_degenerate(mesh: &mut Mesh, mut nodes: Option<&mut Hierarchy>) -> usize {
     let before = mesh.triangles.len();
     let mut kept = 0;
     for i in 0..before {
@@ -63,11 +63,17 @@ fn drop_degenerate(mesh: &mut Mesh) -> usize {
         if a != b && b != c && c != a && area_normal(mesh, i) != DVec3::ZERO {
             mesh.triangles[kept] = mesh.triangles[i];
             mesh.triangle_materials[kept] = mesh.triangle_materials[i];
+            if let Some(nodes) = &mut nodes {
+                nodes.of_triangles[kept] = nodes.of_triangles[i];
+            }
             kept += 1;
         }
     }
     mesh.triangles.truncate(kept);
     mesh.triangle_materials.truncate(kept);
+    if let Some(nodes) = nodes {
+        nodes.of_triangles.truncate(kept);
+    }
     before - kept
 }
 

@@ -9,6 +9,7 @@
 //! * images are 8-bit RGBA, row 0 on top.
 
 mod cutout;
+mod hierarchy;
 mod image;
 mod material;
 mod material_extensions;
@@ -21,6 +22,7 @@ mod short_uv;
 
 pub use cutout::CutoutMap;
 pub use glam;
+pub use hierarchy::{Hierarchy, Node};
 pub use image::Image;
 pub use material::{AlphaMode, Material, TextureSlot, UvTransform, Wrap};
 pub use material_extensions::{
@@ -33,7 +35,7 @@ pub use parallax_fault::ParallaxFault;
 pub use placement::{Bounds, Placement};
 pub use rig::{
     Animation, Influences, Interpolation, Joint, MOST_INFLUENCES, Morph, MorphTarget, NodeTransform,
-    Property, Rig, RigNode, Skeleton, Track,
+    Property, Rig, Skeleton, Track,
 };
 pub use short_uv::{is_short, nearest_short, short_uv, short_uvs_pay};
 
@@ -41,7 +43,7 @@ pub use short_uv::{is_short, nearest_short, short_uv, short_uvs_pay};
 ///
 /// Contract: every `Mesh::triangle_materials` entry indexes `materials`, and
 /// every [`TextureSlot::image`] indexes `images`; every [`ShParallaxMap`] passes its
-/// check; a [`Rig`] fits the mesh. There is at least one material.
+/// check; a [`Rig`] and every [`Hierarchy`] fit the mesh. There is at least one material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {
     /// A name to show to people, usually the file's.
@@ -54,4 +56,9 @@ pub struct Model {
     pub images: Vec<Image>,
     /// Skin, morph targets and animations of this mesh; none of a model in which nothing moves.
     pub rig: Option<Rig>,
+    /// The nodes that it was read from; none where a file has none, or where triangles are no longer those of the file.
+    pub nodes: Option<Hierarchy>,
+    /// The parts that stay apart, each a node with triangles, and what is above them; what hangs on no node is the
+    /// rest. Writers give each a mesh of its own in the node's space; all else that a model was read from is joined.
+    pub parts: Option<Hierarchy>,
 }

@@ -258,6 +258,11 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME=WEIGHT", help_heading = heading::QUALITY))]
     pub importance: Vec<Importance>,
 
+    /// Nodes of the high-poly that stay apart, with --triangles, each with what hangs below it, as a part with its name,
+    /// pivot and material's name; all share one set of textures. NAME may hold * and ?. A list, or several times
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", value_delimiter = ',', help_heading = heading::SHAPE))]
+    pub keep_parts: Vec<String>,
+
     /// Seconds after which the best textures so far are written, 0 to 1e9, reading of files included. Below 8
     /// vertices stay and UVs are only repaired [default: no limit]
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "SECONDS", help_heading = heading::QUALITY))]
@@ -341,6 +346,7 @@ impl Default for BakeOptions {
             view_size: None,
             rounds: None,
             importance: Vec::new(),
+            keep_parts: Vec::new(),
             seed: 0,
             threads: 0,
             time_budget: None,

@@ -9,7 +9,7 @@
 //! Costs go stale as their surroundings change. They are evaluated again when their turn comes (a lazy queue),
 //! several at once on all cores.
 //!
-//! Contract: deterministic; ends at the wanted number of triangles or one less; at fewer where only whole parts can
+//! Contract: deterministic; no part loses what it has to keep (`surface.rs`); ends at the wanted number of triangles or one less; at fewer where only whole parts can
 //! go, at more only where nothing can.
 
 use crate::change::Change;
@@ -196,8 +196,8 @@ fn best(pictures: &Pictures, candidate: &Candidate, scratch: &mut Scratch) -> Op
             places.into_iter().filter_map(|place| Change::collapse(surface, *b, *a, place)).collect()
         }
     };
-    let (gain, change) =
-        pictures.best_of(changes.into_iter().filter(|change| change.saved() > 0), scratch)?;
+    let (gain, change) = pictures
+        .best_of(changes.into_iter().filter(|change| change.saved() > 0 && surface.may(change)), scratch)?;
     let lengths: f64 = change.added.iter().map(|t| squared_sides(change.corners(surface, t))).sum();
     let cost = (LENGTH * lengths - gain) / change.saved() as f64;
     Some((change, cost))

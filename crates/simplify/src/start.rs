@@ -8,6 +8,10 @@ use meshopt::SimplifyOptions as Flags;
 use parbake_model::Mesh;
 use parbake_model::glam::Vec3;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Triangles that a part which was lost begins with, for each that it has to keep.
+const LOST_ROOM: usize = 4;
 
 /// How a surface to begin with is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -22,8 +26,51 @@ pub enum Start {
 /// Edge collapses down to about `target` triangles, in halvings: one shot at a large reduction is worse. `parts` has the
 /// part of each material, as in [`Surface::in_parts`].
 pub fn quadrics(mesh: &Mesh, parts: &[u32], target: usize) -> Mesh {
-    let surface = Surface::in_parts(mesh, parts).to_mesh();
-    let (mut positions, mut indices, materials) = by_material(&surface);
+    collapsed(&Surface::in_parts(mesh, parts).to_mesh(), target, Flags::Prune | Flags::RegularizeLight)
+}
+
+/// A start in which each part has `least` triangles, or all that it has in `mesh`: parts of which edge collapses left less
+/// are begun again, each by itself.
+pub fn with_lost_parts(start: Mesh, mesh: &Mesh, parts: &[u32], least: usize) -> Mesh {
+    let found = counts_of_parts(&start, parts);
+    let is_lost = |(part, count): &(u32, usize)| found.get(part).copied().unwrap_or(0) < least.min(*count);
+    let lost: Vec<(u32, usize)> = counts_of_parts(mesh, parts).into_iter().filter(is_lost).collect();
+    if lost.is_empty() {
+        return start;
+    }
+    let part_of = |material: u32| parts.get(material as usize).copied().unwrap_or(0);
+    let mut out = only(&start, |material| lost.iter().all(|(part, _)| *part != part_of(material)));
+    for &(part, _) in &lost {
+        let own = Surface::new(&only(mesh, |material| part_of(material) == part)).to_mesh();
+        // Nothing of it is pruned.
+        let own = collapsed(&own, LOST_ROOM * least, Flags::RegularizeLight);
+        let first = out.positions.len() as u32;
+        out.positions.extend(own.positions);
+        out.triangles.extend(own.triangles.iter().map(|triangle| triangle.map(|vertex| vertex + first)));
+        out.triangle_materials.extend(own.triangle_materials);
+    }
+    out
+}
+
+/// Triangles of each part.
+pub fn counts_of_parts(mesh: &Mesh, parts: &[u32]) -> BTreeMap<u32, usize> {
+    let mut counts = BTreeMap::new();
+    for &material in &mesh.triangle_materials {
+        *counts.entry(parts.get(material as usize).copied().unwrap_or(0)).or_default() += 1;
+    }
+    counts
+}
+
+/// The triangles of some materials.
+fn only(mesh: &Mesh, is_wanted: impl Fn(u32) -> bool) -> Mesh {
+    let triangles = mesh.triangles.iter().zip(&mesh.triangle_materials);
+    let (triangles, triangle_materials) = triangles.filter(|(_, material)| is_wanted(**material)).unzip();
+    Mesh { positions: mesh.positions.clone(), triangles, triangle_materials, ..Mesh::default() }
+}
+
+/// A welded surface with about `target` triangles.
+fn collapsed(surface: &Mesh, target: usize, flags: Flags) -> Mesh {
+    let (mut positions, mut indices, materials) = by_material(surface);
     let mut count = indices.len() / 3;
     while count > target {
         let next = (count / 2).max(target);
@@ -37,7 +84,7 @@ pub fn quadrics(mesh: &Mesh, parts: &[u32], target: usize) -> Mesh {
             None,
             wanted,
             f32::MAX,
-            Flags::Prune | Flags::RegularizeLight,
+            flags,
             None,
         );
         indices.truncate(kept);

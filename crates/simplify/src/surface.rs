@@ -32,6 +32,12 @@ pub struct Surface {
     /// For each point the triangles around it.
     around: Vec<Vec<u32>>,
     count: usize,
+    /// The part of each material; nothing where there is one part.
+    parts: Vec<u32>,
+    /// Triangles of each part.
+    counts: Vec<usize>,
+    /// Triangles that each part keeps at least; nothing where parts may go.
+    floors: Vec<usize>,
 }
 
 impl Surface {
@@ -45,19 +51,38 @@ impl Surface {
     pub fn in_parts(mesh: &Mesh, parts: &[u32]) -> Self {
         let first = weld_by_position(&mesh.positions);
         let mut index: HashMap<(u32, u32), u32> = HashMap::with_capacity(first.len());
-        let mut out = Self::default();
+        let mut out = Self { parts: parts.to_vec(), ..Self::default() };
         for (corners, &material) in mesh.triangles.iter().zip(&mesh.triangle_materials) {
             let welded = corners.map(|v| first[v as usize]);
             if welded[0] == welded[1] || welded[1] == welded[2] || welded[2] == welded[0] {
                 continue;
             }
-            let part = parts.get(material as usize).copied().unwrap_or(0);
+            let part = out.part_of(material);
             let corners = welded.map(|v| {
                 *index.entry((v, part)).or_insert_with(|| out.push_point(mesh.positions[v as usize]))
             });
             out.push(Triangle { corners, material });
         }
         out
+    }
+
+    /// The part of a material.
+    fn part_of(&self, material: u32) -> u32 {
+        self.parts.get(material as usize).copied().unwrap_or(0)
+    }
+
+    /// From now on each part keeps so many triangles, or all that it has if these are fewer.
+    pub fn keep_of_each_part(&mut self, least: usize) {
+        self.floors = self.counts.iter().map(|&count| count.min(least)).collect();
+    }
+
+    /// Whether a change leaves its part what that has to keep. All its triangles are of one part.
+    pub fn may(&self, change: &Change) -> bool {
+        let first = change.removed.iter().find_map(|&triangle| self.get(triangle));
+        let Some(part) = first.map(|triangle| self.part_of(triangle.material) as usize) else { return true };
+        let (count, floor) = (self.counts.get(part).copied(), self.floors.get(part).copied());
+        let left = count.unwrap_or(0) + change.added.len();
+        left >= change.removed.len() + floor.unwrap_or(0)
     }
 
     /// Adds a point that no triangle uses yet.
@@ -72,6 +97,11 @@ impl Surface {
         self.triangles.push(Some(triangle));
         triangle.corners.iter().for_each(|&point| self.around[point as usize].push(index));
         self.count += 1;
+        let part = self.part_of(triangle.material) as usize;
+        if part >= self.counts.len() {
+            self.counts.resize(part + 1, 0);
+        }
+        self.counts[part] += 1;
         index
     }
 
@@ -81,6 +111,8 @@ impl Surface {
                 self.around[point as usize].retain(|&other| other != index);
             }
             self.count -= 1;
+            let part = self.part_of(triangle.material) as usize;
+            self.counts[part] -= 1;
         }
     }
 

@@ -123,6 +123,7 @@ fn yes() -> bool {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Mesh {
+    pub name: String,
     pub primitives: Vec<Primitive>,
     /// Of morph targets, where a node does not have its own.
     pub weights: Vec<f32>,

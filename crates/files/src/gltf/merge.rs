@@ -19,7 +19,7 @@ use super::topology::{has_triangles, triangles};
 use super::uv_sets::UvSets;
 use crate::{FileError, Place};
 use parbake_model::glam::{DAffine3, DMat3, Vec2, Vec3, Vec4};
-use parbake_model::{Mesh, Rig};
+use parbake_model::{Hierarchy, Mesh, Rig};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -52,6 +52,8 @@ pub(super) struct Merge<'a, 'd> {
     /// What vertices follow, where something moves.
     pub binding: Option<Binding>,
     pub morphs: Morphs,
+    /// For each triangle the document's node that places it.
+    pub triangle_nodes: Vec<u32>,
 }
 
 impl<'a, 'd> Merge<'a, 'd> {
@@ -69,7 +71,7 @@ impl<'a, 'd> Merge<'a, 'd> {
             colors: any(|p| p.attributes.color_0.is_some()),
         };
         let (mesh, materials, turned, scales, material_ids, placed, drawn, places) = Default::default();
-        let (binding, morphs) = Default::default();
+        let (binding, morphs, triangle_nodes) = Default::default();
         Self {
             buffers,
             mesh,
@@ -84,6 +86,7 @@ impl<'a, 'd> Merge<'a, 'd> {
             places,
             binding,
             morphs,
+            triangle_nodes,
         }
     }
 
@@ -191,6 +194,8 @@ impl<'a, 'd> Merge<'a, 'd> {
             }
         }
         self.mesh.triangle_materials.resize(already + triangles.len(), material);
+        let node = at.node.map_or(Hierarchy::NONE, |node| node as u32);
+        self.triangle_nodes.resize(already + triangles.len(), node);
         self.mesh.triangles.append(&mut triangles);
         self.positions(&sources.position, &elements, at, &placing)?;
         self.attributes(&sources, &elements, &placing);

@@ -25,9 +25,9 @@ mod written;
 
 use crate::bake::{Baked, bake_as, prepare_high_poly};
 use crate::error::BakeError;
-use crate::low_poly::low_poly;
+use crate::low_poly::{check_triangles, least_of, low_poly};
+use crate::parts::{PartReport, draw_calls, part_reports, with_kept_parts, with_parted_materials};
 use crate::report::Work;
-use crate::rigs::with_parted_materials;
 use chain::{Chain, hurried};
 use options::LodOptions;
 use parbake_files::WriteOptions;
@@ -66,8 +66,11 @@ pub struct LevelReport {
     pub texture_size: usize,
     /// Texels of all its textures.
     pub texels: usize,
-    /// Draw calls: one for each material.
+    /// Draw calls: one for each material, of each part that stays apart and of the rest.
     pub draw_calls: usize,
+    /// The nodes that stay apart.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<PartReport>,
     /// How the triangles of each layer (opaque, cut out, blended, transmitting) were found.
     pub low_poly: Vec<LayerReport>,
     /// Against the original, at the size that it was made for; of what the file holds.
@@ -94,7 +97,8 @@ pub struct LevelReport {
 /// before.
 ///
 /// # Errors
-/// An option out of range; a model without extent; what `on_level` returns.
+/// An option out of range; a model without extent; parts that are not there, or too many for so few triangles; what
+/// `on_level` returns.
 pub fn make_levels<E: From<BakeError>>(
     model: &Model,
     options: &LodOptions,
@@ -103,7 +107,8 @@ pub fn make_levels<E: From<BakeError>>(
 ) -> Result<usize, E> {
     options.check()?;
     let start = Instant::now();
-    let model = &*with_parted_materials(model);
+    let kept = with_kept_parts(model, &options.keep_parts)?;
+    let model = &*with_parted_materials(&kept);
     let maker = Maker::new(model, options)?;
     let sizes = (0..options.screen_size.len())
         .map(|level| (maker.wanted_triangles(level), maker.texture_size(model, options.screen_size[level])));
@@ -134,7 +139,8 @@ pub fn make_levels<E: From<BakeError>>(
             triangles: baked.model.mesh.triangles.len(),
             texture_size: baked.model.images.iter().map(|image| image.width).max().unwrap_or(0),
             texels: baked.model.images.iter().map(|image| image.width * image.height).sum(),
-            draw_calls: baked.model.materials.len(),
+            draw_calls: draw_calls(&baked.model),
+            parts: part_reports(&baked.model),
             low_poly: layers,
             at_screen_size: figures.at_screen_size,
             switch_pixels: figures.switch_pixels,
@@ -159,6 +165,8 @@ pub(crate) struct Maker<'a> {
     pub lineup: Lineup,
     /// The model, ready for pictures.
     pub original: Subject,
+    /// The fewest triangles that a level may have.
+    pub least: usize,
 }
 
 /// A baked level without figures.
@@ -181,9 +189,11 @@ struct Figures {
 impl<'a> Maker<'a> {
     fn new(model: &'a Model, options: &'a LodOptions) -> Result<Self, BakeError> {
         let high = prepare_high_poly(model, &options.bake(options.max_texture_size))?;
+        options.triangles.iter().try_for_each(|&count| check_triangles(&high, model, count))?;
+        let least = least_of(&high, model);
         let lineup = Lineup::new(model, options.shading);
         let original = lineup.subject(model)?;
-        Ok(Self { model, high, options, lineup, original })
+        Ok(Self { model, high, options, lineup, original, least })
     }
 
     /// Chooses so many triangles and bakes, to be finished by `until`; the texture's size follows the level's where
@@ -228,7 +238,7 @@ impl<'a> Maker<'a> {
     }
 
     fn wanted_triangles(&self, level: usize) -> usize {
-        let (least, high, options) = (4, &self.high, self.options);
+        let (least, high, options) = (self.least, &self.high, self.options);
         match (options.triangles.get(level), options.ratio.get(level)) {
             (Some(&count), _) => count,
             (None, Some(share)) => ((share * high.triangles as f64).round() as usize).max(least),

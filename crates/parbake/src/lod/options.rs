@@ -42,6 +42,11 @@ pub struct LodOptions {
     #[serde(deserialize_with = "crate::texels::texels")]
     pub max_texture_size: usize,
 
+    /// Nodes of the model that stay apart, each with what hangs below it, as a part with its name, pivot and material's name;
+    /// all share one set of textures. NAME may hold * and ?. A list, or several times
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", value_delimiter = ',', help_heading = LEVELS))]
+    pub keep_parts: Vec<String>,
+
     /// PSNR in dB from which on a level cannot be told from the one before, 10 to 60; says where levels switch
     #[cfg_attr(feature = "clap", arg(long, value_name = "DECIBELS", default_value_t = 35.0, help_heading = LEVELS))]
     pub switch_psnr: f64,
@@ -99,6 +104,7 @@ impl Default for LodOptions {
             ratio: Vec::new(),
             error: 0.25,
             target_psnr: None,
+            keep_parts: Vec::new(),
             max_texture_size: 2048,
             switch_psnr: 35.0,
             viewport_height: 1080.0,

@@ -149,7 +149,7 @@ pub fn optimise_uvs(
         }
     }
     mesh.triangle_materials.fill(0);
-    let model = Model { name, mesh, materials: vec![Material::default()], images: Vec::new(), rig: None };
+    let model = Model { name, mesh, materials: vec![Material::default()], ..Model::default() };
     UvStageResult { model, moves, pieces, report }
 }
 
@@ -361,7 +361,7 @@ mod tests {
             mesh,
             materials: vec![Material::default()],
             images: Vec::new(),
-            rig: None,
+            ..Model::default()
         }
     }
 

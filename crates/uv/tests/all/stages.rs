@@ -52,7 +52,7 @@ fn sheet() -> Model {
         mesh,
         materials: vec![Material { base_color_texture: Some(slot), ..Material::default() }],
         images: vec![Image { name: "details".into(), width: side, height: side, pixels }],
-        rig: None,
+        ..Model::default()
     }
 }
 
