@@ -15,7 +15,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Options of a bake that do nothing where a model's own texture is replaced: the surface stays.
-pub const NOT_IN_COMPRESS: [&str; 12] = [
+pub const NOT_IN_COMPRESS: [&str; 13] = [
     "shape",
     "silhouette_background",
     "silhouette",
@@ -27,6 +27,7 @@ pub const NOT_IN_COMPRESS: [&str; 12] = [
     "cutout_size",
     "max_distance",
     "importance",
+    "importance_attribute",
     "keep_parts",
 ];
 

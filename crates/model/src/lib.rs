@@ -58,6 +58,8 @@ pub struct Model {
     pub rig: Option<Rig>,
     /// The nodes that it was read from; none where a file has none, or where triangles are no longer those of the file.
     pub nodes: Option<Hierarchy>,
+    /// F painted importances, 0 to 1, where 0.5 is as if nothing was painted; or empty.
+    pub painted: Vec<f32>,
     /// The parts that stay apart, each a node with triangles, and what is above them; what hangs on no node is the
     /// rest. Writers give each a mesh of its own in the node's space; all else that a model was read from is joined.
     pub parts: Option<Hierarchy>,

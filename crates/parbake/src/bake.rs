@@ -163,7 +163,7 @@ pub(crate) fn conventions(options: &BakeOptions) -> Conventions {
 
 fn prepare(high: &Model, options: &BakeOptions) -> Result<HighPoly, BakeError> {
     let mut prepared = HighPoly::new(high, conventions(options))?;
-    prepared.importances = importances(high, &options.importance)?;
+    prepared.importances = importances(high, &options.importance, options.importance_attribute.as_deref())?;
     Ok(prepared)
 }
 

@@ -34,6 +34,16 @@ pub enum BakeError {
         /// What there is.
         has: String,
     },
+    /// A model that was read without what is painted on it.
+    #[error(
+        "--importance-attribute {attribute}: {model} was read without it; read it by read_painted_model with the same name"
+    )]
+    NotPainted {
+        /// The model.
+        model: String,
+        /// The attribute.
+        attribute: String,
+    },
     /// Parts of a model that moves.
     #[error(
         "--keep-parts: {model} has skins, morph targets or animations, and so becomes one mesh with a skeleton, in which \

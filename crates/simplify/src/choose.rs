@@ -243,3 +243,17 @@ fn weigh_backgrounds(sets: &mut [Vec<Target>], surface: &Surface) {
     let weights = weights.map(|weight| (weight / sum) as f32);
     sets.par_iter_mut().flatten().for_each(|target| target.weigh(weights));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects budgets: layers share the triangles as they begin, none gets less than its floor, and together they have
+    /// no more than is wanted.
+    #[test]
+    fn layers_share_the_triangles() {
+        assert_eq!(shares(100, &[300, 100], &[1, 1]), [75, 25]);
+        assert_eq!(shares(100, &[999, 1, 0], &[1, 8, 1]), [91, 8, 1]);
+        assert_eq!(shares(10, &[50, 50], &[8, 8]), [8, 8]);
+    }
+}

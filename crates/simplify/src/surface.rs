@@ -38,7 +38,14 @@ pub struct Surface {
     counts: Vec<usize>,
     /// Triangles that each part keeps at least; nothing where parts may go.
     floors: Vec<usize>,
+    /// Lengths that parts span at least, corner to corner of their boxes, while they have few triangles.
+    spans: Vec<f32>,
 }
+
+/// Triangles up to which a part is watched for its span, since that takes a look at all of them.
+const WATCHED: usize = 128;
+/// Share of its span that a part keeps: what is left shall be all of it, coarsely, and no crumb.
+pub const KEPT_SPAN: f32 = 0.8;
 
 impl Surface {
     /// Welds the vertices of a mesh by position; triangles without extent are left out.
@@ -71,18 +78,44 @@ impl Surface {
         self.parts.get(material as usize).copied().unwrap_or(0)
     }
 
-    /// From now on each part keeps so many triangles, or all that it has if these are fewer.
+    /// From now on each part keeps so many triangles, or all that it has if these are fewer, and most of its span.
     pub fn keep_of_each_part(&mut self, least: usize) {
         self.floors = self.counts.iter().map(|&count| count.min(least)).collect();
+        if least > 0 {
+            let nothing = Change::default();
+            self.spans = (0..self.counts.len() as u32)
+                .map(|part| KEPT_SPAN * self.span_after(part, &nothing))
+                .collect();
+        }
+    }
+
+    /// From now on parts may become shorter; returns whether they might not.
+    pub fn forget_spans(&mut self) -> bool {
+        !std::mem::take(&mut self.spans).is_empty()
     }
 
     /// Whether a change leaves its part what that has to keep. All its triangles are of one part.
     pub fn may(&self, change: &Change) -> bool {
         let first = change.removed.iter().find_map(|&triangle| self.get(triangle));
-        let Some(part) = first.map(|triangle| self.part_of(triangle.material) as usize) else { return true };
-        let (count, floor) = (self.counts.get(part).copied(), self.floors.get(part).copied());
-        let left = count.unwrap_or(0) + change.added.len();
-        left >= change.removed.len() + floor.unwrap_or(0)
+        let Some(part) = first.map(|triangle| self.part_of(triangle.material)) else { return true };
+        let (count, floor) = (self.counts[part as usize], self.floors.get(part as usize).copied());
+        let left = count + change.added.len() - change.removed.len();
+        let span = self.spans.get(part as usize).filter(|_| count <= WATCHED);
+        left >= floor.unwrap_or(0) && span.is_none_or(|&span| self.span_after(part, change) >= span)
+    }
+
+    /// Length from corner to corner of a part's box after a change.
+    fn span_after(&self, part: u32, change: &Change) -> f32 {
+        let kept = self.triangles().filter(|(index, triangle)| {
+            self.part_of(triangle.material) == part && !change.removed.contains(index)
+        });
+        let kept = kept.map(|(_, triangle)| self.corners(triangle.corners));
+        let added = change.added.iter().map(|triangle| change.corners(self, triangle));
+        let boxed = kept.chain(added).flatten().fold(None, |boxed: Option<(Vec3, Vec3)>, point| {
+            let (low, high) = boxed.unwrap_or((point, point));
+            Some((low.min(point), high.max(point)))
+        });
+        boxed.map_or(0.0, |(low, high)| low.distance(high))
     }
 
     /// Adds a point that no triangle uses yet.

@@ -33,6 +33,7 @@ mod morphs;
 mod motion;
 mod names;
 mod pack;
+mod painted;
 mod parallax;
 mod pieces;
 mod quantise;
@@ -93,6 +94,7 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
     merge.add_all()?;
     let rig = merge.rig()?;
     let nodes = hierarchy::hierarchy(&buffers, std::mem::take(&mut merge.triangle_nodes))?;
+    let painted = std::mem::take(&mut merge.painted).values(&buffers)?;
     let (mesh, used) = (std::mem::take(&mut merge.mesh), std::mem::take(&mut merge.materials));
     let turned = std::mem::take(&mut merge.turned);
     let scales = std::mem::take(&mut merge.scales);
@@ -116,7 +118,7 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
         }
     }
     let name = context.path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    finish(Model { name, mesh, materials, images, rig, nodes, parts: None }, context, empty)
+    finish(Model { name, mesh, materials, images, rig, nodes, painted, parts: None }, context, empty)
 }
 
 fn parse(text: &[u8], context: &Context<'_>) -> Result<json::Document, FileError> {
