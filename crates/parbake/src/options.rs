@@ -219,6 +219,12 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "TEXELS", help_heading = heading::UV))]
     pub gutter: Option<f64>,
 
+    /// Smallest mip level at which charts of a layout that is made here should be two texels apart, as far as they are few
+    /// enough; levels of detail settle it
+    #[cfg_attr(feature = "clap", arg(skip))]
+    #[serde(skip)]
+    pub smallest_mip: Option<f64>,
+
     /// Steps of the UV optimiser, 0 to 10000 [default: by preset 10, 30, 60, in compress 80, 240, 480; with
     /// --method paper 800]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::UV))]
@@ -338,6 +344,7 @@ impl Default for BakeOptions {
             method: Method::Fit,
             no_content_aware: false,
             gutter: None,
+            smallest_mip: None,
             uv_steps: None,
             more_triangles: None,
             convention: Convention::Gltf,

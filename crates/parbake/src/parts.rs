@@ -190,3 +190,97 @@ pub fn part_reports(model: &Model) -> Vec<PartReport> {
         |(node, triangles): (&parbake_model::Node, usize)| PartReport { name: node.name.clone(), triangles };
     parts.nodes.iter().zip(parts.counts()).filter(|(_, count)| *count > 0).map(report).collect()
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use parbake_model::glam::{DVec3, Vec3};
+    use parbake_model::{Node, NodeTransform, Rig};
+
+    /// Five triangles: on a car's body, on a wheel of two materials and its hub below, and on a lamp without one above it.
+    fn car() -> Model {
+        let node = |name: &str, parent| Node { name: name.into(), parent, rest: NodeTransform::IDENTITY };
+        let nodes = vec![
+            node("scene", None),
+            node("body", Some(0)),
+            node("wheel", Some(1)),
+            node("hub", Some(2)),
+            node("lamp", None),
+        ];
+        let sizes = [1.0, 1.0, 2.0, 1.0, 1.0f32];
+        let mesh = Mesh {
+            positions: sizes.iter().flat_map(|&s| [Vec3::ZERO, Vec3::X * s, Vec3::Y * s]).collect(),
+            triangles: (0..5).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
+            triangle_materials: vec![0, 1, 2, 1, 0],
+            ..Mesh::default()
+        };
+        let material = |name: &str| Material { name: name.into(), ..Material::default() };
+        Model {
+            name: "car".into(),
+            mesh,
+            materials: vec![material("paint"), material("rubber"), material("steel")],
+            nodes: Some(Hierarchy { nodes, of_triangles: vec![1, 2, 2, 3, 4] }),
+            ..Model::default()
+        }
+    }
+
+    fn kept(model: &Model, patterns: &[&str]) -> Result<Model, String> {
+        let patterns: Vec<String> = patterns.iter().map(ToString::to_string).collect();
+        with_kept_parts(model, &patterns).map(Cow::into_owned).map_err(|error| error.to_string())
+    }
+
+    /// Protects pivots: a part takes along what hangs below it, but for parts of their own; nodes above it stay, others go.
+    #[test]
+    fn parts_are_nodes_with_what_hangs_below() {
+        let names = |model: &Model| -> Vec<String> {
+            model.parts.as_ref().unwrap().nodes.iter().map(|node| node.name.clone()).collect()
+        };
+        let whole = kept(&car(), &["wheel"]).unwrap();
+        assert_eq!(names(&whole), ["scene", "body", "wheel"]);
+        let none = Hierarchy::NONE;
+        assert_eq!(whole.parts.as_ref().unwrap().of_triangles, [none, 2, 2, 2, none]);
+        let apart = kept(&car(), &["hub", "whe*", "lamp"]).unwrap();
+        assert_eq!(names(&apart), ["scene", "body", "wheel", "hub", "lamp"]);
+        assert_eq!(apart.parts.as_ref().unwrap().of_triangles, [none, 2, 2, 3, 4]);
+        let told: Vec<(String, usize)> =
+            part_reports(&apart).into_iter().map(|p| (p.name, p.triangles)).collect();
+        assert_eq!(told, [("wheel".to_string(), 2), ("hub".into(), 1), ("lamp".into(), 1)]);
+    }
+
+    /// Protects who asks for what cannot be: the model moves, or the node has no size.
+    #[test]
+    fn parts_that_cannot_stay_apart_are_refused() {
+        let moving = Model { rig: Some(Rig::default()), ..car() };
+        assert!(kept(&moving, &["wheel"]).unwrap_err().contains("nodes that move stay as joints"));
+        let mut flat = car();
+        flat.nodes.as_mut().unwrap().nodes[1].rest =
+            NodeTransform::Matrix(DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0)));
+        assert!(kept(&flat, &["hub"]).unwrap_err().contains("node \"hub\" of car is scaled to nothing"));
+        assert!(kept(&flat, &["lamp"]).is_ok());
+    }
+
+    /// Protects names of materials: a part of a result has the name of the material that most of it had, on the maps of
+    /// all; the rest keeps its own. Parts of one material share it and are a draw call each.
+    #[test]
+    fn parts_have_the_names_of_their_materials() {
+        let kept = kept(&car(), &["wheel", "lamp", "hub"]).unwrap();
+        let low = with_parted_materials(&kept).into_owned();
+        let parts = parts_of_materials(&low);
+        let low = Model { parts: kept_parts_of(&low, &low.mesh, &parts), ..low };
+        assert_eq!(low.parts, kept.parts);
+        let mesh = Mesh { triangle_materials: vec![0; 5], ..low.mesh.clone() };
+        let baked = Model {
+            mesh,
+            materials: vec![Material { name: "low".into(), ..Material::default() }],
+            ..Model::default()
+        };
+        let baked = with_parts(baked, &low);
+        let names: Vec<&str> = (baked.mesh.triangle_materials.iter())
+            .map(|&material| baked.materials[material as usize].name.as_str())
+            .collect();
+        assert_eq!(names, ["low", "steel", "steel", "rubber", "paint"]);
+        assert_eq!(draw_calls(&baked), 4);
+        assert_eq!(draw_calls(&Model { parts: None, ..baked }), 4);
+    }
+}

@@ -3,6 +3,8 @@
 //! Where `$PARBAKE_GLB_OUT` names a folder, the GLB files stay there, for the
 //! Khronos validator to look at (`tools/validate_gltf`).
 
+#![allow(clippy::unwrap_used)]
+
 use crate::common::{check_model, keep};
 use parbake_files::{
     Limits, Loaded, MeshCompression, WriteOptions, read_model, write_glb_with, write_lod_glb,

@@ -65,6 +65,7 @@ fn options(mode: UvMode) -> UvStageOptions {
         gutter: 1.0,
         gutter_required: false,
         parallax_size: None,
+        smallest_mip: None,
         steps: 12,
         more_triangles: 0,
     }
