@@ -122,7 +122,7 @@ fn parts_of_one_bake_and_those_in_vain() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     write_cart(folder);
-    let small = ["--texture-size", "64", "--preset", "fast", "--views", "12", "-o", "out.glb"];
+    let small = ["--texture-size", "64", "--time-budget", "2", "--views", "12", "-o", "out.glb"];
     run(folder, &[&["bake", "cart.glb", "-t", "40", "--keep-parts", "axle"], &small[..]].concat());
     let baked = read(&folder.join("out.glb"));
     // What hangs below an axle goes with it.
