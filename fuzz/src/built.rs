@@ -37,7 +37,7 @@ pub fn model(bytes: &mut Unstructured) -> Result<Model> {
         let color = |_| Ok(Vec4::from([share(bytes)?, share(bytes)?, share(bytes)?, share(bytes)?]));
         mesh.colors = (0..count).map(color).collect::<Result<_>>()?;
     }
-    Ok(Model { name: "fuzz".into(), mesh, materials, images, rig: None })
+    Ok(Model { name: "fuzz".into(), mesh, materials, images, ..Model::default() })
 }
 
 /// A mesh of positions, texture coordinates and triangles of one material.

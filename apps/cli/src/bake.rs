@@ -5,14 +5,14 @@ use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::formats::{check_formats, write_model};
 use crate::options_file::merged;
-use crate::outputs::{check_beside, check_maps, check_not_input, check_output, is_stdout};
+use crate::outputs::{check_beside, check_maps, check_not_input, check_output, is_obj, is_stdout};
 use crate::progress::{Console, interrupted};
 use crate::rules;
 use clap::ArgMatches;
 use parbake::{
     BakeOptions, BakeReport, Baked, Comparison, Convention, Detail, Loaded, Message, Model, NormalY, Shading,
     Stage, StageTime, Warning, WarningKind, Watcher, Work, bake, bake_to_triangles, check_budget,
-    compare_bake, read_model, with_normal_y, with_threads, write_file,
+    compare_bake, read_model, read_painted_model, with_normal_y, with_threads, write_file,
 };
 use parbake_report::html_report;
 use std::io::Write;
@@ -31,14 +31,13 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
     check_maps(output, &options)?;
     check_output(output)?;
     check_formats(output, &options.write)?;
+    check_parts(output, &options)?;
     check_not_input(output, &inputs)?;
     check_beside(Some(output), command.json.as_ref(), command.report.as_ref(), &inputs)?;
     let console = Console::for_bake(command.talk, options.time_budget).confined(command.reading);
     with_threads(options.threads, || {
-        let pair = match &command.low {
-            Some(low) => read_pair(&command.high, low, &console)?,
-            None => read_high(&command.high, &console)?,
-        };
+        let attribute = options.importance_attribute.as_deref();
+        let pair = read_painted_pair(&command.high, attribute, command.low.as_deref(), &console)?;
         if command.strict {
             check_textures(&pair.warnings)?;
         }
@@ -74,6 +73,17 @@ pub fn ending(report: &BakeReport) -> Ending {
     if interrupted() && report.stopped_early { Ending::Interrupted } else { Ending::Finished }
 }
 
+/// Refuses parts that stay apart in a file that has no nodes.
+fn check_parts(output: &Path, options: &BakeOptions) -> Result<(), Failure> {
+    match options.keep_parts.is_empty() || !is_obj(output) {
+        true => Ok(()),
+        false => Err(Failure::Usage(format!(
+            "--keep-parts acts on GLB files only, since an OBJ has no nodes; {} is an OBJ",
+            output.display()
+        ))),
+    }
+}
+
 /// Refuses the name that elsewhere means standard input.
 pub fn check_input(path: &Path) -> Result<(), Failure> {
     match path.as_os_str() == "-" {
@@ -93,8 +103,16 @@ pub fn check_textures(warnings: &[Warning]) -> Result<(), Failure> {
 
 /// Reads one model and passes its warnings on.
 pub fn read(path: &Path, console: &Console) -> Result<Loaded, Failure> {
+    read_painted(path, None, console)
+}
+
+/// The same, with the importances that are painted in an attribute, if there is one.
+pub fn read_painted(path: &Path, attribute: Option<&str>, console: &Console) -> Result<Loaded, Failure> {
     check_input(path)?;
-    let loaded = read_model(path, console.limits())?;
+    let loaded = match attribute {
+        Some(attribute) => read_painted_model(path, attribute, console.limits())?,
+        None => read_model(path, console.limits())?,
+    };
     for warning in &loaded.warnings {
         console.message(Message::Warning(warning.text.clone()));
     }
@@ -115,25 +133,40 @@ pub struct Pair {
 
 /// Reads two models at once.
 pub fn read_both(first: &Path, second: &Path, console: &Console) -> Result<[Loaded; 2], Failure> {
+    read_both_painted(first, None, second, console)
+}
+
+/// The same, with what is painted in an attribute of the first one.
+fn read_both_painted(
+    first: &Path,
+    attribute: Option<&str>,
+    second: &Path,
+    console: &Console,
+) -> Result<[Loaded; 2], Failure> {
     console.message(Message::Progress { stage: Stage::Read, done: 0, total: 2 });
-    let (first, second) = parbake::join(|| read(first, console), || read(second, console));
+    let (first, second) = parbake::join(|| read_painted(first, attribute, console), || read(second, console));
     Ok([first?, second?])
 }
 
 /// Reads both models of a bake at once.
 pub fn read_pair(high: &Path, low: &Path, console: &Console) -> Result<Pair, Failure> {
-    let begin = console.seconds();
-    let [high, low] = read_both(high, low, console)?;
-    let warnings = [high.warnings, low.warnings].concat();
-    Ok(Pair { high: high.model, low: low.model, warnings, seconds: Some(console.seconds() - begin) })
+    read_painted_pair(high, None, Some(low), console)
 }
 
-/// Reads the high-poly alone; its low-poly is to be made.
-fn read_high(high: &Path, console: &Console) -> Result<Pair, Failure> {
+/// The same, with the importances that are painted on the high-poly; the low-poly may be yet to be made.
+fn read_painted_pair(
+    high: &Path,
+    attribute: Option<&str>,
+    low: Option<&Path>,
+    console: &Console,
+) -> Result<Pair, Failure> {
     let begin = console.seconds();
-    let Loaded { model, warnings, .. } = read(high, console)?;
-    let seconds = Some(console.seconds() - begin);
-    Ok(Pair { high: model, low: Model::default(), warnings, seconds })
+    let [high, low] = match low {
+        Some(low) => read_both_painted(high, attribute, low, console)?,
+        None => [read_painted(high, attribute, console)?, Loaded::default()],
+    };
+    let warnings = [high.warnings, low.warnings].concat();
+    Ok(Pair { high: high.model, low: low.model, warnings, seconds: Some(console.seconds() - begin) })
 }
 
 /// Bakes and writes the model; completes the report with what happened around it.

@@ -1,7 +1,7 @@
 //! `parbake lod`.
 
 use crate::arguments::LodCommand;
-use crate::bake::read;
+use crate::bake::read_painted;
 use crate::failure::{Ending, Failure};
 use crate::lod_text::{line, target_lines};
 use crate::outputs::{check_beside, check_not_input};
@@ -33,7 +33,8 @@ pub fn run(command: &LodCommand) -> Result<Ending, Failure> {
     check_beside(None, None, command.report.as_ref(), &[&command.model])?;
     let console = Console::for_levels(command.talk, options.time_budget).confined(command.reading);
     with_threads(options.threads, || {
-        let mut model = read(&command.model, &console)?.model;
+        let mut model =
+            read_painted(&command.model, options.importance_attribute.as_deref(), &console)?.model;
         if model.name.is_empty() {
             model.name.clone_from(&name);
         }

@@ -15,7 +15,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Options of a bake that do nothing where a model's own texture is replaced: the surface stays.
-pub const NOT_IN_COMPRESS: [&str; 11] = [
+pub const NOT_IN_COMPRESS: [&str; 13] = [
     "shape",
     "silhouette_background",
     "silhouette",
@@ -27,6 +27,8 @@ pub const NOT_IN_COMPRESS: [&str; 11] = [
     "cutout_size",
     "max_distance",
     "importance",
+    "importance_attribute",
+    "keep_parts",
 ];
 
 /// Options that act in `compress` only on models with a normal map or with more to their materials than
@@ -68,6 +70,11 @@ pub fn check(
         refuse(&NOT_IN_COMPRESS, "does nothing in compress, which keeps the surface; leave it out")?;
     } else {
         refuse(&["more_triangles"], "acts in compress only; leave it out")?;
+    }
+    if work == Work::Bake && !is_typed(given, "triangles") {
+        let why = "acts where the low-poly is made of the high-poly's nodes; give --triangles instead of LOW, or leave \
+                   it out";
+        refuse(&["keep_parts"], why)?;
     }
     if options.parallax == Parallax::None {
         let maps = ["parallax_order", "parallax_size", "no_cutout", "cutout_order", "cutout_size"];

@@ -35,6 +35,8 @@ pub(crate) struct Context<'a> {
     resources: &'a dyn Resources,
     pub limits: &'a Limits,
     pub textures: Textures,
+    /// The vertex attribute that importances are painted in, where they are asked for.
+    pub attribute: Option<&'a str>,
     warnings: RefCell<Vec<Warning>>,
     seen: RefCell<BTreeSet<String>>,
     /// Bytes of each file that was read, the model's own under the empty name.
@@ -45,7 +47,7 @@ pub(crate) struct Context<'a> {
 impl<'a> Context<'a> {
     pub fn new(path: &'a Path, resources: &'a dyn Resources, limits: &'a Limits, textures: Textures) -> Self {
         let (warnings, seen, read, contents) = Default::default();
-        Self { path, resources, limits, textures, warnings, seen, read, contents }
+        Self { path, resources, limits, textures, attribute: None, warnings, seen, read, contents }
     }
 
     /// Counts the model's own file.

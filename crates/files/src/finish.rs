@@ -1,7 +1,7 @@
 //! The last step of every reader: makes the mesh keep its contract, and says what
 //! had to be done for it.
 //!
-//! * triangles without area go (two corners at one place, or all on one line);
+//! * triangles without area go (two corners at one place, or all on one line), and with them what is said of them;
 //! * normals become unit vectors; one without a direction is replaced by the
 //!   area-weighted mean of its triangles' normals;
 //! * texture coordinates and colours that are no numbers become 0 and white.
@@ -22,8 +22,8 @@ pub(crate) fn finish(
     context: Context<'_>,
     empty_detail: &str,
 ) -> Result<Loaded, FileError> {
+    let degenerate = drop_degenerate(&mut model);
     let mesh = &mut model.mesh;
-    let degenerate = drop_degenerate(mesh);
     if mesh.triangles.is_empty() {
         let detail = match degenerate {
             0 => empty_detail.into(),
@@ -55,20 +55,30 @@ fn area_normal(mesh: &Mesh, triangle: usize) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-fn drop_degenerate(mesh: &mut Mesh) -> usize {
+fn drop_degenerate(model: &mut Model) -> usize {
+    let Model { mesh, nodes, painted, .. } = model;
     let before = mesh.triangles.len();
-    let mut kept = 0;
-    for i in 0..before {
-        let [a, b, c] = mesh.triangles[i];
-        if a != b && b != c && c != a && area_normal(mesh, i) != DVec3::ZERO {
-            mesh.triangles[kept] = mesh.triangles[i];
-            mesh.triangle_materials[kept] = mesh.triangle_materials[i];
-            kept += 1;
-        }
+    let is_kept: Vec<bool> = (0..before)
+        .map(|i| {
+            let [a, b, c] = mesh.triangles[i];
+            a != b && b != c && c != a && area_normal(mesh, i) != DVec3::ZERO
+        })
+        .collect();
+    if is_kept.iter().all(|&kept| kept) {
+        return 0;
     }
-    mesh.triangles.truncate(kept);
-    mesh.triangle_materials.truncate(kept);
-    before - kept
+    keep(&mut mesh.triangles, &is_kept);
+    keep(&mut mesh.triangle_materials, &is_kept);
+    keep(painted, &is_kept);
+    if let Some(nodes) = nodes {
+        keep(&mut nodes.of_triangles, &is_kept);
+    }
+    before - mesh.triangles.len()
+}
+
+fn keep<T>(values: &mut Vec<T>, is_kept: &[bool]) {
+    let mut kept = is_kept.iter();
+    values.retain(|_| kept.next().is_some_and(|&kept| kept));
 }
 
 fn repair_numbers(mesh: &mut Mesh, context: &Context<'_>) {

@@ -37,7 +37,7 @@ pub use gltf::{glb_bytes, glb_bytes_with, read_gltf_bytes, write_glb, write_glb_
 pub use image_in::{decode_image, read_image};
 pub use image_out::{encode_png, encode_png16};
 pub use limits::Limits;
-pub use model_in::{Loaded, read_geometry, read_model};
+pub use model_in::{Loaded, read_geometry, read_model, read_painted_model};
 pub use named_files::named_files;
 pub use obj::{read_obj_bytes, write_obj};
 pub use resources::{Folder, NoResources, Resources};

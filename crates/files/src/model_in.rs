@@ -34,6 +34,24 @@ pub fn read_model(path: &Path, limits: &Limits) -> Result<Loaded, FileError> {
     read(path, limits, Textures::Decode)
 }
 
+/// Like [`read_model`], with the importances that are painted in a vertex attribute of a glTF file
+/// ([`Model::painted`]): one number, or a colour's red.
+///
+/// # Errors
+/// As [`read_model`]; also where no mesh has the attribute.
+pub fn read_painted_model(path: &Path, attribute: &str, limits: &Limits) -> Result<Loaded, FileError> {
+    let (resources, bytes) = opened(path, limits)?;
+    let mut context = Context::new(path, &resources, limits, Textures::Decode);
+    context.attribute = Some(attribute);
+    if !is_gltf(path, &bytes) {
+        let reason = format!("an OBJ has no vertex attribute {attribute}; glTF files have");
+        return Err(context.invalid(Place::File, reason));
+    }
+    let mut loaded = gltf::read(context, &bytes)?;
+    name_model(path, &mut loaded.warnings);
+    Ok(loaded)
+}
+
 /// Like [`read_model`], but opens no pictures: every material comes without
 /// textures. For models whose look is not needed.
 ///

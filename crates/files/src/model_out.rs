@@ -2,6 +2,7 @@
 //! contract, so that no index can go astray.
 
 use crate::{FileError, Place};
+use parbake_model::glam::DAffine3;
 use parbake_model::{Material, Model};
 use std::path::Path;
 
@@ -56,6 +57,19 @@ pub(crate) fn check(path: &Path, model: &Model) -> Result<(), FileError> {
     }
     if let Some(fault) = model.rig.as_ref().and_then(|rig| rig.fault(count)) {
         return refuse(format!("its rig has {fault}"));
+    }
+    if let Some(parts) = &model.parts {
+        if let Some(fault) = parts.fault(mesh.triangles.len()) {
+            return refuse(format!("its parts have {fault}"));
+        }
+        let worlds = parts.worlds();
+        let flat = |(world, &count): (&DAffine3, &usize)| count > 0 && !world.inverse().is_finite();
+        if worlds.iter().zip(&parts.counts()).any(flat) {
+            return refuse("a part hangs on a node without size".into());
+        }
+        if model.rig.is_some() {
+            return refuse("parts that stay apart cannot have a rig".into());
+        }
     }
     let finite = mesh.positions.iter().all(|p| p.is_finite())
         && mesh.uvs.iter().chain(&mesh.uvs1).all(|uv| uv.is_finite())

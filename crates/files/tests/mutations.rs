@@ -195,7 +195,7 @@ fn glb() -> Vec<u8> {
         ..Material::default()
     };
     let materials = vec![material];
-    glb_bytes(&Model { name: "m".into(), mesh, materials, images: vec![picture()], rig: None })
+    glb_bytes(&Model { name: "m".into(), mesh, materials, images: vec![picture()], ..Model::default() })
         .expect("a whole model")
 }
 

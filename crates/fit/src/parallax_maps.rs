@@ -164,6 +164,7 @@ pub fn fit_parallax_maps(
     plan: &ParallaxPlan,
     watcher: &impl Watcher,
 ) -> Result<FittedMaps, PrepareError> {
+    let sampler = &sampler.clone().in_basis(plan.parallax.basis);
     let references = &references[..references.len().min(plan.views)];
     let mut report = ParallaxReport::default();
     let cutout = plan.cutout.map(|options| {

@@ -63,7 +63,7 @@ fn square(name: &str, half: f32, height: f32) -> Model {
     let images = vec![Image { name: "checker".into(), width: side, height: side, pixels }];
     let slot = TextureSlot { image: 0, ..TextureSlot::default() };
     let materials = vec![Material { base_color_texture: Some(slot), ..Material::default() }];
-    Model { name: name.into(), mesh, materials, images, rig: None }
+    Model { name: name.into(), mesh, materials, images, ..Model::default() }
 }
 
 /// A pair made ready, and its views.

@@ -36,7 +36,7 @@ pub fn demo_model() -> Model {
         mesh: layout.tessellate(),
         materials: vec![material],
         images: vec![paint::texture(&layout, TEXTURE_SIZE)],
-        rig: None,
+        ..Model::default()
     }
 }
 

@@ -205,7 +205,7 @@ impl Found {
 mod tests {
     use super::*;
     use parbake_model::glam::DAffine3;
-    use parbake_model::{Joint, MorphTarget, NodeTransform, RigNode, Skeleton};
+    use parbake_model::{Joint, MorphTarget, Node, NodeTransform, Skeleton};
     use std::sync::Arc;
 
     /// A tube along y from 0 to 1 around (x, 0), 0.1 thick from its middle, with so many rings of so many corners.
@@ -231,7 +231,7 @@ mod tests {
     }
 
     fn skeleton(joints: usize) -> Arc<Skeleton> {
-        let node = RigNode { name: String::new(), parent: None, rest: NodeTransform::IDENTITY };
+        let node = Node { name: String::new(), parent: None, rest: NodeTransform::IDENTITY };
         let joint = |node| Joint { node, inverse_bind: DAffine3::IDENTITY };
         Arc::new(Skeleton {
             nodes: vec![node; joints],

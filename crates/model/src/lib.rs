@@ -10,6 +10,7 @@
 
 mod basis;
 mod cutout;
+mod hierarchy;
 mod image;
 mod material;
 mod material_extensions;
@@ -23,6 +24,7 @@ mod short_uv;
 pub use basis::Basis;
 pub use cutout::CutoutMap;
 pub use glam;
+pub use hierarchy::{Hierarchy, Node};
 pub use image::Image;
 pub use material::{AlphaMode, Material, TextureSlot, UvTransform, Wrap};
 pub use material_extensions::{
@@ -35,7 +37,7 @@ pub use parallax_fault::ParallaxFault;
 pub use placement::{Bounds, Placement};
 pub use rig::{
     Animation, Influences, Interpolation, Joint, MOST_INFLUENCES, Morph, MorphTarget, NodeTransform,
-    Property, Rig, RigNode, Skeleton, Track,
+    Property, Rig, Skeleton, Track,
 };
 pub use short_uv::{is_short, nearest_short, short_uv, short_uvs_pay};
 
@@ -43,7 +45,7 @@ pub use short_uv::{is_short, nearest_short, short_uv, short_uvs_pay};
 ///
 /// Contract: every `Mesh::triangle_materials` entry indexes `materials`, and
 /// every [`TextureSlot::image`] indexes `images`; every [`ParallaxMap`] passes its
-/// check; a [`Rig`] fits the mesh. There is at least one material.
+/// check; a [`Rig`] and every [`Hierarchy`] fit the mesh. There is at least one material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {
     /// A name to show to people, usually the file's.
@@ -56,4 +58,11 @@ pub struct Model {
     pub images: Vec<Image>,
     /// Skin, morph targets and animations of this mesh; none of a model in which nothing moves.
     pub rig: Option<Rig>,
+    /// The nodes that it was read from; none where a file has none, or where triangles are no longer those of the file.
+    pub nodes: Option<Hierarchy>,
+    /// F painted importances, 0 to 1, where 0.5 is as if nothing was painted; or empty.
+    pub painted: Vec<f32>,
+    /// The parts that stay apart, each a node with triangles, and what is above them; what hangs on no node is the
+    /// rest. Writers give each a mesh of its own in the node's space; all else that a model was read from is joined.
+    pub parts: Option<Hierarchy>,
 }

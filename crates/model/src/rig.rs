@@ -14,6 +14,7 @@
 //! than one joint each; all indices are in range; weights of a vertex are not negative, sum to 1 and name no joint twice but with weight 0; all
 //! numbers are finite; times increase.
 
+use crate::Node;
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 use std::sync::Arc;
 
@@ -38,24 +39,13 @@ pub struct Rig {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Skeleton {
     /// Nodes, parents first.
-    pub nodes: Vec<RigNode>,
+    pub nodes: Vec<Node>,
     /// Joints that vertices name.
     pub joints: Vec<Joint>,
     /// Morph targets.
     pub targets: Vec<MorphTarget>,
     /// Animations.
     pub animations: Vec<Animation>,
-}
-
-/// A node that may move.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RigNode {
-    /// Its name in the file; may be empty.
-    pub name: String,
-    /// Index of its parent, which is less than its own.
-    pub parent: Option<usize>,
-    /// From its space to its parent's while nothing moves.
-    pub rest: NodeTransform,
 }
 
 /// How a node is placed.
@@ -238,7 +228,7 @@ impl Rig {
     /// The first thing that breaks the contract, for a mesh of so many vertices, in words that follow "the rig has".
     pub fn fault(&self, vertices: usize) -> Option<&'static str> {
         let Skeleton { nodes, joints, targets, animations } = &*self.skeleton;
-        let is_late = |(index, node): (usize, &RigNode)| node.parent.is_some_and(|parent| parent >= index);
+        let is_late = |(index, node): (usize, &Node)| node.parent.is_some_and(|parent| parent >= index);
         if nodes.iter().enumerate().any(is_late) {
             return Some("a node before its parent");
         }
@@ -342,7 +332,7 @@ mod tests {
     /// Protects writers from rigs that do not fit.
     #[test]
     fn faults_are_found() {
-        let node = |parent| RigNode { name: String::new(), parent, rest: NodeTransform::IDENTITY };
+        let node = |parent| Node { name: String::new(), parent, rest: NodeTransform::IDENTITY };
         let skeleton = Skeleton {
             nodes: vec![node(None), node(Some(0))],
             joints: vec![Joint { node: 1, inverse_bind: DAffine3::IDENTITY }],

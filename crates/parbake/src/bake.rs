@@ -15,11 +15,12 @@ use crate::geometry::{Geometry, move_geometry};
 use crate::importance::importances;
 use crate::look::Look;
 use crate::lost::lost;
-use crate::low_poly::low_poly;
+use crate::low_poly::{check_triangles, low_poly};
 use crate::options::{BakeOptions, Shading, UvMode};
+use crate::parts::{with_kept_parts, with_parted_materials, with_parts};
 use crate::plan::Plan;
 use crate::report::{BakeReport, Work, layout_warning};
-use crate::rigs::{carried, rigged, with_parted_materials};
+use crate::rigs::{carried, rigged};
 use crate::textures::{FittedTextures, Subject, fit_views};
 use crate::warnings::{Warnings, swapped, unseen};
 use parbake_atlas::check_mesh;
@@ -90,7 +91,8 @@ pub fn prepare_high_poly(high: &Model, options: &BakeOptions) -> Result<HighPoly
 /// it. [`Baked::ray_cast`] has the same triangles.
 ///
 /// # Errors
-/// An option out of range; a model without extent; charts that do not fit into the texture.
+/// An option out of range; a model without extent; charts that do not fit into the texture; parts that are not there, or
+/// too many for so few triangles.
 pub fn bake_to_triangles(
     high: &Model,
     triangles: usize,
@@ -99,8 +101,10 @@ pub fn bake_to_triangles(
 ) -> Result<Baked, BakeError> {
     options.check()?;
     let begin = Instant::now();
-    let high = &*with_parted_materials(high);
+    let kept = with_kept_parts(high, &options.keep_parts)?;
+    let high = &*with_parted_materials(&kept);
     let prepared = prepare(high, options)?;
+    check_triangles(&prepared, high, triangles)?;
     let (low, _) = low_poly(&prepared, high, None, triangles, options.preset, watcher);
     run(&prepared, &low, Work::Level, options, watcher, begin)
 }
@@ -159,7 +163,7 @@ pub(crate) fn conventions(options: &BakeOptions) -> Conventions {
 
 fn prepare(high: &Model, options: &BakeOptions) -> Result<HighPoly, BakeError> {
     let mut prepared = HighPoly::new(high, conventions(options))?;
-    prepared.importances = importances(high, &options.importance)?;
+    prepared.importances = importances(high, &options.importance, options.importance_attribute.as_deref())?;
     Ok(prepared)
 }
 
@@ -268,7 +272,7 @@ fn run(
         peak_memory: crate::memory::peak_memory(),
     };
     let model = look.textured(low, written, fitted.images, parallax.as_ref());
-    let moving = |model: Model| Model { rig: carried(given, &model.mesh), ..model };
+    let moving = |model: Model| with_parts(Model { rig: carried(given, &model.mesh), ..model }, given);
     Ok(Baked {
         ray_cast: moving(ray_cast),
         model: moving(model),

@@ -350,7 +350,7 @@ mod tests {
             mesh,
             materials: vec![Material { base_color_texture: Some(slot), ..Material::default() }],
             images: vec![Image { name: "noise".into(), width: size, height: size, pixels }],
-            rig: None,
+            ..Model::default()
         }
     }
 

@@ -22,6 +22,61 @@ pub enum BakeError {
         /// What may be asked.
         range: String,
     },
+    /// A pattern that fits no node.
+    #[error("--{option} {pattern:?}: {model} has no node of that name with triangles; {has}")]
+    NoNode {
+        /// The option that names it.
+        option: &'static str,
+        /// What was asked for.
+        pattern: String,
+        /// The model.
+        model: String,
+        /// What there is.
+        has: String,
+    },
+    /// A model that was read without what is painted on it.
+    #[error(
+        "--importance-attribute {attribute}: {model} was read without it; read it by read_painted_model with the same name"
+    )]
+    NotPainted {
+        /// The model.
+        model: String,
+        /// The attribute.
+        attribute: String,
+    },
+    /// Parts of a model that moves.
+    #[error(
+        "--keep-parts: {model} has skins, morph targets or animations, and so becomes one mesh with a skeleton, in which \
+         nodes that move stay as joints; leave --keep-parts out, or take a copy of the model that nothing moves"
+    )]
+    PartsOfRig {
+        /// The model.
+        model: String,
+    },
+    /// A node of which positions cannot be told in its own space.
+    #[error(
+        "--keep-parts: node {node:?} of {model} is scaled to nothing along an axis, so that it cannot keep its pivot; \
+         apply its scale to its mesh"
+    )]
+    FlatPart {
+        /// The model.
+        model: String,
+        /// The node.
+        node: String,
+    },
+    /// Triangles that cannot be shared by all parts.
+    #[error(
+        "--triangles {triangles} is too few for {model} with its parts apart, of which none may vanish; give {least} or \
+         more, or fewer --keep-parts"
+    )]
+    FewTriangles {
+        /// What was asked for.
+        triangles: usize,
+        /// The model.
+        model: String,
+        /// How many it takes.
+        least: usize,
+    },
     /// A time budget that a texture's size cannot keep.
     #[error(
         "--time-budget {budget} cannot hold with --texture-size {size}: projecting and writing alone take about {least} s; \

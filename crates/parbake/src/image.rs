@@ -138,7 +138,13 @@ fn model(image: &Image, plane: Plane, layout: &Layout, texture: &FloatImage<Vec4
         alpha_mode: if opaque { AlphaMode::Opaque } else { AlphaMode::Blend },
         ..Material::default()
     };
-    Model { name: image.name.clone(), mesh, materials: vec![material], images: vec![written], rig: None }
+    Model {
+        name: image.name.clone(),
+        mesh,
+        materials: vec![material],
+        images: vec![written],
+        ..Model::default()
+    }
 }
 
 #[cfg(test)]

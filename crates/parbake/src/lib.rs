@@ -45,8 +45,10 @@ mod lost;
 mod low_poly;
 mod memory;
 mod models;
+mod nodes;
 mod normal_y;
 mod options;
+pub mod parts;
 mod plan;
 mod raycast;
 mod raycast_options;
@@ -88,8 +90,8 @@ pub use parbake_atlas::{LayoutCheck, ModelCheck, UvCheck, check_mesh, check_mode
 pub use parbake_files::{
     Contents, DEFAULT_TEXTURE_QUALITY, FileError, Limits, Loaded, MeshCompression, PictureFormat,
     StoredPicture, TextureFormat, Warning, WarningKind, WriteOptions, Written, WrittenMesh, WrittenTexture,
-    encode_png, read_image, read_model, write_atomically as write_file, write_glb, write_glb_with,
-    write_lod_glb, write_obj,
+    encode_png, read_image, read_model, read_painted_model, write_atomically as write_file, write_glb,
+    write_glb_with, write_lod_glb, write_obj,
 };
 pub use parbake_fit::parallax_maps::ParallaxReport;
 pub use parbake_mesh::distance::{OneWay, SurfaceDistance};

@@ -77,7 +77,7 @@ impl Look {
         let first = images.len();
         images.extend(self.extensions.images.iter().cloned());
         let materials = kinds.iter().map(|&kind| self.of_layer(&material, kind, first));
-        Model { name: low.name.clone(), mesh, materials: materials.collect(), images, rig: None }
+        Model { name: low.name.clone(), mesh, materials: materials.collect(), images, ..Model::default() }
     }
 
     /// The material of a layer; the images of extensions begin at `first`.

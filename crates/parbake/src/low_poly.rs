@@ -1,16 +1,41 @@
 //! A low-poly for a high-poly: triangles chosen by its pictures (`parbake-simplify`).
 
+use crate::error::BakeError;
 use crate::options::Preset;
-use crate::rigs::{parts_of_materials, transferred};
+use crate::parts::{kept_parts_of, parts_of_materials};
+use crate::rigs::transferred;
 use parbake_model::{AlphaMode, Material, MaterialExtensions, Model};
 use parbake_progress::Watcher;
 use parbake_simplify::polish::PolishOptions;
-use parbake_simplify::{ChooseOptions, LayerReport, choose_triangles};
+use parbake_simplify::{ChooseOptions, LayerReport, choose_triangles, least_triangles};
 use parbake_views::high_poly::HighPoly;
+
+/// Triangles that a part which stays apart keeps at least, in each layer.
+const LEAST_OF_PART: usize = 4;
+
+/// The fewest triangles that a low-poly of a model may have: with nodes that stay apart none of them vanishes.
+pub fn least_of(high: &HighPoly, model: &Model) -> usize {
+    match model.parts {
+        None => 4,
+        Some(_) => least_triangles(high, &parts_of_materials(model), LEAST_OF_PART).max(4),
+    }
+}
+
+/// Refuses fewer triangles than all parts of a model need.
+///
+/// # Errors
+/// [`BakeError::FewTriangles`].
+pub fn check_triangles(high: &HighPoly, model: &Model, triangles: usize) -> Result<(), BakeError> {
+    let least = least_of(high, model);
+    match model.parts.is_some() && triangles < least {
+        true => Err(BakeError::FewTriangles { triangles, model: model.name.clone(), least }),
+        false => Ok(()),
+    }
+}
 
 /// A low-poly of at most so many triangles, without texture coordinates, in the high-poly's own space. `model` is
 /// what the high-poly was prepared from; `before` is a finer low-poly that it may start from. Also returns how the
-/// triangles of each layer were found. It moves as the model does.
+/// triangles of each layer were found. It moves as the model does, and has its parts.
 pub fn low_poly(
     high: &HighPoly,
     model: &Model,
@@ -29,6 +54,9 @@ pub fn low_poly(
         // Quadrics do not know what counts: there must be something to choose from.
         options.room = options.room.max(2);
     }
+    if model.parts.is_some() {
+        options.least = LEAST_OF_PART;
+    }
     let parts = parts_of_materials(model);
     let chosen = choose_triangles(high, before.as_ref(), &parts, &options, &watcher);
     let mut mesh = chosen.mesh;
@@ -37,7 +65,8 @@ pub fn low_poly(
     }
     let materials = model.materials.iter().map(layer_only).collect();
     let rig = transferred(model, &mesh, &parts);
-    (Model { name: model.name.clone(), mesh, materials, images: Vec::new(), rig }, chosen.layers)
+    let parts = kept_parts_of(model, &mesh, &parts);
+    (Model { name: model.name.clone(), mesh, materials, rig, parts, ..Model::default() }, chosen.layers)
 }
 
 /// Of a material what says in which layer it is drawn.
@@ -73,5 +102,5 @@ fn choose_options(triangles: usize, preset: Preset) -> ChooseOptions {
     // Many small triangles are no better for it.
     let sets = if triangles <= 400 { 4 } else { 1 };
     let polish = PolishOptions { rounds, sweeps, ..own };
-    ChooseOptions { triangles, room, views, sets, view_size, polish, seed: 0 }
+    ChooseOptions { triangles, least: 0, room, views, sets, view_size, polish, seed: 0 }
 }

@@ -2,7 +2,8 @@
 
 use crate::error::BakeError;
 use crate::options::{BakeOptions, UvMode};
-use crate::rigs::{carried, parts_of_materials, transferred, with_parted_materials};
+use crate::parts::{parts_of_materials, with_parted_materials};
+use crate::rigs::{carried, transferred};
 use parbake_mesh::compute_tangents;
 use parbake_mesh::demo::{demo_low, demo_model, wall_low, wall_model};
 use parbake_mesh::simplify::{SimplifyOptions, simplify};
@@ -23,7 +24,7 @@ pub fn simplified(model: &Model, triangles: usize) -> Model {
         }
         mesh.triangle_materials.iter_mut().for_each(|material| *material = original[*material as usize]);
     }
-    with_tangents(Model { mesh, rig, ..model.clone() })
+    with_tangents(Model { mesh, rig, nodes: None, painted: Vec::new(), parts: None, ..model.clone() })
 }
 
 /// The model with MikkTSpace tangents, where its materials need some and it has none, so that viewers need
@@ -66,7 +67,7 @@ pub fn laid_out(low: &Model, mode: UvMode, texture_size: usize) -> Result<Model,
 pub fn subdivided(model: &Model) -> Model {
     let mesh = subdivide(&model.mesh);
     let rig = transferred(model, &mesh, &[]);
-    with_tangents(Model { mesh, rig, ..model.clone() })
+    with_tangents(Model { mesh, rig, nodes: None, painted: Vec::new(), parts: None, ..model.clone() })
 }
 
 /// The built-in detailed model, an ornate jar, and its coarse counterpart.

@@ -222,6 +222,12 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "TEXELS", help_heading = heading::UV))]
     pub gutter: Option<f64>,
 
+    /// Smallest mip level at which charts of a layout that is made here should be two texels apart, as far as they are few
+    /// enough; levels of detail settle it
+    #[cfg_attr(feature = "clap", arg(skip))]
+    #[serde(skip)]
+    pub smallest_mip: Option<f64>,
+
     /// Steps of the UV optimiser, 0 to 10000 [default: by preset 10, 30, 60, in compress 80, 240, 480; with
     /// --method paper 800]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::UV))]
@@ -256,10 +262,21 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::QUALITY))]
     pub rounds: Option<usize>,
 
-    /// How much a material of the high-poly counts, 0.01 to 100, for texels and, with --triangles, for triangles; the others
-    /// have 1. NAME may hold * and ?. May be given several times
+    /// How much a material of the high-poly counts, or with node:NAME=WEIGHT a node and what hangs below it, 0.01 to 100, for
+    /// texels and, with --triangles, for triangles; all else has 1. NAME may hold * and ?. May be given several times; the
+    /// last that fits counts
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME=WEIGHT", help_heading = heading::QUALITY))]
     pub importance: Vec<Importance>,
+
+    /// Vertex attribute of the high-poly in which importances are painted: COLOR_1 or another colour, whose red counts, or a
+    /// number of your own such as _IMPORTANCE. From 0 to 1: 0 counts a sixteenth, 0.5 as ever, 1 sixteen times
+    #[cfg_attr(feature = "clap", arg(long, value_name = "ATTRIBUTE", help_heading = heading::QUALITY))]
+    pub importance_attribute: Option<String>,
+
+    /// Nodes of the high-poly that stay apart, with --triangles, each with what hangs below it, as a part with its name,
+    /// pivot and material's name; all share one set of textures. NAME may hold * and ?. A list, or several times
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", value_delimiter = ',', help_heading = heading::SHAPE))]
+    pub keep_parts: Vec<String>,
 
     /// Seconds after which the best textures so far are written, 0 to 1e9, reading of files included. Below 8
     /// vertices stay and UVs are only repaired [default: no limit]
@@ -330,6 +347,7 @@ impl Default for BakeOptions {
             method: Method::Fit,
             no_content_aware: false,
             gutter: None,
+            smallest_mip: None,
             uv_steps: None,
             more_triangles: None,
             convention: Convention::Gltf,
@@ -344,6 +362,8 @@ impl Default for BakeOptions {
             view_size: None,
             rounds: None,
             importance: Vec::new(),
+            importance_attribute: None,
+            keep_parts: Vec::new(),
             seed: 0,
             threads: 0,
             time_budget: None,

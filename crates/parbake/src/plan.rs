@@ -210,6 +210,7 @@ impl BakeOptions {
             texture_size: self.texture_size,
             gutter: self.gutter_texels(),
             gutter_required: self.gutter.is_some(),
+            smallest_mip: self.smallest_mip,
             parallax_size: (self.parallax != Parallax::None).then_some(self.parallax_size),
             steps: self.uv_steps.unwrap_or(steps),
             more_triangles: self.more_triangles(),

@@ -4,58 +4,15 @@
 //! has its own keeps it. Stages after that cut seams and move vertices, but leave triangles in their order, so a vertex of
 //! the result moves as the corner that it came from.
 
-use parbake_mesh::{rig_parts, transfer_rig};
+use parbake_mesh::transfer_rig;
 use parbake_model::{Mesh, Model, Rig};
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
-/// No part: of materials that no triangle has.
+/// No vertex.
 const NONE: u32 = u32::MAX;
 
-/// The model with materials that are each of one part that moves by itself (`parbake_mesh::rig_parts`). What is made
-/// of its triangles then tells by its materials which part it belongs to.
-pub fn with_parted_materials(model: &Model) -> Cow<'_, Model> {
-    let Some(rig) = &model.rig else { return Cow::Borrowed(model) };
-    let parts = rig_parts(&model.mesh, rig);
-    if parts.iter().all(|&part| part == 0) {
-        return Cow::Borrowed(model);
-    }
-    let mut parted = model.clone();
-    let mut indices: BTreeMap<(u32, u32), u32> = BTreeMap::new();
-    let mut first = vec![NONE; model.materials.len()];
-    for (material, &part) in parted.mesh.triangle_materials.iter_mut().zip(&parts) {
-        let own = &mut first[*material as usize];
-        if *own == NONE {
-            *own = part;
-        }
-        // A material of its first part stays where it is.
-        if *own != part {
-            *material = *indices.entry((*material, part)).or_insert_with(|| {
-                parted.materials.push(model.materials[*material as usize].clone());
-                parted.materials.len() as u32 - 1
-            });
-        }
-    }
-    Cow::Owned(parted)
-}
-
-/// The part of each material; nothing where there is one part, or where a material is of several.
-pub fn parts_of_materials(model: &Model) -> Vec<u32> {
-    let Some(rig) = &model.rig else { return Vec::new() };
-    let parts = rig_parts(&model.mesh, rig);
-    let mut of = vec![NONE; model.materials.len()];
-    for (&material, &part) in model.mesh.triangle_materials.iter().zip(&parts) {
-        let own = &mut of[material as usize];
-        if *own != NONE && *own != part {
-            return Vec::new();
-        }
-        *own = part;
-    }
-    if parts.iter().all(|&part| part == 0) { Vec::new() } else { of }
-}
-
-/// The rig of a surface that was made of a model's, in the same space. `parts` is what [`parts_of_materials`] says of the
-/// surface's materials, or nothing.
+/// The rig of a surface that was made of a model's, in the same space. `parts` is what
+/// [`parts_of_materials`](crate::parts::parts_of_materials) says of the surface's materials, or nothing.
 pub fn transferred(model: &Model, mesh: &Mesh, parts: &[u32]) -> Option<Rig> {
     let rig = model.rig.as_ref()?;
     let of_triangles: Option<Vec<u32>> =
@@ -106,13 +63,14 @@ fn sources(before: &Mesh, after: &Mesh) -> Option<Vec<u32>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parts::{parts_of_materials, with_parted_materials};
     use parbake_model::glam::{DAffine3, Vec3};
-    use parbake_model::{Influences, Joint, Material, NodeTransform, RigNode, Skeleton};
+    use parbake_model::{Influences, Joint, Material, Node, NodeTransform, Skeleton};
     use std::sync::Arc;
 
     /// Two triangles apart, each of its own joint, both of one material.
     fn two_triangles() -> Model {
-        let node = RigNode { name: String::new(), parent: None, rest: NodeTransform::IDENTITY };
+        let node = Node { name: String::new(), parent: None, rest: NodeTransform::IDENTITY };
         let joint = |node| Joint { node, inverse_bind: DAffine3::IDENTITY };
         let skeleton =
             Skeleton { nodes: vec![node; 2], joints: vec![joint(0), joint(1)], ..Skeleton::default() };

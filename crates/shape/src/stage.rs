@@ -77,7 +77,7 @@ pub fn shape(
         mesh: mesh.clone(),
         materials: vec![Material::default()],
         images: Vec::new(),
-        rig: None,
+        ..Model::default()
     };
     let low = LowPoly::new(&model, &high.frame, plan.texture_size)?;
     let start = project(&low, high);

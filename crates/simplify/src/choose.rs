@@ -11,14 +11,14 @@
 //! edge collapses of the whole model share them.
 //!
 //! Contract: the result lies in the high-poly's common frame, has at most the wanted number of triangles (but one at
-//! least in each layer), smooth normals and no texture coordinates; its materials are the high-poly's by index. It
+//! least in each layer, and in each part what that has to keep), smooth normals and no texture coordinates; its materials are the high-poly's by index. It
 //! depends on the arguments alone, not on the number of threads, unless the watcher has no seconds left: then polishing
 //! ends early, but collapsing goes on down to the wanted number. Only a watcher that says stop leaves more triangles.
 
 use crate::collapse::collapse_to;
 use crate::pictures::Pictures;
 use crate::polish::{PolishOptions, polish};
-use crate::start::{Start, quadrics};
+use crate::start::{Start, counts_of_parts, quadrics, with_lost_parts};
 use crate::surface::Surface;
 use crate::target::{BACKGROUNDS, Target};
 use parbake_mesh::smooth_normals;
@@ -35,6 +35,9 @@ use serde::{Deserialize, Serialize};
 pub struct ChooseOptions {
     /// Triangles of the result, at most.
     pub triangles: usize,
+    /// Triangles that each part keeps at least, if it has as many; 0 where parts may go. All of them have to fit in
+    /// ([`least_triangles`]).
+    pub least: usize,
     /// Triangles of a start for each that is wanted, 1 or more: those that are too many collapse by the pictures.
     pub room: usize,
     /// Views that errors are measured in.
@@ -100,28 +103,59 @@ pub fn choose_triangles(
 ) -> Chosen {
     let mesh = high.scene.mesh();
     let start = quadrics(mesh, parts, options.room * options.triangles);
+    let whole = |start: Mesh, own: &Mesh| with_lost_parts(start, own, parts, options.least);
     let layers = high_layers(high);
     let mut chosen = Chosen { mesh: Mesh::default(), layers: Vec::new() };
     if let [_] = layers[..] {
+        let start = whole(start, mesh);
         let starts = [Some((Start::Quadrics, start)), before.map(|mesh| (Start::Level, mesh.clone()))];
         chosen.add(layer(high, None, parts, starts, options, watcher));
         return chosen;
     }
     let kind_of_material = kinds_of_materials(high, &layers);
     let own = |mesh: &Mesh, kind: usize| of_kind(mesh, kind, &kind_of_material);
-    let all = start.triangles.len().max(1);
+    let begun: Vec<usize> = (0..layers.len()).map(|kind| own(&start, kind).triangles.len()).collect();
+    let floors: Vec<usize> =
+        (0..layers.len()).map(|kind| least_of(&own(mesh, kind), parts, options.least).max(1)).collect();
+    let shares = shares(options.triangles, &begun, &floors);
     for (kind, (_, triangles)) in layers.iter().enumerate() {
         let start = own(&start, kind);
-        let share = (options.triangles * start.triangles.len() / all).max(1);
-        let options = ChooseOptions { triangles: share, ..*options };
+        let options = ChooseOptions { triangles: shares[kind], ..*options };
         // A layer of which edge collapses left nothing begins as it is.
-        let start = if start.triangles.is_empty() { own(mesh, kind) } else { start };
+        let start = if start.triangles.is_empty() { own(mesh, kind) } else { whole(start, &own(mesh, kind)) };
         let starts = [Some((Start::Quadrics, start)), before.map(|mesh| (Start::Level, own(mesh, kind)))];
         let part = |k: usize| k as f64 / layers.len() as f64;
         let own = Portion::new(watcher, part(kind)..part(kind + 1));
         chosen.add(layer(high, Some(triangles), parts, starts, &options, &own));
     }
     chosen
+}
+
+/// How many triangles there have to be where each part keeps `least`, or all that it has, in each layer.
+pub fn least_triangles(high: &HighPoly, parts: &[u32], least: usize) -> usize {
+    let (mesh, layers) = (high.scene.mesh(), high_layers(high));
+    let kind_of_material = kinds_of_materials(high, &layers);
+    let own = |kind| of_kind(mesh, kind, &kind_of_material);
+    (0..layers.len()).map(|kind| least_of(&own(kind), parts, least).max(1)).sum()
+}
+
+/// What all parts of a mesh have to keep.
+fn least_of(mesh: &Mesh, parts: &[u32], least: usize) -> usize {
+    counts_of_parts(mesh, parts).values().map(|&count| count.min(least)).sum()
+}
+
+/// The triangles of each layer: as many of the wanted ones as it has of those that were `begun` with, but its floor at
+/// least, for which the largest make room.
+fn shares(wanted: usize, begun: &[usize], floors: &[usize]) -> Vec<usize> {
+    let all = begun.iter().sum::<usize>().max(1);
+    let mut shares: Vec<usize> =
+        begun.iter().zip(floors).map(|(begun, &floor)| (wanted * begun / all).max(floor)).collect();
+    while shares.iter().sum::<usize>() > wanted {
+        let above = (0..shares.len()).filter(|&layer| shares[layer] > floors[layer]);
+        let Some(largest) = above.max_by_key(|&layer| shares[layer]) else { break };
+        shares[largest] -= 1;
+    }
+    shares
 }
 
 /// For each material the place of its layer; that of the first for one that no triangle has.
@@ -174,7 +208,9 @@ fn layer(
         starts.into_iter().flatten().filter(|(_, m)| !m.triangles.is_empty()).enumerate()
     {
         let watcher = &Portion::new(watcher, 0.5 * COLLAPSING * k as f64..0.5 * COLLAPSING * (k + 1) as f64);
-        let mut pictures = Pictures::new(&targets[..targets.len().min(FEW)], Surface::in_parts(&mesh, parts));
+        let mut surface = Surface::in_parts(&mesh, parts);
+        surface.keep_of_each_part(options.least);
+        let mut pictures = Pictures::new(&targets[..targets.len().min(FEW)], surface);
         collapse_to(&mut pictures, options.triangles, watcher);
         let report = StartReport { start, triangles: pictures.surface.count(), error: pictures.error() };
         tried.push((report, pictures.surface));
@@ -206,4 +242,18 @@ fn weigh_backgrounds(sets: &mut [Vec<Target>], surface: &Surface) {
     let sum: f64 = weights.iter().sum();
     let weights = weights.map(|weight| (weight / sum) as f32);
     sets.par_iter_mut().flatten().for_each(|target| target.weigh(weights));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects budgets: layers share the triangles as they begin, none gets less than its floor, and together they have
+    /// no more than is wanted.
+    #[test]
+    fn layers_share_the_triangles() {
+        assert_eq!(shares(100, &[300, 100], &[1, 1]), [75, 25]);
+        assert_eq!(shares(100, &[999, 1, 0], &[1, 8, 1]), [91, 8, 1]);
+        assert_eq!(shares(10, &[50, 50], &[8, 8]), [8, 8]);
+    }
 }

@@ -9,7 +9,8 @@
 //! Costs go stale as their surroundings change. They are evaluated again when their turn comes (a lazy queue),
 //! several at once on all cores.
 //!
-//! Contract: deterministic; ends at the wanted number of triangles or one less; at fewer where only whole parts can
+//! Contract: deterministic; no part loses the triangles that it has to keep (`surface.rs`), nor
+//! its span unless nothing else can go; ends at the wanted number of triangles or one less; at fewer where only whole parts can
 //! go, at more only where nothing can.
 
 use crate::change::Change;
@@ -102,13 +103,19 @@ pub fn collapse_to(pictures: &mut Pictures, target: usize, watcher: &impl Watche
         return;
     }
     let mut versions = vec![0u64; pictures.surface.points.len()];
-    let candidates: Vec<Candidate> = candidates(&pictures.surface);
-    let mut queue: BinaryHeap<Entry> = evaluate(pictures, candidates, &versions).into_iter().collect();
+    let mut queue: BinaryHeap<Entry> =
+        evaluate(pictures, candidates(&pictures.surface), &versions).into_iter().collect();
     // Parts with which more would go than is asked for; they go if nothing else can.
     let mut too_large: Vec<Candidate> = Vec::new();
     while pictures.surface.count() > target && !watcher.stopped() {
         let Some(top) = queue.pop() else {
-            let Some(part) = too_large.pop() else { break };
+            let Some(part) = too_large.pop() else {
+                if !pictures.surface.forget_spans() {
+                    break;
+                }
+                queue.extend(evaluate(pictures, candidates(&pictures.surface), &versions));
+                continue;
+            };
             if let Some((change, _)) = best(pictures, &part, &mut Scratch::default()) {
                 pictures.apply(&change);
             }
@@ -196,8 +203,8 @@ fn best(pictures: &Pictures, candidate: &Candidate, scratch: &mut Scratch) -> Op
             places.into_iter().filter_map(|place| Change::collapse(surface, *b, *a, place)).collect()
         }
     };
-    let (gain, change) =
-        pictures.best_of(changes.into_iter().filter(|change| change.saved() > 0), scratch)?;
+    let (gain, change) = pictures
+        .best_of(changes.into_iter().filter(|change| change.saved() > 0 && surface.may(change)), scratch)?;
     let lengths: f64 = change.added.iter().map(|t| squared_sides(change.corners(surface, t))).sum();
     let cost = (LENGTH * lengths - gain) / change.saved() as f64;
     Some((change, cost))

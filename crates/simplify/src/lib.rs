@@ -12,5 +12,5 @@ pub mod start;
 pub mod surface;
 pub mod target;
 
-pub use choose::{ChooseOptions, Chosen, LayerReport, StartReport, choose_triangles};
+pub use choose::{ChooseOptions, Chosen, LayerReport, StartReport, choose_triangles, least_triangles};
 pub use start::Start;

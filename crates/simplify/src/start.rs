@@ -3,11 +3,15 @@
 //! Contract: positions only; welded, without texture coordinates, so that no seam is in the way. The layout is made
 //! anew for the result.
 
-use crate::surface::Surface;
+use crate::surface::{KEPT_SPAN, Surface};
 use meshopt::SimplifyOptions as Flags;
 use parbake_model::Mesh;
 use parbake_model::glam::Vec3;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Triangles that a part which was lost begins with, for each that it has to keep.
+const LOST_ROOM: usize = 4;
 
 /// How a surface to begin with is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -22,8 +26,71 @@ pub enum Start {
 /// Edge collapses down to about `target` triangles, in halvings: one shot at a large reduction is worse. `parts` has the
 /// part of each material, as in [`Surface::in_parts`].
 pub fn quadrics(mesh: &Mesh, parts: &[u32], target: usize) -> Mesh {
-    let surface = Surface::in_parts(mesh, parts).to_mesh();
-    let (mut positions, mut indices, materials) = by_material(&surface);
+    collapsed(&Surface::in_parts(mesh, parts).to_mesh(), target, Flags::Prune | Flags::RegularizeLight)
+}
+
+/// A start in which each part has `least` triangles, or all that it has in `mesh`, and most of its span: parts of which
+/// edge collapses left less are begun again, each by itself.
+pub fn with_lost_parts(start: Mesh, mesh: &Mesh, parts: &[u32], least: usize) -> Mesh {
+    if least == 0 {
+        return start;
+    }
+    let (found, spans) = (counts_of_parts(&start, parts), spans_of_parts(&start, parts));
+    let own_spans = spans_of_parts(mesh, parts);
+    let is_lost = |(part, count): &(u32, usize)| {
+        let [span, own] = [&spans, &own_spans].map(|spans| spans.get(part).copied().unwrap_or(0.0));
+        found.get(part).copied().unwrap_or(0) < least.min(*count) || span < KEPT_SPAN * own
+    };
+    let lost: Vec<(u32, usize)> = counts_of_parts(mesh, parts).into_iter().filter(is_lost).collect();
+    if lost.is_empty() {
+        return start;
+    }
+    let part_of = |material: u32| parts.get(material as usize).copied().unwrap_or(0);
+    let mut out = only(&start, |material| lost.iter().all(|(part, _)| *part != part_of(material)));
+    for &(part, _) in &lost {
+        let own = Surface::new(&only(mesh, |material| part_of(material) == part)).to_mesh();
+        // Nothing of it is pruned.
+        let own = collapsed(&own, LOST_ROOM * least, Flags::RegularizeLight);
+        let first = out.positions.len() as u32;
+        out.positions.extend(own.positions);
+        out.triangles.extend(own.triangles.iter().map(|triangle| triangle.map(|vertex| vertex + first)));
+        out.triangle_materials.extend(own.triangle_materials);
+    }
+    out
+}
+
+/// Triangles of each part.
+pub fn counts_of_parts(mesh: &Mesh, parts: &[u32]) -> BTreeMap<u32, usize> {
+    let mut counts = BTreeMap::new();
+    for &material in &mesh.triangle_materials {
+        *counts.entry(parts.get(material as usize).copied().unwrap_or(0)).or_default() += 1;
+    }
+    counts
+}
+
+/// Length from corner to corner of the box of each part.
+fn spans_of_parts(mesh: &Mesh, parts: &[u32]) -> BTreeMap<u32, f32> {
+    let mut boxes: BTreeMap<u32, (Vec3, Vec3)> = BTreeMap::new();
+    for (triangle, &material) in mesh.triangle_materials.iter().enumerate() {
+        let part = parts.get(material as usize).copied().unwrap_or(0);
+        for point in mesh.corners(triangle) {
+            let (low, high) = boxes.entry(part).or_insert((point, point));
+            (*low, *high) = (low.min(point), high.max(point));
+        }
+    }
+    boxes.into_iter().map(|(part, (low, high))| (part, low.distance(high))).collect()
+}
+
+/// The triangles of some materials.
+fn only(mesh: &Mesh, is_wanted: impl Fn(u32) -> bool) -> Mesh {
+    let triangles = mesh.triangles.iter().zip(&mesh.triangle_materials);
+    let (triangles, triangle_materials) = triangles.filter(|(_, material)| is_wanted(**material)).unzip();
+    Mesh { positions: mesh.positions.clone(), triangles, triangle_materials, ..Mesh::default() }
+}
+
+/// A welded surface with about `target` triangles.
+fn collapsed(surface: &Mesh, target: usize, flags: Flags) -> Mesh {
+    let (mut positions, mut indices, materials) = by_material(surface);
     let mut count = indices.len() / 3;
     while count > target {
         let next = (count / 2).max(target);
@@ -37,7 +104,7 @@ pub fn quadrics(mesh: &Mesh, parts: &[u32], target: usize) -> Mesh {
             None,
             wanted,
             f32::MAX,
-            Flags::Prune | Flags::RegularizeLight,
+            flags,
             None,
         );
         indices.truncate(kept);
@@ -77,4 +144,45 @@ fn assembled(positions: &[[f32; 3]], indices: &[u32], material: impl Fn(&[u32; 3
     let triangle_materials = triangles.iter().map(material).collect();
     let positions = positions.iter().map(|&p| Vec3::from(p)).collect();
     Mesh { positions, triangles, triangle_materials, ..Mesh::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three strips of triangles along x, each of a material; the last one is much smaller.
+    fn strips() -> Mesh {
+        let mut mesh = Mesh::default();
+        for (material, length) in [8.0f32, 8.0, 0.01].into_iter().enumerate() {
+            let first = mesh.positions.len() as u32;
+            for k in 0..=16u32 {
+                let (x, z) = (length * k as f32 / 16.0, 4.0 * material as f32);
+                mesh.positions.extend([Vec3::new(x, 0.0, z), Vec3::new(x, 0.1 * length, z)]);
+            }
+            for k in 0..16 {
+                let a = first + 2 * k;
+                mesh.triangles.extend([[a, a + 2, a + 1], [a + 1, a + 2, a + 3]]);
+            }
+            mesh.triangle_materials.resize(mesh.triangles.len(), material as u32);
+        }
+        mesh
+    }
+
+    /// Protects parts that edge collapses would take away or shorten: they begin again, others stay as they are.
+    #[test]
+    fn lost_parts_begin_again() {
+        let (mesh, parts) = (strips(), [0, 1, 2]);
+        let mut start = only(&mesh, |material| material == 0);
+        // Of the second a crumb is left.
+        start.triangles.extend(&mesh.triangles[32..36]);
+        start.triangle_materials.extend([1; 4]);
+        let whole = with_lost_parts(start.clone(), &mesh, &parts, 4);
+        let (counts, spans) = (counts_of_parts(&whole, &parts), spans_of_parts(&whole, &parts));
+        assert_eq!((counts[&0], &whole.triangles[..32]), (32, &mesh.triangles[..32]));
+        for part in [1, 2] {
+            assert!((4..=16).contains(&counts[&part]), "{counts:?}");
+            assert!(spans[&part] > KEPT_SPAN * spans_of_parts(&mesh, &parts)[&part]);
+        }
+        assert_eq!(with_lost_parts(start.clone(), &mesh, &parts, 0), start);
+    }
 }

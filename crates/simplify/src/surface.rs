@@ -32,7 +32,20 @@ pub struct Surface {
     /// For each point the triangles around it.
     around: Vec<Vec<u32>>,
     count: usize,
+    /// The part of each material; nothing where there is one part.
+    parts: Vec<u32>,
+    /// Triangles of each part.
+    counts: Vec<usize>,
+    /// Triangles that each part keeps at least; nothing where parts may go.
+    floors: Vec<usize>,
+    /// Lengths that parts span at least, corner to corner of their boxes, while they have few triangles.
+    spans: Vec<f32>,
 }
+
+/// Triangles up to which a part is watched for its span, since that takes a look at all of them.
+const WATCHED: usize = 128;
+/// Share of its span that a part keeps: what is left shall be all of it, coarsely, and no crumb.
+pub const KEPT_SPAN: f32 = 0.8;
 
 impl Surface {
     /// Welds the vertices of a mesh by position; triangles without extent are left out.
@@ -45,19 +58,64 @@ impl Surface {
     pub fn in_parts(mesh: &Mesh, parts: &[u32]) -> Self {
         let first = weld_by_position(&mesh.positions);
         let mut index: HashMap<(u32, u32), u32> = HashMap::with_capacity(first.len());
-        let mut out = Self::default();
+        let mut out = Self { parts: parts.to_vec(), ..Self::default() };
         for (corners, &material) in mesh.triangles.iter().zip(&mesh.triangle_materials) {
             let welded = corners.map(|v| first[v as usize]);
             if welded[0] == welded[1] || welded[1] == welded[2] || welded[2] == welded[0] {
                 continue;
             }
-            let part = parts.get(material as usize).copied().unwrap_or(0);
+            let part = out.part_of(material);
             let corners = welded.map(|v| {
                 *index.entry((v, part)).or_insert_with(|| out.push_point(mesh.positions[v as usize]))
             });
             out.push(Triangle { corners, material });
         }
         out
+    }
+
+    /// The part of a material.
+    fn part_of(&self, material: u32) -> u32 {
+        self.parts.get(material as usize).copied().unwrap_or(0)
+    }
+
+    /// From now on each part keeps so many triangles, or all that it has if these are fewer, and most of its span.
+    pub fn keep_of_each_part(&mut self, least: usize) {
+        self.floors = self.counts.iter().map(|&count| count.min(least)).collect();
+        if least > 0 {
+            let nothing = Change::default();
+            self.spans = (0..self.counts.len() as u32)
+                .map(|part| KEPT_SPAN * self.span_after(part, &nothing))
+                .collect();
+        }
+    }
+
+    /// From now on parts may become shorter; returns whether they might not.
+    pub fn forget_spans(&mut self) -> bool {
+        !std::mem::take(&mut self.spans).is_empty()
+    }
+
+    /// Whether a change leaves its part what that has to keep. All its triangles are of one part.
+    pub fn may(&self, change: &Change) -> bool {
+        let first = change.removed.iter().find_map(|&triangle| self.get(triangle));
+        let Some(part) = first.map(|triangle| self.part_of(triangle.material)) else { return true };
+        let (count, floor) = (self.counts[part as usize], self.floors.get(part as usize).copied());
+        let left = count + change.added.len() - change.removed.len();
+        let span = self.spans.get(part as usize).filter(|_| count <= WATCHED);
+        left >= floor.unwrap_or(0) && span.is_none_or(|&span| self.span_after(part, change) >= span)
+    }
+
+    /// Length from corner to corner of a part's box after a change.
+    fn span_after(&self, part: u32, change: &Change) -> f32 {
+        let kept = self.triangles().filter(|(index, triangle)| {
+            self.part_of(triangle.material) == part && !change.removed.contains(index)
+        });
+        let kept = kept.map(|(_, triangle)| self.corners(triangle.corners));
+        let added = change.added.iter().map(|triangle| change.corners(self, triangle));
+        let boxed = kept.chain(added).flatten().fold(None, |boxed: Option<(Vec3, Vec3)>, point| {
+            let (low, high) = boxed.unwrap_or((point, point));
+            Some((low.min(point), high.max(point)))
+        });
+        boxed.map_or(0.0, |(low, high)| low.distance(high))
     }
 
     /// Adds a point that no triangle uses yet.
@@ -72,6 +130,11 @@ impl Surface {
         self.triangles.push(Some(triangle));
         triangle.corners.iter().for_each(|&point| self.around[point as usize].push(index));
         self.count += 1;
+        let part = self.part_of(triangle.material) as usize;
+        if part >= self.counts.len() {
+            self.counts.resize(part + 1, 0);
+        }
+        self.counts[part] += 1;
         index
     }
 
@@ -81,6 +144,8 @@ impl Surface {
                 self.around[point as usize].retain(|&other| other != index);
             }
             self.count -= 1;
+            let part = self.part_of(triangle.material) as usize;
+            self.counts[part] -= 1;
         }
     }
 

@@ -61,7 +61,7 @@ fn prepared(mesh: Mesh) -> HighPoly {
 }
 
 fn prepared_of(mesh: Mesh, materials: Vec<Material>) -> HighPoly {
-    let model = Model { name: "high".into(), mesh, materials, images: Vec::new(), rig: None };
+    let model = Model { name: "high".into(), mesh, materials, ..Model::default() };
     let conventions = Conventions {
         interpretation: Interpretation { decode_srgb: true, trilinear: true, parallax: true },
         display: Display { gain: 1.0, curve: Curve::Srgb },
@@ -134,7 +134,8 @@ fn without_time_the_budget_of_triangles_holds() {
     }
     let high = prepared(sphere(8));
     let polish = PolishOptions { rounds: 2, sweeps: 1, ..PolishOptions::default() };
-    let options = ChooseOptions { triangles: 40, room: 2, views: 4, sets: 1, view_size: 32, polish, seed: 0 };
+    let options =
+        ChooseOptions { triangles: 40, least: 0, room: 2, views: 4, sets: 1, view_size: 32, polish, seed: 0 };
     let chosen = choose_triangles(&high, None, &[], &options, &Late);
     assert!((39..=40).contains(&chosen.mesh.triangles.len()), "{}", chosen.mesh.triangles.len());
     let [before, after] = chosen.layers[0].error;
@@ -166,6 +167,7 @@ fn chosen_triangles_fit_and_are_the_same_for_any_threads() {
     let high = prepared(sphere(24));
     let options = ChooseOptions {
         triangles: 96,
+        least: 0,
         room: 3,
         views: 12,
         sets: 2,
@@ -201,6 +203,7 @@ fn what_is_behind_glass_is_kept() {
     let high = prepared_of(mesh, vec![Material::default(), glass]);
     let options = ChooseOptions {
         triangles: 120,
+        least: 0,
         room: 2,
         views: 6,
         sets: 1,

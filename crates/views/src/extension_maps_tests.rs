@@ -21,7 +21,7 @@ fn squares(materials: Vec<Material>, images: Vec<Image>) -> Model {
         mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
         mesh.triangle_materials.extend([index; 2]);
     }
-    Model { name: "squares".into(), mesh, materials, images, rig: None }
+    Model { name: "squares".into(), mesh, materials, images, ..Model::default() }
 }
 
 fn maps_of(model: &Model) -> ExtensionMaps {

@@ -10,6 +10,7 @@ mod common;
 mod layouts;
 mod lod;
 mod parallax;
+mod parts;
 mod raycast;
 mod real_models;
 mod refusals;

@@ -19,7 +19,7 @@ use super::buffers::Buffers;
 use super::motion::Motion;
 use super::sources::Sources;
 use parbake_model::glam::{DAffine3, DVec3};
-use parbake_model::{Influences, Joint, NodeTransform, RigNode, Skeleton};
+use parbake_model::{Influences, Joint, Node, NodeTransform, Skeleton};
 use std::collections::HashMap;
 
 /// By how much two transforms may differ that are one, as a share of their size.
@@ -215,7 +215,7 @@ impl Binding {
                 self.motion.seat(index).and_then(|seat| seat.parent).and_then(|parent| places[parent]);
             places[index] = Some(skeleton.nodes.len());
             let node = &document.nodes[index];
-            skeleton.nodes.push(RigNode { name: node.name.clone(), parent, rest: super::scene::local(node) });
+            skeleton.nodes.push(Node { name: node.name.clone(), parent, rest: super::scene::local(node) });
         }
         let mut taken = vec![false; skeleton.nodes.len()];
         for &(node, inverse_bind) in &self.joints {
@@ -224,7 +224,7 @@ impl Binding {
             let own =
                 place.filter(|&place| !std::mem::replace(&mut taken[place], true)).unwrap_or_else(|| {
                     let name = place.map_or(STILL.into(), |place| skeleton.nodes[place].name.clone());
-                    skeleton.nodes.push(RigNode { name, parent: place, rest: NodeTransform::IDENTITY });
+                    skeleton.nodes.push(Node { name, parent: place, rest: NodeTransform::IDENTITY });
                     taken.push(true);
                     skeleton.nodes.len() - 1
                 });

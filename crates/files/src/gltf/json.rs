@@ -9,6 +9,7 @@ use super::integer::{integer, integers, optional_integer};
 use super::json_material::Material;
 use super::json_motion::{Animation, Skin, Target, TargetNames};
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
@@ -123,6 +124,7 @@ fn yes() -> bool {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Mesh {
+    pub name: String,
     pub primitives: Vec<Primitive>,
     /// Of morph targets, where a node does not have its own.
     pub weights: Vec<f32>,
@@ -195,9 +197,27 @@ pub(super) struct Attributes {
     pub weights_0: Option<usize>,
     #[serde(rename = "WEIGHTS_1", deserialize_with = "optional_integer")]
     pub weights_1: Option<usize>,
+    /// All others, such as COLOR_1 and those of an application, whose names begin with an underscore.
+    #[serde(flatten)]
+    pub others: BTreeMap<String, serde_json::Value>,
 }
 
 impl Attributes {
+    /// The attribute of a name, which is not one that has coordinates or joints.
+    pub fn named(&self, name: &str) -> Option<usize> {
+        match name {
+            "COLOR_0" => self.color_0,
+            _ => self.others.get(name)?.as_u64()?.try_into().ok(),
+        }
+    }
+
+    /// Names of attributes that may be painted.
+    pub fn painted(&self) -> impl Iterator<Item = &str> {
+        let first = self.color_0.map(|_| "COLOR_0");
+        let names = self.others.keys().map(String::as_str);
+        first.into_iter().chain(names.filter(|name| name.starts_with('_') || name.starts_with("COLOR_")))
+    }
+
     /// The texture coordinates of a set; none beyond the eighth.
     pub fn texcoord(&self, set: usize) -> Option<usize> {
         let sets = [

@@ -3,19 +3,22 @@
 //! The node of the finest level is the one in the scene and names the nodes of the others. The extension's page
 //! leaves open what a coverage is measured by; it is the share of the screen's height here, as UnityGLTF reads it.
 //! There lower levels become children of the first one's node and keep their transforms: so nodes of levels have
-//! none. Where positions are quantised, each has a child that places its mesh.
+//! none. Where positions are quantised, each has a child that places its mesh. Parts that stay apart hang below the node
+//! of their level, with all nodes that are above them.
 //!
 //! Contract: a file of one model is the same as without levels.
 
 use super::binary::Binary;
-use super::quantise::Grid;
+use super::pieces::Piece;
+use super::write_material::Materials;
 use super::write_mesh::primitives;
+use super::write_nodes::{add_children, hang, nodes_of};
 use parbake_model::{Mesh, Model};
 use serde_json::{Value, json};
 
 pub const NAME: &str = "MSFT_lod";
 
-/// All materials and images of all levels, and of their meshes as much as says which are used.
+/// All materials and images of all levels, in their order, and tangents to say that there are some.
 pub fn together(levels: &[&Model]) -> Model {
     if let [only] = levels {
         return (*only).clone();
@@ -23,63 +26,73 @@ pub fn together(levels: &[&Model]) -> Model {
     let mut all =
         Model { name: levels.first().map_or(String::new(), |l| l.name.clone()), ..Model::default() };
     for level in levels {
-        let (images, materials) = (all.images.len(), all.materials.len() as u32);
+        let images = all.images.len();
         all.images.extend(level.images.iter().cloned());
         for material in &level.materials {
             let mut material = material.clone();
             material.for_each_image(|image| *image += images);
             all.materials.push(material);
         }
-        let Mesh { tangents, triangle_materials, .. } = &level.mesh;
+        let Mesh { tangents, .. } = &level.mesh;
         all.mesh.tangents.extend_from_slice(tangents);
-        all.mesh.triangle_materials.extend(triangle_materials.iter().map(|m| m + materials));
     }
     all
 }
 
-/// The mesh of each level; its primitives name materials by their places among those that are used.
-pub fn meshes(binary: &mut Binary, levels: &[&Model], grid: Option<&Grid>) -> Vec<Value> {
-    let mut places = 0;
-    let mesh = |level: &&Model| {
-        let is_used = |material: &usize| level.mesh.triangle_materials.contains(&(*material as u32));
-        let used: Vec<usize> = (0..level.materials.len()).filter(is_used).collect();
-        let mut primitives = primitives(binary, level, &used, grid);
+/// The mesh of each piece; its materials, which `all` has of all levels, are added to those of the document. Grids are
+/// `placed` by nodes, or by joints.
+pub fn meshes(
+    binary: &mut Binary,
+    materials: &mut Materials,
+    levels: &[&Model],
+    all: &Model,
+    pieces: &[Piece<'_>],
+    placed: bool,
+) -> Vec<Value> {
+    let mesh = |piece: &Piece<'_>| {
+        let before: usize = levels[..piece.level].iter().map(|level| level.materials.len()).sum();
+        let model = &*piece.model;
+        let is_used = |material: &usize| model.mesh.triangle_materials.contains(&(*material as u32));
+        let used: Vec<usize> = (0..model.materials.len()).filter(is_used).collect();
+        let unit = if placed { piece.unit() } else { piece.scale };
+        let places: Vec<usize> =
+            used.iter().map(|&material| materials.place_of(all, before + material, unit)).collect();
+        let mut primitives = primitives(binary, model, &used, piece.grid.as_ref());
         for primitive in &mut primitives {
             let own = primitive["material"].as_u64().unwrap_or(0) as usize;
-            primitive["material"] = (places + own).into();
+            primitive["material"] = places[own].into();
         }
-        places += used.len();
-        json!({ "name": level.name, "primitives": primitives })
+        json!({ "name": model.name, "primitives": primitives })
     };
-    levels.iter().map(mesh).collect()
+    pieces.iter().map(mesh).collect()
 }
 
-/// The nodes: one for each level, and where positions are on a grid one below each.
-pub fn nodes(levels: &[&Model], coverages: Option<&[f64]>, grid: Option<&Grid>) -> Vec<Value> {
-    let Some(coverages) = coverages else {
-        let mut node = json!({ "mesh": 0, "name": levels.first().map_or("", |level| &level.name) });
-        if let Some(grid) = grid {
-            grid.place(&mut node);
+/// The nodes: one for each level, then what places the grids of its rest, then those of its parts. Grids are `placed` by
+/// nodes, or by joints.
+pub fn nodes(levels: &[&Model], coverages: Option<&[f64]>, pieces: &[Piece<'_>], placed: bool) -> Vec<Value> {
+    let mut nodes: Vec<Value> = levels.iter().map(|level| json!({ "name": level.name })).collect();
+    let numbered = || pieces.iter().enumerate();
+    let grid = |piece: &'_ Piece<'_>| piece.grid.filter(|_| placed);
+    for (mesh, piece) in numbered().filter(|(_, piece)| piece.node.is_none()) {
+        let is_free = coverages.is_none() && levels[piece.level].parts.is_none();
+        hang(&mut nodes, piece.level, mesh, grid(piece).as_ref(), is_free);
+    }
+    for (level, model) in levels.iter().enumerate() {
+        let Some(parts) = &model.parts else { continue };
+        let first = nodes.len();
+        let (own, roots) = nodes_of(&parts.nodes, first);
+        nodes.extend(own);
+        add_children(&mut nodes[level], roots);
+        for (mesh, piece) in numbered().filter(|(_, piece)| piece.level == level) {
+            if let Some(node) = piece.node {
+                hang(&mut nodes, first + node, mesh, grid(piece).as_ref(), false);
+            }
         }
-        return vec![node];
-    };
-    let count = levels.len();
-    let mut nodes: Vec<Value> = (levels.iter().enumerate())
-        .map(|(index, level)| match grid {
-            None => json!({ "mesh": index, "name": level.name }),
-            Some(_) => json!({ "children": [count + index], "name": level.name }),
-        })
-        .collect();
-    if count > 1 {
-        nodes[0]["extensions"][NAME] = json!({ "ids": (1..count).collect::<Vec<_>>() });
+    }
+    let Some(coverages) = coverages else { return nodes };
+    if levels.len() > 1 {
+        nodes[0]["extensions"][NAME] = json!({ "ids": (1..levels.len()).collect::<Vec<_>>() });
     }
     nodes[0]["extras"] = json!({ "MSFT_screencoverage": coverages });
-    if let Some(grid) = grid {
-        nodes.extend((0..count).map(|index| {
-            let mut node = json!({ "mesh": index });
-            grid.place(&mut node);
-            node
-        }));
-    }
     nodes
 }

@@ -12,6 +12,7 @@ use super::buffers::{Buffers, pointer};
 use super::json::Primitive;
 use super::morphs::{Morphs, Part};
 use super::motion::Motion;
+use super::painted::Painted;
 use super::parallax::turns;
 use super::scene::{Instance, visit};
 use super::sources::{Attributes, Sources, draco_stream};
@@ -19,7 +20,7 @@ use super::topology::{has_triangles, triangles};
 use super::uv_sets::UvSets;
 use crate::{FileError, Place};
 use parbake_model::glam::{DAffine3, DMat3, Vec2, Vec3, Vec4};
-use parbake_model::{Mesh, Rig};
+use parbake_model::{Hierarchy, Mesh, Rig};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -52,6 +53,10 @@ pub(super) struct Merge<'a, 'd> {
     /// What vertices follow, where something moves.
     pub binding: Option<Binding>,
     pub morphs: Morphs,
+    /// For each triangle the document's node that places it.
+    pub triangle_nodes: Vec<u32>,
+    /// For each triangle what is painted on it, if that is asked for (`painted.rs`).
+    pub painted: Painted,
 }
 
 impl<'a, 'd> Merge<'a, 'd> {
@@ -69,7 +74,7 @@ impl<'a, 'd> Merge<'a, 'd> {
             colors: any(|p| p.attributes.color_0.is_some()),
         };
         let (mesh, materials, turned, scales, material_ids, placed, drawn, places) = Default::default();
-        let (binding, morphs) = Default::default();
+        let (binding, morphs, triangle_nodes, painted) = Default::default();
         Self {
             buffers,
             mesh,
@@ -84,6 +89,8 @@ impl<'a, 'd> Merge<'a, 'd> {
             places,
             binding,
             morphs,
+            triangle_nodes,
+            painted,
         }
     }
 
@@ -181,6 +188,9 @@ impl<'a, 'd> Merge<'a, 'd> {
         let limit = (context.limits.max_vertices as u64).min(u64::from(u32::MAX) - 1);
         context.within(pointer(here.into()), "vertices", found, limit)?;
         let placing = self.placing(skin, &sources, &elements, at);
+        if context.attribute.is_some() {
+            self.painted.add(&sources, &elements, &triangles);
+        }
         let determinant = placing.matrices[0].matrix3.determinant();
         let material = self.material(primitive.material, determinant.abs().cbrt(), here)?;
         self.turned[material as usize] |= placing.matrices.iter().any(|matrix| turns(&matrix.matrix3));
@@ -191,6 +201,8 @@ impl<'a, 'd> Merge<'a, 'd> {
             }
         }
         self.mesh.triangle_materials.resize(already + triangles.len(), material);
+        let node = at.node.map_or(Hierarchy::NONE, |node| node as u32);
+        self.triangle_nodes.resize(already + triangles.len(), node);
         self.mesh.triangles.append(&mut triangles);
         self.positions(&sources.position, &elements, at, &placing)?;
         self.attributes(&sources, &elements, &placing);

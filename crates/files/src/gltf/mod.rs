@@ -13,6 +13,7 @@ mod buffers;
 mod container;
 mod draco;
 mod extensions;
+mod hierarchy;
 mod ignored;
 mod integer;
 mod json;
@@ -32,7 +33,9 @@ mod morphs;
 mod motion;
 mod names;
 mod pack;
+mod painted;
 mod parallax;
+mod pieces;
 mod quantise;
 mod references;
 mod runs;
@@ -48,6 +51,7 @@ mod write;
 mod write_extensions;
 mod write_material;
 mod write_mesh;
+mod write_nodes;
 mod write_parallax;
 mod write_rig;
 
@@ -89,6 +93,8 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
     let mut merge = merge::Merge::new(&buffers);
     merge.add_all()?;
     let rig = merge.rig()?;
+    let nodes = hierarchy::hierarchy(&buffers, std::mem::take(&mut merge.triangle_nodes))?;
+    let painted = std::mem::take(&mut merge.painted).values(&buffers)?;
     let (mesh, used) = (std::mem::take(&mut merge.mesh), std::mem::take(&mut merge.materials));
     let turned = std::mem::take(&mut merge.turned);
     let scales = std::mem::take(&mut merge.scales);
@@ -112,7 +118,7 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
         }
     }
     let name = context.path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    finish(Model { name, mesh, materials, images, rig }, context, empty)
+    finish(Model { name, mesh, materials, images, rig, nodes, painted, parts: None }, context, empty)
 }
 
 fn parse(text: &[u8], context: &Context<'_>) -> Result<json::Document, FileError> {

@@ -24,6 +24,8 @@ pub(super) struct Sources<'a> {
     pub uv: Option<Accessor<'a>>,
     pub uv1: Option<Accessor<'a>>,
     pub color: Option<Accessor<'a>>,
+    /// What was asked for by its name (`Context::attribute`).
+    pub painted: Option<Accessor<'a>>,
     /// Joints and their weights, four at a time.
     pub influences: Vec<[Accessor<'a>; 2]>,
 }
@@ -89,8 +91,13 @@ impl<'a> Sources<'a> {
             let weights = open(weights, &format!("WEIGHTS_{set}"), &[4], is_skinned)?;
             influences.extend(joints.zip(weights).map(|(joints, weights)| [joints, weights]));
         }
+        let painted = match buffers.context.attribute {
+            Some(name) => open(&|a| a.named(name), name, &[1, 2, 3, 4], true)?,
+            None => None,
+        };
         let sources = Self {
             influences,
+            painted,
             normal: open(&|a| a.normal, "NORMAL", &[3], true)?,
             tangent: open(&|a| a.tangent, "TANGENT", &[4], has.tangents)?,
             uv: uv(0)?,
@@ -99,8 +106,8 @@ impl<'a> Sources<'a> {
             position,
         };
         let count = sources.position.count;
-        let others = [&sources.normal, &sources.tangent, &sources.uv, &sources.uv1, &sources.color];
-        let others = others.into_iter().flatten();
+        let others = [&sources.normal, &sources.tangent, &sources.uv, &sources.uv1];
+        let others = others.into_iter().chain([&sources.color, &sources.painted]).flatten();
         let different = others.chain(sources.influences.iter().flatten()).find(|a| a.count != count);
         if let Some(other) = different {
             let reason = format!("there are {count} positions, but {} has {}", other.pointer, other.count);

@@ -1,5 +1,5 @@
-//! GLB out (glTF 2.0, sections 3 and 4): one mesh, or one for each level of detail (`MSFT_lod`,
-//! `levels_out.rs`); pictures inside the file, as PNG if nothing else is asked for.
+//! GLB out (glTF 2.0, sections 3 and 4): one mesh, and one for each part that stays apart (`pieces.rs`), or these for each
+//! level of detail (`MSFT_lod`, `levels_out.rs`); pictures inside the file, as PNG if nothing else is asked for.
 //!
 //! The file passes the Khronos validator without errors, and the same model gives
 //! the same bytes.
@@ -7,7 +7,7 @@
 use super::binary::Binary;
 use super::levels_out::{self, meshes, nodes, together};
 use super::meshopt_out;
-use super::quantise::Grid;
+use super::pieces::{Piece, pieces};
 use super::write_material::{EMISSIVE_STRENGTH, Materials, UNLIT, purpose_of};
 use super::write_rig;
 use crate::texture_out::{Encoded, Purpose, encode_texture};
@@ -15,7 +15,6 @@ use crate::write_options::{
     MeshCompression, TextureFormat, WriteOptions, Written, WrittenMesh, WrittenTexture,
 };
 use crate::{FileError, Place, encode_png, write_atomically};
-use parbake_model::glam::Vec3;
 use parbake_model::{Image, Model};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -102,15 +101,13 @@ fn to_bytes(
         crate::model_out::check(path, model)?;
     }
     let mut binary = Binary::default();
-    let positions: Vec<Vec3> = levels.iter().flat_map(|model| model.mesh.positions.iter().copied()).collect();
-    let grid = (options.mesh_compression != MeshCompression::None).then(|| Grid::of(&positions));
+    let pieces = pieces(levels, options.mesh_compression != MeshCompression::None);
     let skeleton = write_rig::shared_skeleton(path, levels)?;
     // Skinned meshes ignore their nodes: their joints bring positions back, and leave scales alone.
-    let is_skinned = skeleton.is_some_and(|skeleton| !skeleton.joints.is_empty());
-    let placing = grid.as_ref().filter(|_| !is_skinned);
+    let placed = skeleton.is_none_or(|skeleton| skeleton.joints.is_empty());
     let model = &together(levels);
-    let mut materials = Materials::of(model, placing.map_or(1.0, |grid| grid.unit()));
-    let mut meshes = meshes(&mut binary, levels, grid.as_ref());
+    let mut materials = Materials::new(!model.mesh.tangents.is_empty());
+    let mut meshes = meshes(&mut binary, &mut materials, levels, model, &pieces, placed);
     for (mesh, skeleton) in meshes.iter_mut().zip(skeleton.into_iter().cycle()) {
         write_rig::describe_targets(mesh, skeleton);
     }
@@ -129,7 +126,7 @@ fn to_bytes(
     name_sources(&mut materials.textures, &textures);
     let uses = |extension| textures.iter().any(|texture| extension_of(texture.format) == Some(extension));
     let (uses_webp, uses_ktx2) = (uses(WEBP), uses(KTX2));
-    let nodes = nodes(levels, coverages, placing);
+    let nodes = nodes(levels, coverages, &pieces, placed);
     let uses_meshopt = fallback.is_some();
     let mut document = json!({
         "asset": { "version": "2.0", "generator": concat!("Parbake ", env!("CARGO_PKG_VERSION")) },
@@ -140,7 +137,9 @@ fn to_bytes(
         "materials": materials.json,
     });
     if let Some(skeleton) = skeleton {
-        write_rig::add_to_document(&mut document, &mut binary, skeleton, grid.as_ref());
+        // All pieces of what is skinned share a grid.
+        let grid = pieces.first().and_then(|piece| piece.grid.as_ref());
+        write_rig::add_to_document(&mut document, &mut binary, skeleton, grid);
     }
     let mut buffers = vec![json!({ "byteLength": binary.bytes.len() })];
     buffers.extend(fallback);
@@ -165,7 +164,7 @@ fn to_bytes(
         (super::parallax::NAME_SH, materials.uses_harmonics, false),
         (WEBP, uses_webp, true),
         (KTX2, uses_ktx2, true),
-        (QUANTIZATION, grid.is_some(), true),
+        (QUANTIZATION, options.mesh_compression != MeshCompression::None, true),
         (meshopt_out::NAME, uses_meshopt, true),
     ];
     let materials = materials.extensions.into_iter().map(|name| (name, true, false));
@@ -177,7 +176,7 @@ fn to_bytes(
         }
     }
     let bytes = assemble(path, &document.to_string(), binary.bytes)?;
-    let position_error = grid.map_or(0.0, |grid| grid.error(&positions));
+    let position_error = pieces.iter().map(Piece::error).fold(0.0, f64::max);
     let mesh = WrittenMesh { compression: options.mesh_compression, bytes: mesh_bytes, position_error };
     let written = Written { bytes: bytes.len() as u64, mesh, textures };
     Ok((bytes, written))

@@ -17,8 +17,6 @@ pub(super) const UNLIT: &str = "KHR_materials_unlit";
 /// The document's material part. Indices into it are those of its own lists.
 #[derive(Default)]
 pub(super) struct Materials {
-    /// Indices of the model's materials that triangles have, increasing.
-    pub used: Vec<usize>,
     /// Indices of the model's images that those materials use, in order of use.
     pub images: Vec<usize>,
     /// The materials themselves.
@@ -35,6 +33,8 @@ pub(super) struct Materials {
     pub has_tangents: bool,
     /// The names of the other material extensions in use.
     pub extensions: Vec<&'static str>,
+    /// Indices of the model's materials, and the unit that they are written for where it matters.
+    used: Vec<(usize, Option<u32>)>,
     texture_keys: Vec<(usize, [Wrap; 2], Filter)>,
     sampler_keys: Vec<([Wrap; 2], Filter)>,
 }
@@ -49,19 +49,22 @@ pub(super) enum Filter {
 }
 
 impl Materials {
-    /// Those of a model, the unit of whose mesh is this long in the model when it is written.
-    pub fn of(model: &Model, unit: f32) -> Self {
-        let mut out = Self { has_tangents: !model.mesh.tangents.is_empty(), ..Self::default() };
-        let mut is_used = vec![false; model.materials.len()];
-        for &material in &model.mesh.triangle_materials {
-            is_used[material as usize] = true;
+    /// None yet.
+    pub fn new(has_tangents: bool) -> Self {
+        Self { has_tangents, ..Self::default() }
+    }
+
+    /// The place of a model's material on a mesh whose unit is this long in the model; it is added where it is not there
+    /// yet.
+    pub fn place_of(&mut self, model: &Model, index: usize, unit: f32) -> usize {
+        // Thickness alone is a length.
+        let is_thick = model.materials[index].extensions.volume.is_some();
+        let place = place(&mut self.used, (index, is_thick.then(|| unit.to_bits())));
+        if place == self.json.len() {
+            let json = self.material(&model.materials[index], unit);
+            self.json.push(json);
         }
-        out.used = (0..is_used.len()).filter(|&i| is_used[i]).collect();
-        for i in out.used.clone() {
-            let json = out.material(&model.materials[i], unit);
-            out.json.push(json);
-        }
-        out
+        place
     }
 
     fn material(&mut self, material: &Material, unit: f32) -> Value {

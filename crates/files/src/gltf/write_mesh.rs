@@ -64,7 +64,7 @@ fn in_runs(binary: &mut Binary, mesh: &Mesh, stored: Stored<'_>, runs: &[Run]) -
             None => binary.indices(&run.triangles, run.vertices.len()),
         };
         written.push((run, indices));
-        let attributes = attributes(binary, &part(mesh, &run.vertices), stored);
+        let attributes = attributes(binary, &picked(mesh, &run.vertices), stored);
         primitives.push(json!({ "attributes": attributes, "indices": indices, "material": 0 }));
     }
     primitives
@@ -110,17 +110,17 @@ fn triangles_of(mesh: &Mesh, material: usize) -> Vec<[u32; 3]> {
 }
 
 /// The attributes of some of the vertices.
-fn part(mesh: &Mesh, vertices: &[u32]) -> Mesh {
-    fn picked<T: Copy>(values: &[T], vertices: &[u32]) -> Vec<T> {
+pub fn picked(mesh: &Mesh, vertices: &[u32]) -> Mesh {
+    fn of<T: Copy>(values: &[T], vertices: &[u32]) -> Vec<T> {
         if values.is_empty() { Vec::new() } else { vertices.iter().map(|&v| values[v as usize]).collect() }
     }
     Mesh {
-        positions: picked(&mesh.positions, vertices),
-        normals: picked(&mesh.normals, vertices),
-        tangents: picked(&mesh.tangents, vertices),
-        uvs: picked(&mesh.uvs, vertices),
-        uvs1: picked(&mesh.uvs1, vertices),
-        colors: picked(&mesh.colors, vertices),
+        positions: of(&mesh.positions, vertices),
+        normals: of(&mesh.normals, vertices),
+        tangents: of(&mesh.tangents, vertices),
+        uvs: of(&mesh.uvs, vertices),
+        uvs1: of(&mesh.uvs1, vertices),
+        colors: of(&mesh.colors, vertices),
         ..Mesh::default()
     }
 }

@@ -5,9 +5,10 @@
 
 use super::binary::{Binary, Unit};
 use super::quantise::Grid;
+use super::write_nodes::{matrix, nodes_of};
 use crate::{FileError, Place};
-use parbake_model::glam::{DAffine3, DMat4, Vec3};
-use parbake_model::{Interpolation, Model, Morph, NodeTransform, Property, Rig, Skeleton, Track};
+use parbake_model::glam::{DAffine3, Vec3};
+use parbake_model::{Interpolation, Model, Morph, Property, Rig, Skeleton, Track};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::path::Path;
@@ -120,7 +121,7 @@ pub fn add_to_document(document: &mut Value, binary: &mut Binary, skeleton: &Ske
             document["nodes"][node]["skin"] = 0.into();
         }
     }
-    let (nodes, roots) = nodes_of(skeleton, first);
+    let (nodes, roots) = nodes_of(&skeleton.nodes, first);
     for (list, more) in [("/nodes", nodes), ("/scenes/0/nodes", roots)] {
         if let Some(list) = document.pointer_mut(list).and_then(Value::as_array_mut) {
             list.extend(more);
@@ -130,43 +131,6 @@ pub fn add_to_document(document: &mut Value, binary: &mut Binary, skeleton: &Ske
     if !animations.is_empty() {
         document["animations"] = animations.into();
     }
-}
-
-/// Columns of a matrix.
-fn matrix(affine: DAffine3) -> [f64; 16] {
-    DMat4::from(affine).to_cols_array()
-}
-
-/// The nodes, and the indices of those without a parent.
-fn nodes_of(skeleton: &Skeleton, first: usize) -> (Vec<Value>, Vec<Value>) {
-    let mut children: Vec<Vec<usize>> = vec![Vec::new(); skeleton.nodes.len()];
-    let mut roots = Vec::new();
-    for (index, node) in skeleton.nodes.iter().enumerate() {
-        match node.parent {
-            Some(parent) => children[parent].push(first + index),
-            None => roots.push(Value::from(first + index)),
-        }
-    }
-    let node = |(node, children): (&parbake_model::RigNode, Vec<usize>)| {
-        let mut out = json!({});
-        if !node.name.is_empty() {
-            out["name"] = node.name.clone().into();
-        }
-        if !children.is_empty() {
-            out["children"] = children.into();
-        }
-        match node.rest {
-            rest if rest == NodeTransform::IDENTITY => {}
-            NodeTransform::Parts { translation, rotation, scale } => {
-                out["translation"] = json!(translation.to_array());
-                out["rotation"] = json!(rotation.to_array());
-                out["scale"] = json!(scale.to_array());
-            }
-            NodeTransform::Matrix(own) => out["matrix"] = json!(matrix(own)),
-        }
-        out
-    };
-    (skeleton.nodes.iter().zip(children).map(node).collect(), roots)
 }
 
 /// Numbers of accessors, of which each is written once.

@@ -59,7 +59,7 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
     let (materials, images) = materials::build(&names, &libraries, &context)?;
     check_coordinates(&mesh, &materials, &context);
     let name = path_stem(context.path);
-    finish(Model { name, mesh, materials, images, rig: None }, context, &empty)
+    finish(Model { name, mesh, materials, images, ..Model::default() }, context, &empty)
 }
 
 /// Forgets the materials that no triangle has, so that their pictures stay closed.

@@ -123,7 +123,7 @@ mod tests {
             ..Material::default()
         };
         let images = vec![Image::solid("n", 2, 2, [1, 2, 3, 4]), Image::solid("c", 3, 1, [9, 8, 7, 255])];
-        Model { name: "m".into(), mesh, materials: vec![colored, textured], images, rig: None }
+        Model { name: "m".into(), mesh, materials: vec![colored, textured], images, ..Model::default() }
     }
 
     /// Protects every bit on the way through a file, the pictures' names, and the count of all

@@ -5,6 +5,7 @@
 mod common;
 mod feature_files;
 mod material_files;
+mod part_files;
 mod picture_files;
 mod real_files;
 mod robustness;

@@ -36,7 +36,8 @@ fn glb() -> Vec<u8> {
     let base_color_texture = Some(TextureSlot::default());
     let materials = vec![Material { base_color_texture, ..Material::default() }];
     let images = vec![Image::solid("i", 3, 3, [1, 2, 3, 4])];
-    glb_bytes(&Model { name: "m".into(), mesh, materials, images, rig: None }).expect("a whole model")
+    glb_bytes(&Model { name: "m".into(), mesh, materials, images, ..Model::default() })
+        .expect("a whole model")
 }
 
 fn check(result: Result<Loaded, FileError>) {

@@ -45,7 +45,13 @@ fn grid(side: u32) -> Model {
     let colour = Image { name: "c".into(), width: 16, height: 4, pixels: texels(|i| [i as u8, 9, 255, 7]) };
     let normal =
         Image { name: "n".into(), width: 4, height: 16, pixels: texels(|i| [128, i as u8, 255, 255]) };
-    Model { name: "grid".into(), mesh, materials: vec![base, plain], images: vec![colour, normal], rig: None }
+    Model {
+        name: "grid".into(),
+        mesh,
+        materials: vec![base, plain],
+        images: vec![colour, normal],
+        ..Model::default()
+    }
 }
 
 /// What OBJ cannot say, added to the grid.

@@ -45,7 +45,7 @@ pub fn wall_model() -> Model {
         mesh,
         materials: vec![material],
         images: vec![texture(TEXTURE_SIZE)],
-        rig: None,
+        ..Model::default()
     }
 }
 

@@ -25,9 +25,10 @@ mod written;
 
 use crate::bake::{Baked, bake_as, prepare_high_poly};
 use crate::error::BakeError;
-use crate::low_poly::low_poly;
+use crate::low_poly::{check_triangles, least_of, low_poly};
+use crate::options::BakeOptions;
+use crate::parts::{PartReport, draw_calls, part_reports, with_kept_parts, with_parted_materials};
 use crate::report::Work;
-use crate::rigs::with_parted_materials;
 use chain::{Chain, hurried};
 use options::LodOptions;
 use parbake_files::WriteOptions;
@@ -66,8 +67,18 @@ pub struct LevelReport {
     pub texture_size: usize,
     /// Texels of all its textures.
     pub texels: usize,
-    /// Draw calls: one for each material.
+    /// Texels between the two charts that come nearest, at the texture's own size; none where there is one chart.
+    #[serde(default)]
+    pub gutter: Option<f64>,
+    /// The same at the smallest mip level that the level is meant for: where it is as small as the next level's size, or
+    /// as half of the last one's own.
+    #[serde(default)]
+    pub smallest_gutter: Option<f64>,
+    /// Draw calls: one for each material, of each part that stays apart and of the rest.
     pub draw_calls: usize,
+    /// The nodes that stay apart.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<PartReport>,
     /// How the triangles of each layer (opaque, cut out, blended, transmitting) were found.
     pub low_poly: Vec<LayerReport>,
     /// Against the original, at the size that it was made for; of what the file holds.
@@ -94,7 +105,8 @@ pub struct LevelReport {
 /// before.
 ///
 /// # Errors
-/// An option out of range; a model without extent; what `on_level` returns.
+/// An option out of range; a model without extent; parts that are not there, or too many for so few triangles; what
+/// `on_level` returns.
 pub fn make_levels<E: From<BakeError>>(
     model: &Model,
     options: &LodOptions,
@@ -103,7 +115,8 @@ pub fn make_levels<E: From<BakeError>>(
 ) -> Result<usize, E> {
     options.check()?;
     let start = Instant::now();
-    let model = &*with_parted_materials(model);
+    let kept = with_kept_parts(model, &options.keep_parts)?;
+    let model = &*with_parted_materials(&kept);
     let maker = Maker::new(model, options)?;
     let sizes = (0..options.screen_size.len())
         .map(|level| (maker.wanted_triangles(level), maker.texture_size(model, options.screen_size[level])));
@@ -128,13 +141,18 @@ pub fn make_levels<E: From<BakeError>>(
             maker.lineup.subject(&as_written(&draft.baked.model, &write, options.normal_y)?.model)?;
         let figures = maker.figures(index, &subject, before.as_ref().map(|(_, subject)| subject))?;
         let Draft { low, layers, baked, seconds: [chosen, fitted, compared] } = draft;
+        let mip = baked.report.options.smallest_mip.unwrap_or(0.0);
+        let gutter = baked.report.uv.gutter.as_ref().map(|gutter| (gutter.texels, mip));
         let report = LevelReport {
             level: index,
             screen_size: options.screen_size[index],
             triangles: baked.model.mesh.triangles.len(),
             texture_size: baked.model.images.iter().map(|image| image.width).max().unwrap_or(0),
             texels: baked.model.images.iter().map(|image| image.width * image.height).sum(),
-            draw_calls: baked.model.materials.len(),
+            gutter: gutter.map(|(texels, _)| texels),
+            smallest_gutter: gutter.map(|(texels, mip)| texels / mip.exp2()),
+            draw_calls: draw_calls(&baked.model),
+            parts: part_reports(&baked.model),
             low_poly: layers,
             at_screen_size: figures.at_screen_size,
             switch_pixels: figures.switch_pixels,
@@ -159,6 +177,8 @@ pub(crate) struct Maker<'a> {
     pub lineup: Lineup,
     /// The model, ready for pictures.
     pub original: Subject,
+    /// The fewest triangles that a level may have.
+    pub least: usize,
 }
 
 /// A baked level without figures.
@@ -181,9 +201,11 @@ struct Figures {
 impl<'a> Maker<'a> {
     fn new(model: &'a Model, options: &'a LodOptions) -> Result<Self, BakeError> {
         let high = prepare_high_poly(model, &options.bake(options.max_texture_size))?;
+        options.triangles.iter().try_for_each(|&count| check_triangles(&high, model, count))?;
+        let least = least_of(&high, model);
         let lineup = Lineup::new(model, options.shading);
         let original = lineup.subject(model)?;
-        Ok(Self { model, high, options, lineup, original })
+        Ok(Self { model, high, options, lineup, original, least })
     }
 
     /// Chooses so many triangles and bakes, to be finished by `until`; the texture's size follows the level's where
@@ -204,8 +226,11 @@ impl<'a> Maker<'a> {
             return Ok(None);
         }
         let chosen = begin.elapsed().as_secs_f64();
-        let own = || self.texture_size(&low, self.options.screen_size[level]);
-        let options = hurried(self.options.bake(texture_size.unwrap_or_else(own)), until);
+        let side = self.texels_along(&low, self.options.screen_size[level]);
+        let texture_size = texture_size.unwrap_or_else(|| self.power_of_two(side));
+        let smallest_mip = Some(self.smallest_mip(level, texture_size as f64 / side));
+        let options = BakeOptions { smallest_mip, ..self.options.bake(texture_size) };
+        let options = hurried(options, until);
         let baked = bake_as(Work::Level, &self.high, &low, &options, &watcher.after_triangles())?;
         let seconds = [chosen, begin.elapsed().as_secs_f64() - chosen, 0.0];
         Ok(Some(Draft { low, layers, baked, seconds }))
@@ -228,7 +253,7 @@ impl<'a> Maker<'a> {
     }
 
     fn wanted_triangles(&self, level: usize) -> usize {
-        let (least, high, options) = (4, &self.high, self.options);
+        let (least, high, options) = (self.least, &self.high, self.options);
         match (options.triangles.get(level), options.ratio.get(level)) {
             (Some(&count), _) => count,
             (None, Some(share)) => ((share * high.triangles as f64).round() as usize).max(least),
@@ -240,15 +265,31 @@ impl<'a> Maker<'a> {
         }
     }
 
-    /// About a texel for each pixel that the surface covers at this size, where charts fill three quarters of the
-    /// texture; a power of two.
+    /// Texels along a side of a level's texture.
     fn texture_size(&self, low: &Model, screen_size: f64) -> usize {
+        self.power_of_two(self.texels_along(low, screen_size))
+    }
+
+    /// About a texel for each pixel that the surface covers at this size, where charts fill three quarters of the
+    /// texture.
+    fn texels_along(&self, low: &Model, screen_size: f64) -> f64 {
         let area: f64 =
             (0..low.mesh.triangles.len()).map(|t| 0.5 * f64::from(low.mesh.area_normal(t).length())).sum();
         let pixels_per_unit = 0.5 * screen_size * f64::from(self.high.frame.scale);
-        let side = (area * pixels_per_unit.powi(2) / 0.75).sqrt();
-        let side = 2f64.powf(side.max(1.0).log2().round()) as usize;
+        (area * pixels_per_unit.powi(2) / 0.75).sqrt().max(1.0)
+    }
+
+    fn power_of_two(&self, side: f64) -> usize {
         let most = self.options.max_texture_size;
-        side.clamp(32.min(most), most)
+        (2f64.powf(side.log2().round()) as usize).clamp(32.min(most), most)
+    }
+
+    /// The mip level with a texel for each pixel at the size where a level is no longer meant to be seen: that which the
+    /// next one is made for, or half of the last one's own. `share` is how many times as many texels along a side the
+    /// texture has as the level's own size needs.
+    fn smallest_mip(&self, level: usize, share: f64) -> f64 {
+        let sizes = &self.options.screen_size;
+        let smaller = sizes.get(level + 1).copied().unwrap_or(0.5 * sizes[level]);
+        (share * sizes[level] / smaller).log2().max(0.0)
     }
 }

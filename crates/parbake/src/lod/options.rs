@@ -42,6 +42,11 @@ pub struct LodOptions {
     #[serde(deserialize_with = "crate::texels::texels")]
     pub max_texture_size: usize,
 
+    /// Nodes of the model that stay apart, each with what hangs below it, as a part with its name, pivot and material's name;
+    /// all share one set of textures. NAME may hold * and ?. A list, or several times
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", value_delimiter = ',', help_heading = LEVELS))]
+    pub keep_parts: Vec<String>,
+
     /// PSNR in dB from which on a level cannot be told from the one before, 10 to 60; says where levels switch
     #[cfg_attr(feature = "clap", arg(long, value_name = "DECIBELS", default_value_t = 35.0, help_heading = LEVELS))]
     pub switch_psnr: f64,
@@ -58,10 +63,15 @@ pub struct LodOptions {
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Shading::Auto, help_heading = heading::QUALITY))]
     pub shading: Shading,
 
-    /// How much a material of the model counts, 0.01 to 100, for texels and triangles; the others have 1. NAME may hold *
-    /// and ?. May be given several times
+    /// How much a material of the model counts, or with node:NAME=WEIGHT a node and what hangs below it, 0.01 to 100, for
+    /// texels and triangles; all else has 1. NAME may hold * and ?. May be given several times; the last that fits counts
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME=WEIGHT", help_heading = heading::QUALITY))]
     pub importance: Vec<Importance>,
+
+    /// Vertex attribute of the model in which importances are painted: COLOR_1 or another colour, whose red counts, or a
+    /// number of your own such as _IMPORTANCE. From 0 to 1: 0 counts a sixteenth, 0.5 as ever, 1 sixteen times
+    #[cfg_attr(feature = "clap", arg(long, value_name = "ATTRIBUTE", help_heading = heading::QUALITY))]
+    pub importance_attribute: Option<String>,
 
     /// Seconds after which levels are finished with what there is, 0 to 1e9, reading of files included: fewer steps,
     /// no level less [default: no limit]
@@ -99,12 +109,14 @@ impl Default for LodOptions {
             ratio: Vec::new(),
             error: 0.25,
             target_psnr: None,
+            keep_parts: Vec::new(),
             max_texture_size: 2048,
             switch_psnr: 35.0,
             viewport_height: 1080.0,
             preset: Preset::Fast,
             shading: Shading::Auto,
             importance: Vec::new(),
+            importance_attribute: None,
             time_budget: None,
             write: WriteOptions::default(),
             normal_y: NormalY::Up,
@@ -176,6 +188,7 @@ impl LodOptions {
             preset: self.preset,
             shading: self.shading,
             importance: self.importance.clone(),
+            importance_attribute: self.importance_attribute.clone(),
             normal_y: self.normal_y,
             seed: self.seed,
             threads: self.threads,

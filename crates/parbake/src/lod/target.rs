@@ -28,8 +28,6 @@ const USUAL: f64 = 42.0;
 const NOTHING: f64 = 0.05;
 /// Texels along a side for each that a level has as a rule, about one a pixel, beyond which more show nothing.
 const MORE_TEXELS: usize = 4;
-/// Triangles of a level, at least.
-const LEAST_TRIANGLES: usize = 4;
 /// Reductions that miss the target by so many decibels are not followed further.
 const HOPELESS: f64 = 8.0;
 /// Qualities of lossy textures that are tried below the one that was asked for.
@@ -98,7 +96,7 @@ pub(crate) fn find(
     let options = maker.options;
     let pixels = options.screen_size[level];
     let (first, most) = bounds(maker, level, finer, target);
-    let mut search = Search::new(target, first, LEAST_TRIANGLES, most);
+    let mut search = Search::new(target, first, maker.least, most);
     let original = maker.lineup.pictures(&maker.original, pixels)?;
     let until = chain.level_until(level);
     let mut tried: Vec<Tried> = Vec::new();
@@ -167,7 +165,7 @@ fn bounds(maker: &Maker, level: usize, finer: Option<&Model>, target: f64) -> (P
     // The longest side is 2 long in the common frame.
     let within = |error: f64| triangles_within(high.scene.mesh(), (2.0 * error / pixels) as f32);
     let all = finer.map_or(high.triangles, |low| low.mesh.triangles.len());
-    let most = within(NOTHING).clamp(LEAST_TRIANGLES.min(all), all);
+    let most = within(NOTHING).clamp(maker.least.min(all), all);
     let first = within(0.25 * 10f64.powf((USUAL - target) / 20.0)).min(most);
     let texture_size = maker.texture_size(maker.model, pixels);
     let most =

@@ -124,7 +124,7 @@ pub fn pair(high: &Model, low: Mesh, size: usize, max_distance: f32) -> (HighPol
         mesh: low,
         materials: vec![Material::default()],
         images: Vec::new(),
-        rig: None,
+        ..Model::default()
     };
     let low = LowPoly::new(&low, &high.frame, size).unwrap();
     (high, low)
@@ -138,6 +138,6 @@ pub fn painted(mesh: Mesh, colors: &[[f32; 3]]) -> Model {
         mesh,
         materials: colors.iter().map(material).collect(),
         images: Vec::new(),
-        rig: None,
+        ..Model::default()
     }
 }

@@ -19,7 +19,7 @@ fn tent(name: &str, height: f32) -> Model {
         triangle_materials: vec![0; 4],
         ..Mesh::default()
     };
-    Model { name: name.into(), mesh, materials: vec![Material::default()], images: Vec::new(), rig: None }
+    Model { name: name.into(), mesh, materials: vec![Material::default()], ..Model::default() }
 }
 
 fn options() -> BakeOptions {

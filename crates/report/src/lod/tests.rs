@@ -17,7 +17,10 @@ fn level(level: usize, target: Option<TargetReport>) -> LevelReport {
         triangles: 90,
         texture_size: 64,
         texels: 4096,
+        gutter: Some(4.0),
+        smallest_gutter: Some(2.0),
         draw_calls: 1,
+        parts: Vec::new(),
         low_poly: vec![LayerReport {
             triangles: 90,
             starts: vec![start(Start::Level, 1e-3), start(Start::Quadrics, 2e-3)],

@@ -82,7 +82,7 @@ mod tests {
             mesh,
             materials: vec![Material::default()],
             images: Vec::new(),
-            rig: None,
+            ..Model::default()
         };
         let frame = Placement { centre: Vec3::ZERO, scale: 1.0 };
         let low = LowPoly::new(&model, &frame, 8).unwrap();

@@ -47,7 +47,7 @@ fn ball(name: &str, halvings: usize, radius: f32) -> Model {
             mesh.triangle_materials.push(0);
         }
     }
-    Model { name: name.into(), mesh, materials: vec![Material::default()], images: Vec::new(), rig: None }
+    Model { name: name.into(), mesh, materials: vec![Material::default()], ..Model::default() }
 }
 
 fn fitted(high: &Model, low: &Model, motion: Motion, threads: usize) -> (Mesh, ShapeReport) {

@@ -64,6 +64,9 @@ pub struct UvStageOptions {
     pub gutter_required: bool,
     /// Texels along a side of the parallax map that is to come, if one is.
     pub parallax_size: Option<usize>,
+    /// Smallest mip level at which charts should not touch: 1 is the half of the texture's side. Levels of detail say
+    /// so.
+    pub smallest_mip: Option<f64>,
     /// Steps of the refinement, or rounds of the paper's method at most.
     pub steps: usize,
     /// Triangles that a model's own surface may have more.
@@ -149,7 +152,7 @@ pub fn optimise_uvs(
         }
     }
     mesh.triangle_materials.fill(0);
-    let model = Model { name, mesh, materials: vec![Material::default()], images: Vec::new(), rig: None };
+    let model = Model { name, mesh, materials: vec![Material::default()], ..Model::default() };
     UvStageResult { model, moves, pieces, report }
 }
 
@@ -225,27 +228,32 @@ pub fn repair_uvs(low: &Model, options: &UvStageOptions) -> Result<RepairedLowPo
 /// Gutter that a parallax map wants, in its texels: as far as what is fetched at a chart's border
 /// blends in, from either side.
 const PARALLAX_GUTTER: f64 = 2.0;
-/// Share of the square that such gutters may take, with charts that are squares of one size.
-const PARALLAX_ROOM: f64 = 0.25;
+/// Gutter at the smallest mip level, in its texels: as far as what is fetched at a chart's border blends in, from either
+/// side.
+const MIP_GUTTER: f64 = 2.0;
+/// Share of the square that wide gutters may take, with charts that are squares of one size.
+const MOST_ROOM: f64 = 0.25;
 
 impl UvStageOptions {
-    /// The same with a parallax map's gutter; None where none is to come, where the layout or the
-    /// gutter is the user's, or where charts are too many for it.
+    /// The same with the gutter of a parallax map, where charts are few enough, and of the smallest mip level, as far as
+    /// charts are; None where neither is wider, or where the layout or the gutter is the user's.
     fn with_room(&self, mesh: &Mesh) -> Option<Self> {
         let made_here = matches!(self.mode, UvMode::Optimize | UvMode::Unwrap);
-        let size = self
-            .parallax_size
-            .filter(|_| made_here && !self.gutter_required && self.method == Method::Fit)?;
+        if !made_here || self.gutter_required || self.method != Method::Fit {
+            return None;
+        }
         let charts = Layout::new(mesh).charts.iter().max().map_or(0, |last| last + 1);
-        let wide = PARALLAX_GUTTER / size as f64;
-        let gutter = wide * self.texture_size as f64;
-        let fits = 2.0 * f64::from(charts).sqrt() * wide <= PARALLAX_ROOM;
-        (fits && gutter > self.gutter).then_some(Self { gutter, gutter_required: true, ..*self })
+        let (size, most) = (self.texture_size as f64, MOST_ROOM / (2.0 * f64::from(charts).sqrt()));
+        let of_parallax =
+            self.parallax_size.map(|size| PARALLAX_GUTTER / size as f64).filter(|wide| *wide <= most);
+        let of_mip = self.smallest_mip.map(|mip| (MIP_GUTTER * mip.exp2() / size).min(most));
+        let gutter = size * of_parallax.into_iter().chain(of_mip).fold(0.0, f64::max);
+        (gutter > self.gutter).then_some(Self { gutter, gutter_required: true, ..*self })
     }
 }
 
 /// [`repair_uvs`], with room for a parallax map where charts are few: near another chart's a fetch blends in that
-/// one's coefficients, which costs 0.1 to 0.4 dB. The gutter becomes that of `options`.
+/// one's coefficients, which costs 0.1 to 0.4 dB; and for the smallest mip level. The gutter becomes that of `options`.
 ///
 /// # Errors
 /// As of [`repair_uvs`].
@@ -340,6 +348,7 @@ mod tests {
             gutter: gutter.unwrap_or(1.0),
             gutter_required: gutter.is_some(),
             parallax_size: Some(64),
+            smallest_mip: None,
             steps: 30,
             more_triangles: 0,
         }
@@ -361,7 +370,7 @@ mod tests {
             mesh,
             materials: vec![Material::default()],
             images: Vec::new(),
-            rig: None,
+            ..Model::default()
         }
     }
 
@@ -384,5 +393,19 @@ mod tests {
         let options = with_parallax(None);
         let with_room = |charts| options.with_room(&sheet(charts).mesh);
         assert!(with_room(16).is_some() && with_room(17).is_none());
+    }
+
+    /// Protects small mip levels: two of their texels lie between charts, or as many as a quarter of the square has room
+    /// for.
+    #[test]
+    fn charts_do_not_touch_at_the_smallest_mip() {
+        for (charts, mip, wanted) in [(4, 2.0, 8.0), (16, 1.5, 2.0 * 2f64.powf(1.5)), (16, 3.0, 8.0)] {
+            let mut options =
+                UvStageOptions { parallax_size: None, smallest_mip: Some(mip), ..with_parallax(None) };
+            let repaired = repair_uvs_with_room(&sheet(charts), &mut options).expect("they fit");
+            assert!((options.gutter - wanted).abs() < 1e-9, "{}", options.gutter);
+            let gutter = check(&Layout::new(&repaired.mesh), 256).gutter.expect("several charts").texels;
+            assert!(gutter >= wanted, "{gutter} of {wanted}");
+        }
     }
 }

@@ -52,7 +52,7 @@ fn sheet() -> Model {
         mesh,
         materials: vec![Material { base_color_texture: Some(slot), ..Material::default() }],
         images: vec![Image { name: "details".into(), width: side, height: side, pixels }],
-        rig: None,
+        ..Model::default()
     }
 }
 
@@ -65,6 +65,7 @@ fn options(mode: UvMode) -> UvStageOptions {
         gutter: 1.0,
         gutter_required: false,
         parallax_size: None,
+        smallest_mip: None,
         steps: 12,
         more_triangles: 0,
     }

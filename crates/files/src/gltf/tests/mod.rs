@@ -3,6 +3,7 @@
 mod compressed;
 mod extensions;
 mod motion;
+mod painted;
 mod parallax;
 mod textures;
 mod writing;
