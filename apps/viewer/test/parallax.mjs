@@ -13,7 +13,7 @@ import { parseArgs } from 'node:util';
 import { drawn, findBrowser, launch, settled, watchedPage } from './browser.mjs';
 import { readFilm } from './film.mjs';
 import { parallaxModel } from './parallax_model.mjs';
-import { serve, servePage } from './serve.mjs';
+import { below, serve, servePage } from './serve.mjs';
 
 const { values, positionals } = parseArgs({ allowPositionals: true, options: { parbake: { type: 'string' }, out: { type: 'string' } } });
 if (!findBrowser()) {
@@ -80,6 +80,8 @@ async function ofPackage() {
   for (const [way, differs] of Object.entries(ways)) verify(differs < 0.004, `${way}: ${differs} of the picture differs`);
   const orthographic = await run('orthographic', 'ball');
   verify(orthographic < 0.01, `orthographic: ${orthographic} of the picture differs`);
+  const { isTaken, differs } = await run('anisotropic', 'ball');
+  verify(isTaken && differs < 0.1, `anisotropic: ${differs} of the picture differs`);
   const shadows = await run('shadows', 'ball');
   for (const [light, { cut, whole: all }] of Object.entries(shadows)) verify(cut > 0.3 * all && cut < 0.97 * all, `shadow of ${light}: ${cut} of ${all}`);
   const prepass = await run('prepass', 'ball');
@@ -106,6 +108,30 @@ async function ofPackage() {
   const others = errors.filter((text) => !text.includes("Couldn't load texture"));
   verify(others.length === 0, `the package: console: ${others.join(' | ')}`);
   console.log(`the package: ${JSON.stringify({ ways, orthographic, shadows, prepass })}`);
+  await page.close();
+  await stop();
+}
+
+/** The package's own page. */
+async function ofExample() {
+  const folder = path.join(viewer, '../../integrations/three');
+  const { url, stop } = await serve((name) => {
+    if (name === 'ball.glb') return parallaxModel();
+    if (name === 'example/') return fs.readFileSync(path.join(folder, 'example/index.html'));
+    return name.startsWith('node_modules/three/') ? below(viewer, name) : below(folder, name);
+  });
+  const { page, errors, outside } = await watchedPage(browser, { width: 500, height: 400 });
+  await page.goto(`${url}example/?model=/ball.glb`);
+  await page.waitForFunction(() => document.getElementById('told').textContent.includes('with parallax maps'));
+  const shot = async (name) => {
+    // Two frames later.
+    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    return Buffer.from(await page.screenshot({ path: path.join(out, `${name}.png`), clip: { x: 0, y: 60, width: 500, height: 340 } }));
+  };
+  const on = await shot('example_on');
+  await page.click('#parallax');
+  verify(!on.equals(await shot('example_off')), 'the example: its switch changes the picture');
+  verify(errors.length === 0 && outside.length === 0, `the example: ${errors.join(' | ')} ${outside.join(' ')}`);
   await page.close();
   await stop();
 }
@@ -202,6 +228,7 @@ async function ofPage(name, bytes, file) {
 }
 
 await ofPackage();
+await ofExample();
 const ball = path.join(out, 'ball.glb');
 fs.writeFileSync(ball, parallaxModel());
 await ofPage('ball', fs.readFileSync(ball), null);

@@ -194,6 +194,14 @@ const tests = {
     return differing(near, far);
   },
 
+  /** Maps that are filtered along the longer side: the same but for detail. */
+  async anisotropic(name) {
+    const { draw, mesh, renderer } = await stage(name), plain = draw(), { material } = mesh;
+    material.map.anisotropy = renderer.capabilities.getMaxAnisotropy();
+    material.map.needsUpdate = true;
+    return { isTaken: (draw(), material.parallax.isAnisotropic), differs: differing(plain, draw()) };
+  },
+
   /** The shadow on a wall behind the model, for each kind of light: its size with and without the cutout. */
   async shadows(name) {
     const out = {};

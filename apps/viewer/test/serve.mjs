@@ -10,7 +10,7 @@ export async function serve(answer) {
   const server = http.createServer((request, response) => {
     const name = decodeURIComponent(new URL(request.url, 'http://localhost').pathname).slice(1) || 'index.html';
     const body = answer(name);
-    response.writeHead(body == null ? 404 : 200, { 'Content-Type': TYPES[path.extname(name)] ?? 'application/octet-stream' });
+    response.writeHead(body == null ? 404 : 200, { 'Content-Type': name.endsWith('/') ? TYPES['.html'] : TYPES[path.extname(name)] ?? 'application/octet-stream' });
     response.end(body ?? '');
   });
   await new Promise((done) => server.listen(0, '127.0.0.1', done));

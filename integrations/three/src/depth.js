@@ -14,7 +14,6 @@ const isOpaque = (material) => !(material.alphaTest > 0) && !material.alphaHash;
 
 function patch(shader, source, { hasTangents, hasNormals }) {
   const { maps } = source.parallax, anchor = source.map ?? source.normalMap, isShifted = !isOpaque(source);
-  Object.assign(shader.uniforms, maps.uniforms, { parallaxTransform: { value: anchor.matrix } });
   const hasFrame = hasNormals && hasTangents;
   const names = [
     'PARALLAX_CUTOUT', isShifted && 'PARALLAX_SHIFT', maps.isFading && 'PARALLAX_FADE', !hasNormals && 'PARALLAX_FLAT',
@@ -55,7 +54,10 @@ export function createDepthMaterial(source, geometry, { isDistance = false } = {
   const has = { hasTangents: Boolean(attributes.tangent), hasNormals: Boolean(attributes.normal) };
   Object.assign(depth, { map: source.map, alphaMap: source.alphaMap, alphaTest: source.alphaTest, side: source.side });
   depth.onBeforeCompile = (shader) => {
-    if (source.parallax.isActive) patch(shader, source, has);
+    const { parallax, map, normalMap } = source;
+    // As in material.js, always.
+    Object.assign(shader.uniforms, parallax.maps.uniforms, { parallaxTransform: { value: (map ?? normalMap)?.matrix } });
+    if (parallax.isActive) patch(shader, source, has);
   };
   depth.customProgramCacheKey = () => {
     const { parallax } = source, anchor = source.map ?? source.normalMap;

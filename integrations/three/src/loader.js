@@ -30,6 +30,7 @@ export class ParallaxPlugin {
     this.maps = (json.materials ?? []).map((material) => readParallax(material, warn));
     // The small textures for other viewers are then never asked for.
     if (json.materials) json.materials = json.materials.map((material, i) => (this.maps[i] ? withOwnTextures(material) : material));
+    return null;
   }
 
   loadMaterial(index) {
@@ -54,5 +55,6 @@ export class ParallaxPlugin {
 
   afterRoot({ scenes }) {
     for (const scene of scenes) addShadowMaterials(scene);
+    return null;
   }
 }

@@ -43,6 +43,8 @@ class Parallax {
     this.followers = new Set();
     /** Whether the geometry has tangents, where three.js itself does not want to know. */
     this.hasTangents = false;
+    /** Whether maps are to be filtered along the longer side of a pixel's footprint. */
+    this.isAnisotropic = isAnisotropic(material);
   }
 
   get textures() { return this.maps.textures; }
@@ -59,15 +61,17 @@ class Parallax {
   get isActive() { return this.#isOn && Boolean(this.material.map || this.material.normalMap); }
 }
 
+const isAnisotropic = ({ map, normalMap }) => map?.anisotropy > 1 || normalMap?.anisotropy > 1;
+
 /** Whether three.js tells shaders of the geometry's tangents. */
 const usesTangents = (material) => Boolean(material.normalMap || material.anisotropy > 0);
 
-function patch(shader, { material, maps, hasTangents }) {
-  Object.assign(shader.uniforms, maps.uniforms);
+function patch(shader, { material, maps, hasTangents, isAnisotropic: isStretched }) {
   const isOwn = !usesTangents(material) && hasTangents;
   const isFlat = material.flatShading, hasFrame = !isFlat && (shader.vertexTangents || isOwn);
   const names = [
     'PARALLAX_SHIFT', maps.hasCutout && 'PARALLAX_CUTOUT', maps.isFading && 'PARALLAX_FADE', isFlat && 'PARALLAX_FLAT',
+    isStretched && 'PARALLAX_ANISOTROPIC',
     hasFrame && 'PARALLAX_TANGENT', isOwn && !isFlat && 'USE_TANGENT',
   ].filter(Boolean);
   const macros = `${defines(names)}#define PARALLAX_UV ${material.map ? 'vMapUv' : 'vNormalMapUv'}\n`
@@ -108,21 +112,24 @@ export function applyParallax(material, maps, { alphaToCoverage = true } = {}) {
   material.parallax = parallax;
   material.onBeforeCompile = function (shader, renderer) {
     onBeforeCompile.call(this, shader, renderer);
+    // Also where they are switched off: three.js keeps the uniforms of the program that it compiled last.
+    Object.assign(shader.uniforms, maps.uniforms);
     if (parallax.isActive) patch(shader, parallax);
   };
   material.customProgramCacheKey = function () {
     const before = hasOwnKey ? customProgramCacheKey.call(this) : onBeforeCompile.toString();
     if (!parallax.isActive) return before;
     const isOpaque = !this.transparent && !(this.alphaTest > 0) && !this.alphaHash;
-    const own = [Boolean(this.map), parallax.hasTangents, maps.hasCutout, maps.isFading, isOpaque].map(Number).join('');
+    const own = [Boolean(this.map), parallax.hasTangents, parallax.isAnisotropic, maps.hasCutout, maps.isFading, isOpaque].map(Number).join('');
     return `${before} parallax ${own}`;
   };
   material.onBeforeRender = function (renderer, scene, camera, geometry, ...rest) {
     onBeforeRender.call(this, renderer, scene, camera, geometry, ...rest);
     if (maps.hasCutout) maps.uniforms.parallaxIsMultisampled.value = isMultisampled(renderer);
-    const hasTangents = Boolean(geometry.attributes.tangent) && !usesTangents(this);
-    if (hasTangents === parallax.hasTangents) return;
-    parallax.hasTangents = hasTangents;
+    // Neither is told to three.js' own programs.
+    const now = { hasTangents: Boolean(geometry.attributes.tangent) && !usesTangents(this), isAnisotropic: isAnisotropic(this) };
+    if (now.hasTangents === parallax.hasTangents && now.isAnisotropic === parallax.isAnisotropic) return;
+    Object.assign(parallax, now);
     this.needsUpdate = true;
   };
   material.clone = function () {
