@@ -33,8 +33,7 @@ export function createLoader(renderer) {
       if (!notes.includes(sentence)) notes.push(sentence);
     };
     const loader = new GLTFLoader(manager).setDRACOLoader(draco).setKTX2Loader(ktx2).setMeshoptDecoder(MeshoptDecoder)
-      // Alpha is needed for what lies behind the picture, so it cannot choose samples.
-      .register((parser) => new ParallaxPlugin(parser, { alphaToCoverage: false }));
+      .register((parser) => new ParallaxPlugin(parser));
     try {
       guard(bytes);
       const gltf = await Promise.race([loader.parseAsync(bytes, ''), workerFails]);
@@ -80,7 +79,7 @@ export class Model {
     if (used.includes(OLD_PARALLAX))
       notes.push(`${this.name} has parallax maps of the older kind. This viewer shows the plain material, without their depth.`);
     this.prepare();
-    this.hasParallax = parallaxMaterials(this.root).length > 0;
+    this.parallax = parallaxMaterials(this.root);
     this.showLevel(0);
   }
 
@@ -111,6 +110,9 @@ export class Model {
 
   /** Shows parallax maps and their cutouts, or the plain materials. */
   setParallax(isOn) { setParallax(this.root, isOn); }
+
+  /** Whether borders are drawn with their coverage as alpha. */
+  get isCut() { return this.parallax.some((material) => material.parallax.enabled && material.alphaToCoverage); }
 
   /** The box around all vertices as they stand in the file. */
   box() {

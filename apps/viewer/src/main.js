@@ -311,7 +311,7 @@ function wireModels(models) {
   wireView();
   wireTurntable();
   wireShortcuts(modes.map(([key]) => key));
-  byId('parallax-switch').hidden = !models.some((model) => model.hasParallax);
+  byId('parallax-switch').hidden = !models.some((model) => model.parallax.length);
   store.on(['parallax'], ({ parallax }) => { for (const model of models) model.setParallax(parallax); });
   store.set({ isReady: true, hasCompare: compare !== null, mode: compare ? 'split' : 'model' });
   store.on(['mode', 'hasCompare'], ({ mode, hasCompare }) => {

@@ -1,7 +1,7 @@
 // All of three.js that the page uses, built into a file of its own: it changes only with three.js's version.
 export {
   AnimationMixer, BackSide, Box3, BufferAttribute, BufferGeometry, ClampToEdgeWrapping, Color, CustomBlending,
-  DataTexture, DirectionalLight, FloatType, Group, HalfFloatType, LinearFilter, LinearSRGBColorSpace, LineSegments,
+  DataTexture, DirectionalLight, DoubleSide, EqualDepth, FloatType, Group, HalfFloatType, LinearFilter, LinearSRGBColorSpace, LineSegments,
   LoadingManager, Matrix3, MaxEquation, Mesh, MeshBasicMaterial, MeshDepthMaterial, MeshDistanceMaterial,
   NearestFilter, NoColorSpace, OneFactor, OrthographicCamera, PerspectiveCamera, PlaneGeometry, PMREMGenerator,
   RGFormat, Scene, ShaderChunk, ShaderMaterial, SphereGeometry, SRGBColorSpace, UnsignedByteType, Vector2, Vector3,

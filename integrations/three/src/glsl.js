@@ -121,8 +121,8 @@ export const BEGIN = /* glsl */ `
       parallaxCutoutOffset[ 2 ] + parallaxCutoutScale[ 2 ] * parallaxLayer( parallaxCutoutMap, parallaxAt, 2.0, parallaxCutoutRows ),
       parallaxSight ) - 1.0 );
     #ifdef ALPHA_TO_COVERAGE
-      // The width is taken before anything is discarded.
-      float parallaxWidth = max( fwidth( parallaxThere ), 1e-6 );
+      // The width is taken before anything is discarded. It is bounded, for past the edge of a triangle it is any number.
+      float parallaxWidth = clamp( fwidth( parallaxThere ), 1e-6, 1.0 );
       parallaxCoverage = parallaxIsMultisampled ? clamp( 0.5 + parallaxThere / parallaxWidth, 0.0, 1.0 ) : step( 0.0, parallaxThere );
       if ( parallaxCoverage <= 0.0 ) discard;
     #else
