@@ -39,7 +39,8 @@ async function build(out) {
   const apart = {
     name: 'three.js stays a file of its own',
     setup(build) {
-      build.onResolve({ filter: /\/vendor\.js$/ }, () => ({ path: './three.js', external: true }));
+      // The package of integrations/three imports three.js by its name.
+      build.onResolve({ filter: /\/vendor\.js$|^three$/ }, () => ({ path: './three.js', external: true }));
     },
   };
   await esbuild.build({ ...shared, entryPoints: ['src/main.js'], outfile: path.join(out, 'app.js'), plugins: [apart] });

@@ -3,8 +3,10 @@ import { AnimationMixer, Box3, DRACOLoader, GLTFLoader, Group, LoadingManager, M
 import { guard } from './guard.js';
 import { Ktx2 } from './ktx2.js';
 import { TEXTURE_SLOTS, teach } from './materials.js';
+import { ParallaxPlugin, parallaxMaterials, setParallax } from '../../../integrations/three/src/index.js';
 
-const PARALLAX = /^PARBAKE_materials_parallax/;
+/** Maps of the first version, which are not shown. */
+const OLD_PARALLAX = 'PARBAKE_materials_parallax_sh';
 
 /** Asks for a model of the session, `{ name, url, notes }`: its bytes and what there is to say about it. */
 export async function fetchModel(entry) {
@@ -30,7 +32,8 @@ export function createLoader(renderer) {
       const sentence = `${entry.name}: a texture could not be decoded; its material is shown without it.`;
       if (!notes.includes(sentence)) notes.push(sentence);
     };
-    const loader = new GLTFLoader(manager).setDRACOLoader(draco).setKTX2Loader(ktx2).setMeshoptDecoder(MeshoptDecoder);
+    const loader = new GLTFLoader(manager).setDRACOLoader(draco).setKTX2Loader(ktx2).setMeshoptDecoder(MeshoptDecoder)
+      .register((parser) => new ParallaxPlugin(parser));
     try {
       guard(bytes);
       const gltf = await Promise.race([loader.parseAsync(bytes, ''), workerFails]);
@@ -73,9 +76,10 @@ export class Model {
     this.levels = Math.max(1, ...lodNodes.map((node) => node.objects.length));
     this.coverage = lodNodes[0]?.coverage ?? null;
     const used = gltf.parser.json.extensionsUsed ?? [];
-    if (used.some((name) => PARALLAX.test(name)))
-      notes.push(`${this.name} has parallax maps. This viewer shows the plain material, without their depth.`);
+    if (used.includes(OLD_PARALLAX))
+      notes.push(`${this.name} has parallax maps of the older kind. This viewer shows the plain material, without their depth.`);
     this.prepare();
+    this.parallax = parallaxMaterials(this.root);
     this.showLevel(0);
   }
 
@@ -104,6 +108,12 @@ export class Model {
     }
   }
 
+  /** Shows parallax maps and their cutouts, or the plain materials. */
+  setParallax(isOn) { setParallax(this.root, isOn); }
+
+  /** Whether borders are drawn with their coverage as alpha. */
+  get isCut() { return this.parallax.some((material) => material.parallax.enabled && material.alphaToCoverage); }
+
   /** The box around all vertices as they stand in the file. */
   box() {
     this.root.updateMatrixWorld(true);
@@ -125,8 +135,8 @@ export class Model {
       for (const material of materialsOf(object)) materials.add(material);
     });
     for (const material of materials)
-      for (const [slot] of TEXTURE_SLOTS) {
-        const texture = material[slot], image = texture?.image;
+      for (const texture of [...TEXTURE_SLOTS.map(([slot]) => material[slot]), ...(material.parallax?.textures ?? [])]) {
+        const image = texture?.image;
         if (image) sources.set(texture.source, (image.width || 0) * (image.height || 0));
       }
     figures.materials = materials.size;

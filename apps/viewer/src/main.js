@@ -20,9 +20,9 @@ const RESTING = 250;
 /** After so many milliseconds it is said that loading takes a while. */
 const SLOW = 8000;
 /** What a picture depends on. */
-const DRAWN = ['mode', 'channel', 'wireframe', 'light', 'turn', 'exposure', 'tone', 'background', 'split', 'level', 'theme', 'uvLines'];
+const DRAWN = ['mode', 'channel', 'wireframe', 'parallax', 'light', 'turn', 'exposure', 'tone', 'background', 'split', 'level', 'theme', 'uvLines'];
 const store = createStore({
-  mode: 'model', channel: 'lit', wireframe: false, light: 'studio', turn: 0, exposure: 0, tone: 'none',
+  mode: 'model', channel: 'lit', wireframe: false, parallax: true, light: 'studio', turn: 0, exposure: 0, tone: 'none',
   background: 'page', split: 0.5, level: 'auto', turntable: false, uvLines: true, theme: 'light', isReady: false, hasCompare: false,
 });
 const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -229,6 +229,7 @@ function wireShortcuts(modes) {
     [['c'], 'Next channel', () => cycle('channel', CHANNELS.map((c) => c.key))],
     [['l'], 'Next light', () => cycle('light', LIGHTS.map((light) => light.key))],
     [['w'], 'Wireframe', () => store.set({ wireframe: !store.get().wireframe })],
+    [['d'], 'Parallax maps', () => { if (!byId('parallax-switch').hidden) store.set({ parallax: !store.get().parallax }); }],
     [['r'], 'Turntable', () => store.set({ turntable: !store.get().turntable })],
     [['f'], 'Fit to view', fit],
     [['[', ']'], 'Finer or coarser level of detail', (key) => level(key === '[' ? -1 : 1)],
@@ -310,6 +311,8 @@ function wireModels(models) {
   wireView();
   wireTurntable();
   wireShortcuts(modes.map(([key]) => key));
+  byId('parallax-switch').hidden = !models.some((model) => model.parallax.length);
+  store.on(['parallax'], ({ parallax }) => { for (const model of models) model.setParallax(parallax); });
   store.set({ isReady: true, hasCompare: compare !== null, mode: compare ? 'split' : 'model' });
   store.on(['mode', 'hasCompare'], ({ mode, hasCompare }) => {
     byId('legend').hidden = mode !== 'difference';

@@ -86,8 +86,9 @@ const chosen = (code, isLit) => /* glsl */ `
 `;
 
 function patched(shader) {
-  if (shown === SHADED.three) return;
+  // Also where nothing of ours is shown: three.js keeps the uniforms of the program that it compiled last.
   Object.assign(shader.uniforms, uniforms);
+  if (shown === SHADED.three) return;
   const place = ['#include <lights_physical_fragment>', '#include <opaque_fragment>'].find((p) => shader.fragmentShader.includes(p));
   const isLit = place !== '#include <opaque_fragment>';
   const declared = (shown === 8 ? CHECKER : '') + (shown === SHADED.studio ? STUDIO_GLSL : '');
@@ -102,8 +103,13 @@ function patched(shader) {
 export function teach(material) {
   if (taught.has(material) || (!material.isMeshStandardMaterial && !material.isMeshBasicMaterial)) return;
   taught.set(material, material.transmission ?? 0);
-  material.onBeforeCompile = patched;
-  material.customProgramCacheKey = () => `parbake ${shown}`;
+  // Parallax maps come second: they change what is fetched, ours included.
+  const { onBeforeCompile, customProgramCacheKey } = material;
+  material.onBeforeCompile = function (shader, renderer) {
+    patched(shader);
+    onBeforeCompile.call(this, shader, renderer);
+  };
+  material.customProgramCacheKey = function () { return `parbake ${shown} ${customProgramCacheKey.call(this)}`; };
 }
 
 /** Each texture of a material with the channel that it is for. */

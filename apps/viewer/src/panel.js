@@ -21,7 +21,7 @@ export function wirePanel(store) {
   options(byId('background'), BACKGROUNDS);
   for (const id of ['light', 'tone', 'background'])
     byId(id).addEventListener('change', (event) => store.set({ [id]: event.target.value }));
-  for (const id of ['wireframe', 'turntable', 'uvLines'])
+  for (const id of ['wireframe', 'parallax', 'turntable', 'uvLines'])
     byId(id).addEventListener('change', (event) => store.set({ [id]: event.target.checked }));
   for (const id of ['turn', 'exposure'])
     byId(id).addEventListener('input', (event) => store.set({ [id]: Number(event.target.value) }));
@@ -36,8 +36,8 @@ export function wirePanel(store) {
   store.on(['light', 'tone', 'background'], (values) => {
     for (const id of ['light', 'tone', 'background']) byId(id).value = values[id];
   });
-  store.on(['wireframe', 'turntable', 'uvLines'], (values) => {
-    for (const id of ['wireframe', 'turntable', 'uvLines']) byId(id).checked = values[id];
+  store.on(['wireframe', 'parallax', 'turntable', 'uvLines'], (values) => {
+    for (const id of ['wireframe', 'parallax', 'turntable', 'uvLines']) byId(id).checked = values[id];
   });
   store.on(['turn', 'exposure'], ({ turn, exposure }) => {
     byId('turn').value = turn;

@@ -1,6 +1,7 @@
 // Draws the models: each into a target in linear light, then both to the screen (compose.js). Draws only when asked.
 import {
-  Color, FloatType, HalfFloatType, MeshBasicMaterial, Scene, UnsignedByteType, Vector3, WebGLRenderer, WebGLRenderTarget,
+  Color, CustomBlending, DoubleSide, EqualDepth, FloatType, HalfFloatType, MeshBasicMaterial, OneFactor, Scene, UnsignedByteType,
+  Vector3, WebGLRenderer, WebGLRenderTarget, ZeroFactor,
 } from './vendor.js';
 import { Composer, LAYOUTS } from './compose.js';
 import { GpuTimer } from './gpu_timer.js';
@@ -28,6 +29,12 @@ export class Stage {
     this.view = new View();
     this.uv = new UvLayout();
     this.wire = new MeshBasicMaterial({ wireframe: true, transparent: true, opacity: 0.55, depthWrite: false });
+    // Writes alpha alone, 1, where something was drawn.
+    this.cover = new MeshBasicMaterial({
+      side: DoubleSide, depthFunc: EqualDepth, depthWrite: false, blending: CustomBlending, blendSrc: ZeroFactor, blendDst: OneFactor,
+      blendSrcAlpha: OneFactor, blendDstAlpha: ZeroFactor,
+    });
+    this.cover.onBeforeCompile = (shader) => { shader.fragmentShader = 'void main() { gl_FragColor = vec4(1.0); }'; };
     this.targets = [null, null];
     this.measured = [null, null];
     this.levels = null;
@@ -106,14 +113,24 @@ export class Stage {
     setOffset(owners, wireframe);
     renderer.render(scene, camera);
     this.drawCalls[which] = renderer.info.render.calls;
+    // Alpha of cut borders has chosen their samples; each sample that is left is there wholly.
+    if (target.samples > 0 && owners.some((model) => model.isCut)) {
+      Object.assign(this.cover, { polygonOffset: wireframe, ...OFFSET });
+      this.over(scene, camera, this.cover);
+    }
     if (!wireframe) return;
     this.wire.color.set(ink);
-    renderer.autoClear = false;
+    this.over(scene, camera, this.wire);
+  }
+
+  /** Draws everything once more, over what is there. */
+  over(scene, camera, material) {
+    this.renderer.autoClear = false;
     scene.background = null;
-    scene.overrideMaterial = this.wire;
-    renderer.render(scene, camera);
+    scene.overrideMaterial = material;
+    this.renderer.render(scene, camera);
     scene.overrideMaterial = null;
-    renderer.autoClear = true;
+    this.renderer.autoClear = true;
   }
 
   /** Draws what the page shows. */
@@ -204,13 +221,15 @@ export class Stage {
 }
 
 // Lines of triangles lie on them: these step back a little.
+const OFFSET = { polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
+
 function setOffset(models, isOn) {
   for (const model of models) {
     if (!model || model.isOffset === isOn) continue;
     model.isOffset = isOn;
     model.root.traverse((object) => {
       for (const material of [object.material ?? []].flat())
-        Object.assign(material, { polygonOffset: isOn, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+        Object.assign(material, { polygonOffset: isOn, ...OFFSET });
     });
   }
 }

@@ -1,10 +1,11 @@
 // All of three.js that the page uses, built into a file of its own: it changes only with three.js's version.
 export {
-  AnimationMixer, BackSide, Box3, BufferAttribute, BufferGeometry, Color, DataTexture, DirectionalLight, FloatType,
-  Group, HalfFloatType, LinearSRGBColorSpace, LineSegments, LoadingManager, Matrix3, Mesh, MeshBasicMaterial,
-  NearestFilter, OrthographicCamera, PerspectiveCamera, PlaneGeometry, PMREMGenerator, RGFormat, Scene,
-  ShaderMaterial, SphereGeometry, SRGBColorSpace, UnsignedByteType, Vector2, Vector3, WebGLRenderer,
-  WebGLRenderTarget,
+  AnimationMixer, BackSide, Box3, BufferAttribute, BufferGeometry, ClampToEdgeWrapping, Color, CustomBlending,
+  DataTexture, DirectionalLight, DoubleSide, EqualDepth, FloatType, Group, HalfFloatType, LinearFilter, LinearSRGBColorSpace, LineSegments,
+  LoadingManager, Matrix3, MaxEquation, Mesh, MeshBasicMaterial, MeshDepthMaterial, MeshDistanceMaterial,
+  NearestFilter, NoColorSpace, OneFactor, OrthographicCamera, PerspectiveCamera, PlaneGeometry, PMREMGenerator,
+  RGFormat, Scene, ShaderChunk, ShaderMaterial, SphereGeometry, SRGBColorSpace, UnsignedByteType, Vector2, Vector3,
+  Vector4, WebGLRenderer, WebGLRenderTarget, ZeroFactor,
 } from 'three';
 export { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 export { DRACOLoader } from 'three/examples/jsm/loaders/DRACOLoader.js';

@@ -1,0 +1,164 @@
+// The parallax of a material: MeshStandardMaterial and MeshPhysicalMaterial stay three.js' own; their shaders get the
+// format's formulas before they are compiled. Everything else of three.js goes on as it is.
+import { CustomBlending, MaxEquation, OneFactor, Vector2, Vector4, ZeroFactor } from 'three';
+import { SIDE } from './glsl.js';
+import { LAYERS } from './format.js';
+import { defines, patchFragment } from './patch.js';
+
+const vectors = (numbers) => Array.from({ length: numbers.length / 4 }, (_, i) => new Vector4(...numbers.slice(4 * i, 4 * i + 4)));
+
+function rowsOf(texture, layers) {
+  const { height } = texture.image;
+  if (height % layers) throw new Error(`an image of ${height} rows has no ${layers} layers of one height`);
+  return new Vector2(height / layers, height);
+}
+
+/** The maps of one or more materials, as the shaders have them. */
+export class ParallaxMaps {
+  /** `texture` and `cutout.texture` are textures; the rest is as in the format. */
+  constructor({ texture, scale, offset, limit = 0.25, fadeFootprint = Infinity, cutout = null }) {
+    this.textures = cutout ? [texture, cutout.texture] : [texture];
+    this.hasCutout = Boolean(cutout);
+    this.isFading = Number.isFinite(fadeFootprint);
+    this.uniforms = {
+      parallaxMap: { value: texture }, parallaxScale: { value: vectors(scale) }, parallaxOffset: { value: vectors(offset) },
+      parallaxRows: { value: rowsOf(texture, LAYERS.shift) }, parallaxLimit: { value: limit },
+      parallaxFootprint: { value: fadeFootprint }, parallaxIsMultisampled: { value: false },
+    };
+    if (cutout) Object.assign(this.uniforms, {
+      parallaxCutoutMap: { value: cutout.texture }, parallaxCutoutScale: { value: vectors(cutout.scale) },
+      parallaxCutoutOffset: { value: vectors(cutout.offset) }, parallaxCutoutRows: { value: rowsOf(cutout.texture, LAYERS.cutout) },
+    });
+  }
+}
+
+/** `material.parallax`: the switch, and what it switches. */
+class Parallax {
+  #isOn = true;
+
+  constructor(material, maps) {
+    this.material = material;
+    this.maps = maps;
+    /** Materials of depth passes, which follow the switch. */
+    this.followers = new Set();
+    /** Whether the geometry has tangents, where three.js itself does not want to know. */
+    this.hasTangents = false;
+    /** Whether maps are to be filtered along the longer side of a pixel's footprint. */
+    this.isAnisotropic = isAnisotropic(material);
+  }
+
+  get textures() { return this.maps.textures; }
+
+  get enabled() { return this.#isOn; }
+
+  set enabled(isOn) {
+    if (this.#isOn === isOn) return;
+    this.#isOn = isOn;
+    for (const material of [this.material, ...this.followers]) material.needsUpdate = true;
+  }
+
+  /** Whether there is anything to do: without a coordinate nothing shifts. */
+  get isActive() { return this.#isOn && Boolean(this.material.map || this.material.normalMap); }
+}
+
+const isAnisotropic = ({ map, normalMap }) => map?.anisotropy > 1 || normalMap?.anisotropy > 1;
+
+/** Whether three.js tells shaders of the geometry's tangents. */
+const usesTangents = (material) => Boolean(material.normalMap || material.anisotropy > 0);
+
+function patch(shader, { material, maps, hasTangents, isAnisotropic: isStretched }) {
+  const isOwn = !usesTangents(material) && hasTangents;
+  const isFlat = material.flatShading, hasFrame = !isFlat && (shader.vertexTangents || isOwn);
+  const names = [
+    'PARALLAX_SHIFT', maps.hasCutout && 'PARALLAX_CUTOUT', maps.isFading && 'PARALLAX_FADE', isFlat && 'PARALLAX_FLAT',
+    isStretched && 'PARALLAX_ANISOTROPIC',
+    hasFrame && 'PARALLAX_TANGENT', isOwn && !isFlat && 'USE_TANGENT',
+  ].filter(Boolean);
+  const macros = `${defines(names)}#define PARALLAX_UV ${material.map ? 'vMapUv' : 'vNormalMapUv'}\n`
+    + '#define PARALLAX_IS_ORTHOGRAPHIC isOrthographic\n';
+  shader.vertexShader = defines(names) + shader.vertexShader
+    .replace('void main() {', `${isOwn ? 'attribute vec4 tangent;\n' : ''}#ifdef PARALLAX_TANGENT\nvarying float vParallaxSide;\n#endif\nvoid main() {`)
+    .replace('#include <normal_vertex>', `#include <normal_vertex>\n${SIDE}`);
+  let fragment = shader.fragmentShader;
+  if (maps.hasCutout) {
+    // What three.js would draw opaque is as opaque as it is covered, whatever the alpha of its map.
+    const isOpaque = !material.transparent && !(material.alphaTest > 0) && !material.alphaHash;
+    fragment = fragment.replace('#include <map_fragment>', 'float parallaxClipped = diffuseColor.a;\n#include <map_fragment>')
+      .replace('#include <alphahash_fragment>', `#include <alphahash_fragment>\n#ifdef ALPHA_TO_COVERAGE\n${isOpaque
+        ? 'diffuseColor.a = parallaxClipped * parallaxCoverage;' : 'diffuseColor.a *= parallaxCoverage;'}\n#endif`);
+  }
+  shader.fragmentShader = patchFragment(fragment, macros, true);
+}
+
+const multisampled = new WeakMap();
+
+/** Whether what is drawn into now has several samples a pixel. */
+function isMultisampled(renderer) {
+  const target = renderer.getRenderTarget();
+  if (target) return target.samples > 0;
+  if (!multisampled.has(renderer)) multisampled.set(renderer, renderer.getContext().getContextAttributes().antialias);
+  return multisampled.get(renderer);
+}
+
+/**
+ * Gives a material parallax maps, which then are `material.parallax`. Calls of its onBeforeCompile and
+ * customProgramCacheKey that were there before go first. Clones have the maps, too.
+ */
+export function applyParallax(material, maps, { alphaToCoverage = true } = {}) {
+  if (!material.isMeshStandardMaterial) throw new Error('Parallax maps are for MeshStandardMaterial and MeshPhysicalMaterial.');
+  const parallax = new Parallax(material, maps);
+  const { onBeforeCompile, customProgramCacheKey, onBeforeRender, clone } = material;
+  const hasOwnKey = Object.hasOwn(material, 'customProgramCacheKey');
+  material.parallax = parallax;
+  material.onBeforeCompile = function (shader, renderer) {
+    onBeforeCompile.call(this, shader, renderer);
+    // Also where they are switched off: three.js keeps the uniforms of the program that it compiled last.
+    Object.assign(shader.uniforms, maps.uniforms);
+    if (parallax.isActive) patch(shader, parallax);
+  };
+  material.customProgramCacheKey = function () {
+    const before = hasOwnKey ? customProgramCacheKey.call(this) : onBeforeCompile.toString();
+    if (!parallax.isActive) return before;
+    const isOpaque = !this.transparent && !(this.alphaTest > 0) && !this.alphaHash;
+    const own = [Boolean(this.map), parallax.hasTangents, parallax.isAnisotropic, maps.hasCutout, maps.isFading, isOpaque].map(Number).join('');
+    return `${before} parallax ${own}`;
+  };
+  material.onBeforeRender = function (renderer, scene, camera, geometry, ...rest) {
+    onBeforeRender.call(this, renderer, scene, camera, geometry, ...rest);
+    if (maps.hasCutout) maps.uniforms.parallaxIsMultisampled.value = isMultisampled(renderer);
+    // Neither is told to three.js' own programs.
+    const now = { hasTangents: Boolean(geometry.attributes.tangent) && !usesTangents(this), isAnisotropic: isAnisotropic(this) };
+    if (now.hasTangents === parallax.hasTangents && now.isAnisotropic === parallax.isAnisotropic) return;
+    Object.assign(parallax, now);
+    this.needsUpdate = true;
+  };
+  material.clone = function () {
+    const copy = clone.call(this);
+    if (!copy.parallax) applyParallax(copy, maps, { alphaToCoverage: false });
+    copy.parallax.enabled = parallax.enabled;
+    return copy;
+  };
+  if (maps.hasCutout && alphaToCoverage && !material.transparent) {
+    material.alphaToCoverage = true;
+    // Alpha chooses the samples, and is then no longer wanted: over an opaque background it stays 1.
+    Object.assign(material, {
+      blending: CustomBlending, blendSrc: OneFactor, blendDst: ZeroFactor, blendSrcAlpha: OneFactor, blendDstAlpha: OneFactor,
+      blendEquationAlpha: MaxEquation,
+    });
+  }
+  return material;
+}
+
+/** All materials below an object that have parallax maps. */
+export function parallaxMaterials(root) {
+  const found = new Set();
+  root.traverse((object) => {
+    for (const material of [object.material ?? []].flat()) if (material.parallax) found.add(material);
+  });
+  return [...found];
+}
+
+/** Switches the maps of all materials below an object on or off. */
+export function setParallax(root, isOn) {
+  for (const material of parallaxMaterials(root)) material.parallax.enabled = isOn;
+}
