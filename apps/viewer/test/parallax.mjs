@@ -232,6 +232,13 @@ await ofExample();
 const ball = path.join(out, 'ball.glb');
 fs.writeFileSync(ball, parallaxModel());
 await ofPage('ball', fs.readFileSync(ball), null);
+// With colour and normals alone, as the CPU renderer films it under a headlight.
+const plain = path.join(out, 'plain_ball.glb');
+fs.writeFileSync(plain, parallaxModel({ rings: 24, sectors: 36, change: ({ materials: [material] }) => {
+  for (const key of ['occlusionTexture', 'emissiveTexture', 'emissiveFactor']) delete material[key];
+  material.pbrMetallicRoughness = { baseColorTexture: { index: 0 }, metallicFactor: 0, roughnessFactor: 1 };
+} }));
+await ofPage('plain_ball', fs.readFileSync(plain), plain);
 for (const file of positionals) await ofPage(path.basename(file, '.glb'), fs.readFileSync(file), file);
 await browser.close();
 console.log(failures ? `${failures} failures` : `all passed; pictures are in ${out}`);
