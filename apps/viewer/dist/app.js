@@ -176,9 +176,9 @@ float parallaxOpacity( vec4 a, vec4 b, vec4 c, vec3 w ) {
     + dot( c * vec4( 1.9364917, 1.9364917, 2.0916501, 2.0916501 ), vec4( two, three ) );
 }
 
-// How much of the map is left under a pixel that spans these gradients.
-float parallaxFade( vec2 dx, vec2 dy, float footprint ) {
-  return clamp( 2.0 - max( length( dx ), length( dy ) ) / footprint, 0.0, 1.0 );
+// How much of the map is left under a pixel that spans these gradients; z brings them to what they are face on.
+float parallaxFade( vec2 dx, vec2 dy, float z, float footprint ) {
+  return clamp( 2.0 - z * max( length( dx ), length( dy ) ) / footprint, 0.0, 1.0 );
 }
 
 // Four channels at t. Layers lie one below the other; rows are those of a layer and of the image.
@@ -256,7 +256,7 @@ vec4 parallaxTexture( sampler2D map, vec2 uv ) {
   vec3 parallaxSight = parallaxLine( PARALLAX_IS_ORTHOGRAPHIC ? vec3( 0.0, 0.0, 1.0 ) : normalize( vViewPosition ), parallaxAxes );
   float parallaxLeft = 1.0;
   #ifdef PARALLAX_FADE
-    parallaxLeft = parallaxFade( dFdx( parallaxAt ), dFdy( parallaxAt ), parallaxFootprint );
+    parallaxLeft = parallaxFade( dFdx( parallaxAt ), dFdy( parallaxAt ), parallaxSight.z, parallaxFootprint );
   #endif
   #ifdef PARALLAX_CUTOUT
     float parallaxThere = 1.0 + parallaxLeft * ( parallaxOpacity(

@@ -99,6 +99,47 @@ fn a_map_shifts_coordinates() {
     }
 }
 
+/// One map in the tangent frame of one texel, whose layers say what x shifts along u and y along v.
+fn tangent_map(fade: f32) -> (ParallaxMap, Vec<Image>) {
+    let image = Image { name: "".into(), width: 1, height: 2, pixels: vec![[255, 0, 0, 255], [0; 4]] };
+    let (scale, offset) = (vec![0.3; 8], vec![0.0; 8]);
+    let map = ParallaxMap {
+        basis: Basis::TangentShift,
+        images: vec![2],
+        scale,
+        offset,
+        fade,
+        ..Default::default()
+    };
+    (map, vec![noise("colour", 0), noise("normal", 40), image])
+}
+
+/// Protects maps in the tangent frame: both sides of a square show what the line of sight asks for, and a map fades by
+/// the footprint that a pixel has face on, whatever the angle.
+#[test]
+fn a_map_in_the_tangent_frame_shifts_and_fades() {
+    // A pixel of 96 on a picture 2.4 wide spans a 80th of the texture, face on.
+    let footprint = 1.0 / 80.0;
+    for direction in DIRECTIONS.map(Vec3::normalize) {
+        let line = if direction.z < 0.0 { -direction } else { direction };
+        // The second pair's number is along v, which grows downwards.
+        let full = 0.3 * Vec2::new(line.x, line.y) / line.z.max(0.25);
+        let half = if direction == Vec3::Z { footprint / 1.5 } else { f32::NAN };
+        let fades = [(f32::INFINITY, 1.0), (1.01 * footprint, 1.0), (half, 0.5), (0.05 * footprint, 0.0)];
+        for (fade, left) in fades.into_iter().filter(|(fade, _)| !fade.is_nan()) {
+            let (map, images) = tangent_map(fade);
+            let shifting = Material { parallax: Some(map), ..material() };
+            let by_hand = render(&moved(square(), full * left), &material(), &images, direction, true);
+            let with = render(&square(), &shifting, &images, direction, true);
+            assert!(
+                difference(&with, &by_hand) < 0.02,
+                "{direction} {fade}: {}",
+                difference(&with, &by_hand)
+            );
+        }
+    }
+}
+
 /// Protects maps with textures of their own: those shift, and the material's stay for
 /// whoever leaves the map out. Coordinates that are transformed are shifted afterwards.
 #[test]

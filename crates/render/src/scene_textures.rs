@@ -9,7 +9,7 @@ use crate::cutout::CutoutCoefficients;
 use crate::directions::{VertexFrame, sight};
 use crate::interpolate::{Barycentrics, interpolate};
 use crate::interpretation::Interpretation;
-use crate::parallax::ParallaxCoefficients;
+use crate::parallax::{ParallaxCoefficients, ViewDirection};
 use parbake_image::display::encode_srgb;
 use parbake_image::maps::KINDS;
 use parbake_image::material_maps::{
@@ -79,32 +79,31 @@ impl SeenPoint<'_> {
 impl Shifted {
     /// Where the maps are fetched at a point of a triangle: at the base colour's coordinate,
     /// or at the normal's where there is no colour.
-    /// With how much of the maps is left under this pixel, 0 … 1.
-    fn anchor(&self, seen: &SeenPoint) -> Option<(Vec2, f32)> {
+    /// With from where that is seen, and how much of the maps is left under this pixel, 0 … 1: the more, the smaller
+    /// its footprint, as if the surface were seen face on. At grazing angles, where maps are worth most, footprints grow.
+    fn anchor(&self, seen: &SeenPoint) -> Option<(Vec2, ViewDirection, f32)> {
         let [color, normal] = [MapKind::BaseColor, MapKind::Normal].map(|kind| &self.textures[kind as usize]);
         let map = color.as_ref().or(normal.as_ref())?;
         let uvs = map.uvs(seen.mesh, seen.corners);
         let along = |w: [f32; 3]| -> Vec2 { interpolate(uvs, w) };
         let reach = along(seen.at.per_x).length().max(along(seen.at.per_y).length()) * seen.footprint;
-        Some((along(seen.at.weights), (2.0 - reach / self.fade).clamp(0.0, 1.0)))
+        let sight = sight(self.parallax.basis, &seen.frame(), seen.to_viewer);
+        let left = (2.0 - sight.cosine.abs() * reach / self.fade).clamp(0.0, 1.0);
+        Some((along(seen.at.weights), sight, left))
     }
 
     /// How far coordinates move at a point of a triangle.
     pub fn at(&self, seen: &SeenPoint) -> Vec2 {
-        let shift = |(uv, left): (Vec2, f32)| {
-            left * self.parallax.shift(uv, &sight(self.parallax.basis, &seen.frame(), seen.to_viewer))
-        };
-        self.anchor(seen).map_or(Vec2::ZERO, shift)
+        self.anchor(seen).map_or(Vec2::ZERO, |(uv, sight, left)| left * self.parallax.shift(uv, &sight))
     }
 
     /// Whether a point of a triangle is there.
     pub fn is_opaque(&self, seen: &SeenPoint) -> bool {
         let Some(cutout) = &self.cutout else { return true };
-        let opacity = |(uv, left): (Vec2, f32)| {
-            let direction = sight(cutout.basis, &seen.frame(), seen.to_viewer).direction;
-            1.0 + left * (cutout.opacity(uv, direction) - 1.0)
+        let is_there = |(uv, sight, left): (Vec2, ViewDirection, f32)| {
+            1.0 + left * (cutout.opacity(uv, sight.direction) - 1.0) >= 0.0
         };
-        self.anchor(seen).is_none_or(|anchor| opacity(anchor) >= 0.0)
+        self.anchor(seen).is_none_or(is_there)
     }
 }
 
