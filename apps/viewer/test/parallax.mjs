@@ -1,8 +1,8 @@
 // Parallax maps in a browser: the package of integrations/three by itself, then the page that uses it.
-//   node test/parallax.mjs [--parbake COMMAND] [--out FOLDER] [MODELS WITH MAPS]
+//   node test/parallax.mjs [--parbake COMMAND] [--out FOLDER] [--costs] [MODELS WITH MAPS]
 // Fails on: a message in the console, a function that gives other numbers than the format, a feature of three.js that
 // the maps break, a switch that changes nothing. With the command, and models, also on pictures that are not those of
-// the CPU renderer. Tells what maps cost.
+// the CPU renderer. With --costs it tells what maps cost, which takes a minute.
 import * as esbuild from 'esbuild';
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
@@ -15,7 +15,9 @@ import { readFilm } from './film.mjs';
 import { parallaxModel } from './parallax_model.mjs';
 import { below, serve, servePage } from './serve.mjs';
 
-const { values, positionals } = parseArgs({ allowPositionals: true, options: { parbake: { type: 'string' }, out: { type: 'string' } } });
+const { values, positionals } = parseArgs({ allowPositionals: true, options: {
+  parbake: { type: 'string' }, out: { type: 'string' }, costs: { type: 'boolean', default: false },
+} });
 if (!findBrowser()) {
   console.log('skipped: no Chromium (apt-get install chromium, or set CHROMIUM)');
   process.exit(0);
@@ -204,16 +206,7 @@ async function ofPage(name, bytes, file) {
     await page.click(`input[name="channel"][value="${channel}"]`);
     await picture();
   }
-  const told = [];
-  for (const light of ['studio', 'room', 'headlight']) {
-    const times = {};
-    for (const parallax of [false, true, false, true]) {
-      await page.evaluate((value) => window.parbake.store.set({ parallax: value }), parallax);
-      times[parallax] = Math.min(times[parallax] ?? Infinity, await frameTime(page, light));
-    }
-    told.push(`${light} ${times.false.toFixed(1)} to ${times.true.toFixed(1)} ms (${(times.true / times.false).toFixed(2)} times)`);
-  }
-  console.log(`${name}: a frame of 512², plain to maps: ${told.join(', ')}`);
+  if (values.costs) await tellCosts(name, page);
   if (file && values.parbake) {
     for (const parallax of [true, false]) {
       await page.evaluate((value) => window.parbake.store.set({ parallax: value }), parallax);
@@ -225,6 +218,19 @@ async function ofPage(name, bytes, file) {
   verify(errors.length === 0, `${name}: console: ${errors.join(' | ')}`);
   await page.close();
   await stop();
+}
+
+async function tellCosts(name, page) {
+  const told = [];
+  for (const light of ['studio', 'room', 'headlight']) {
+    const times = {};
+    for (const parallax of [false, true, false, true]) {
+      await page.evaluate((value) => window.parbake.store.set({ parallax: value }), parallax);
+      times[parallax] = Math.min(times[parallax] ?? Infinity, await frameTime(page, light));
+    }
+    told.push(`${light} ${times.false.toFixed(1)} to ${times.true.toFixed(1)} ms (${(times.true / times.false).toFixed(2)} times)`);
+  }
+  console.log(`${name}: a frame of 512², plain to maps: ${told.join(', ')}`);
 }
 
 await ofPackage();
