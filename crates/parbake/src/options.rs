@@ -262,18 +262,18 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::QUALITY))]
     pub rounds: Option<usize>,
 
-    /// How much a material of the high-poly counts, or with node:NAME=WEIGHT a node and what hangs below it, 0.01 to 100, for
+    /// How much a material of the high-poly counts, or with node:NAME=WEIGHT a node with its child nodes, 0.01 to 100, for
     /// texels and, with --triangles, for triangles; all else has 1. NAME may hold * and ?. May be given several times; the
     /// last that fits counts
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME=WEIGHT", help_heading = heading::QUALITY))]
     pub importance: Vec<Importance>,
 
     /// Vertex attribute of the high-poly in which importances are painted: COLOR_1 or another colour, whose red counts, or a
-    /// number of your own such as _IMPORTANCE. From 0 to 1: 0 counts a sixteenth, 0.5 as ever, 1 sixteen times
+    /// number of your own such as _IMPORTANCE. From 0 to 1: 0 counts a sixteenth, 0.5 is neutral, 1 counts sixteen times
     #[cfg_attr(feature = "clap", arg(long, value_name = "ATTRIBUTE", help_heading = heading::QUALITY))]
     pub importance_attribute: Option<String>,
 
-    /// Nodes of the high-poly that stay apart, with --triangles, each with what hangs below it, as a part with its name,
+    /// Nodes of the high-poly that stay apart, with --triangles, each with its child nodes, as a part with its name,
     /// pivot and material's name; all share one set of textures. NAME may hold * and ?. A list, or several times
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", value_delimiter = ',', help_heading = heading::SHAPE))]
     pub keep_parts: Vec<String>,

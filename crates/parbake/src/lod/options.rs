@@ -42,7 +42,7 @@ pub struct LodOptions {
     #[serde(deserialize_with = "crate::texels::texels")]
     pub max_texture_size: usize,
 
-    /// Nodes of the model that stay apart, each with what hangs below it, as a part with its name, pivot and material's name;
+    /// Nodes of the model that stay apart, each with its child nodes, as a part with its name, pivot and material's name;
     /// all share one set of textures. NAME may hold * and ?. A list, or several times
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", value_delimiter = ',', help_heading = LEVELS))]
     pub keep_parts: Vec<String>,
@@ -63,13 +63,13 @@ pub struct LodOptions {
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Shading::Auto, help_heading = heading::QUALITY))]
     pub shading: Shading,
 
-    /// How much a material of the model counts, or with node:NAME=WEIGHT a node and what hangs below it, 0.01 to 100, for
+    /// How much a material of the model counts, or with node:NAME=WEIGHT a node with its child nodes, 0.01 to 100, for
     /// texels and triangles; all else has 1. NAME may hold * and ?. May be given several times; the last that fits counts
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME=WEIGHT", help_heading = heading::QUALITY))]
     pub importance: Vec<Importance>,
 
     /// Vertex attribute of the model in which importances are painted: COLOR_1 or another colour, whose red counts, or a
-    /// number of your own such as _IMPORTANCE. From 0 to 1: 0 counts a sixteenth, 0.5 as ever, 1 sixteen times
+    /// number of your own such as _IMPORTANCE. From 0 to 1: 0 counts a sixteenth, 0.5 is neutral, 1 counts sixteen times
     #[cfg_attr(feature = "clap", arg(long, value_name = "ATTRIBUTE", help_heading = heading::QUALITY))]
     pub importance_attribute: Option<String>,
 
