@@ -81,7 +81,7 @@ fn position(text: &str, name: &str) -> String {
 }
 
 /// Options that count texels along a side.
-const TEXELS: [&str; 3] = ["texture_size", "parallax_size", "cutout_size"];
+const TEXELS: [&str; 4] = ["texture_size", "parallax_size", "cutout_size", "fallback_size"];
 
 /// What an option may be, by its default.
 fn expected(name: &str, default: &Value) -> String {

@@ -15,7 +15,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Options of a bake that do nothing where a model's own texture is replaced: the surface stays.
-pub const NOT_IN_COMPRESS: [&str; 13] = [
+pub const NOT_IN_COMPRESS: [&str; 14] = [
     "shape",
     "silhouette_background",
     "silhouette",
@@ -25,6 +25,7 @@ pub const NOT_IN_COMPRESS: [&str; 13] = [
     "no_cutout",
     "cutout_order",
     "cutout_size",
+    "fallback_size",
     "max_distance",
     "importance",
     "importance_attribute",
@@ -77,7 +78,8 @@ pub fn check(
         refuse(&["keep_parts"], why)?;
     }
     if options.parallax == Parallax::None {
-        let maps = ["parallax_order", "parallax_size", "no_cutout", "cutout_order", "cutout_size"];
+        let of_map = ["parallax_order", "parallax_size", "fallback_size"];
+        let maps = [&of_map[..], &["no_cutout", "cutout_order", "cutout_size"]].concat();
         refuse(&maps, "does nothing without --parallax; add --parallax tangent or leave it out")?;
     }
     if options.parallax == Parallax::Tangent {
@@ -90,6 +92,8 @@ pub fn check(
     }
     if options.method == Method::Paper {
         refuse(&of_cutout, "does nothing with --method paper, which fits no cutout; leave it out")?;
+        let why = "does nothing with --method paper, whose textures serve all viewers; leave it out";
+        refuse(&["fallback_size"], why)?;
     } else {
         refuse(&["no_content_aware"], "does nothing without --method paper; add that or leave it out")?;
         if options.uv != UvMode::Optimize {

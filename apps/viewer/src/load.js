@@ -33,7 +33,7 @@ export function createLoader(renderer) {
       if (!notes.includes(sentence)) notes.push(sentence);
     };
     const loader = new GLTFLoader(manager).setDRACOLoader(draco).setKTX2Loader(ktx2).setMeshoptDecoder(MeshoptDecoder)
-      .register((parser) => new ParallaxPlugin(parser));
+      .register((parser) => new ParallaxPlugin(parser, { fallback: true }));
     try {
       guard(bytes);
       const gltf = await Promise.race([loader.parseAsync(bytes, ''), workerFails]);

@@ -35,6 +35,7 @@ const browser = await launch();
 
 const MODELS = {
   ball: {},
+  'no offsets': { reach: 0 },
   'no tangents': { change: (json) => { delete json.meshes[0].primitives[0].attributes.TANGENT; } },
   'no normals': { change: (json) => { for (const key of ['NORMAL', 'TANGENT']) delete json.meshes[0].primitives[0].attributes[key]; } },
   'no normal map': { change: (json) => { delete json.materials[0].normalTexture; } },
@@ -84,8 +85,13 @@ async function ofPackage() {
   verify(orthographic < 0.01, `orthographic: ${orthographic} of the picture differs`);
   const { isTaken, differs } = await run('anisotropic', 'ball');
   verify(isTaken && differs < 0.1, `anisotropic: ${differs} of the picture differs`);
-  const shadows = await run('shadows', 'ball');
-  for (const [light, { cut, whole: all }] of Object.entries(shadows)) verify(cut > 0.3 * all && cut < 0.97 * all, `shadow of ${light}: ${cut} of ${all}`);
+  const shadows = await run('shadows', 'no offsets'), reaching = await run('shadows', 'ball');
+  for (const [light, { cut, whole: all }] of Object.entries(shadows)) {
+    verify(cut > 0.3 * all && cut < 0.97 * all, `shadow of ${light}: ${cut} of ${all}`);
+    // With offsets the same is cut, and what is whole is smaller.
+    const { cut: same, whole: smaller } = reaching[light];
+    verify(Math.abs(same - cut) < 0.02 * cut && smaller < 0.9 * all, `shadow of ${light} with offsets: ${same} for ${cut}, ${smaller} for ${all}`);
+  }
   const prepass = await run('prepass', 'ball');
   verify(prepass < 0.001, `after a depth pass ${prepass} of the picture differs`);
   const { covered, plain } = await run('borders', 'ball');
@@ -100,6 +106,8 @@ async function ofPackage() {
     if (name === 'own textures') verify(!loaded.images.includes(0) && !loaded.images.includes(1), told);
     if (name === 'clearcoat') verify(loaded.type === 'MeshPhysicalMaterial', told);
   }
+  const textures = await run('fallback', 'own textures');
+  verify(`${textures}` === '4,0,4,0', `textures with maps and without: ${textures}`);
   for (const name of ['no tangents', 'no normals', 'no normal map', 'no colour map', 'alpha test', 'clearcoat']) {
     const all = await run('everything', name);
     verify(all.changed > 0.02, `${name}, with fog, environment and shadows: ${JSON.stringify(all)}`);

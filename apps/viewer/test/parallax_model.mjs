@@ -36,14 +36,18 @@ const layers = (count, size) => png(size, count * size, (x, y) => {
 });
 const BOARD = (light) => (x, y) => ((x >> 3) + (y >> 3)) & 1 ? [...light, 255] : [40 + 3 * x, 40 + 3 * y, 90, 255];
 
-/** `change` may change the document before it is written. */
-export function parallaxModel({ rings = 7, sectors = 12, change = () => {} } = {}) {
-  const position = [], normal = [], tangent = [], uv = [], index = [];
+/**
+ * `change` may change the document before it is written. Without its maps the ball is smaller, by `reach`: its vertices
+ * have offsets.
+ */
+export function parallaxModel({ rings = 7, sectors = 12, reach = 0.1, change = () => {} } = {}) {
+  const offset = [], position = [], normal = [], tangent = [], uv = [], index = [];
   for (let r = 0; r <= rings; r++)
     for (let s = 0; s <= sectors; s++) {
       const [u, v] = [s / sectors, r / rings], [a, b] = [2 * Math.PI * u, Math.PI * v];
       const n = [Math.sin(b) * Math.sin(a), Math.cos(b), Math.sin(b) * Math.cos(a)];
-      position.push(...n);
+      position.push(...n.map((x) => (1 - reach) * x));
+      offset.push(...n.map((x) => reach * x));
       normal.push(...n);
       tangent.push(Math.cos(a), 0, -Math.sin(a), 1);
       uv.push(u, v);
@@ -67,7 +71,7 @@ export function parallaxModel({ rings = 7, sectors = 12, change = () => {} } = {
   }) - 1;
   const attributes = {
     POSITION: numbers(position, 'VEC3', 3), NORMAL: numbers(normal, 'VEC3', 3), TANGENT: numbers(tangent, 'VEC4', 4),
-    TEXCOORD_0: numbers(uv, 'VEC2', 2),
+    TEXCOORD_0: numbers(uv, 'VEC2', 2), ...(reach ? { _PARALLAX_OFFSET: numbers(offset, 'VEC3', 3) } : {}),
   };
   const indices = accessors.push({ bufferView: add(Uint16Array.from(index)), componentType: 5123, count: index.length, type: 'SCALAR' }) - 1;
   const image = (bytes) => ({ bufferView: add(bytes), mimeType: 'image/png' });
@@ -77,7 +81,7 @@ export function parallaxModel({ rings = 7, sectors = 12, change = () => {} } = {
     image(png(64, 64, BOARD([60, 200, 230]))),
   ];
   // Seen under more than about 65 degrees the surface is not there; where exactly varies.
-  const scale = [0.1, 0.1, ...Array(10).fill(0.1)], offset = [0.15, 0.55, ...Array(10).fill(-0.05)];
+  const scale = [0.1, 0.1, ...Array(10).fill(0.1)], least = [0.15, 0.55, ...Array(10).fill(-0.05)];
   const json = {
     asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0, name: 'ball' }],
     meshes: [{ primitives: [{ attributes, indices, material: 0 }] }],
@@ -87,7 +91,7 @@ export function parallaxModel({ rings = 7, sectors = 12, change = () => {} } = {
       normalTexture: { index: 1 }, occlusionTexture: { index: 4 }, emissiveTexture: { index: 4 }, emissiveFactor: [0.1, 0.1, 0.1],
       extensions: { PARBAKE_materials_parallax: {
         version: 2, texture: { index: 2 }, scale: Array(8).fill(0.08), offset: Array(8).fill(-0.04), limit: 0.25,
-        cutout: { texture: { index: 3 }, scale, offset },
+        cutout: { texture: { index: 3 }, scale, offset: least },
       } },
     }],
     textures: [{ source: 0 }, { source: 1 }, { sampler: 0, source: 2 }, { sampler: 0, source: 3 }, { source: 4 }],

@@ -40,8 +40,9 @@ pub(crate) fn finish(
         let normals = count(replaced, "normal");
         context.warn(format!("computed {normals} without a direction from the triangles around"));
     }
-    let sizes = [&mesh.normals.len(), &mesh.tangents.len(), &mesh.uvs.len(), &mesh.uvs1.len()];
-    if sizes.iter().any(|&&n| n != 0 && n != mesh.positions.len()) {
+    let (uvs, offsets) = ([mesh.uvs.len(), mesh.uvs1.len()], mesh.parallax_offsets.len());
+    let sizes = [mesh.normals.len(), mesh.tangents.len(), uvs[0], uvs[1], offsets];
+    if sizes.iter().any(|&n| n != 0 && n != mesh.positions.len()) {
         return Err(context.invalid(Place::File, "the attributes of its vertices differ in number"));
     }
     let bytes = context.bytes();

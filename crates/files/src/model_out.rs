@@ -23,6 +23,7 @@ pub(crate) fn check(path: &Path, model: &Model) -> Result<(), FileError> {
         ("texture coordinates", mesh.uvs.len()),
         ("second texture coordinates", mesh.uvs1.len()),
         ("colours", mesh.colors.len()),
+        ("parallax offsets", mesh.parallax_offsets.len()),
     ];
     if let Some((what, n)) = lengths.iter().find(|(_, n)| *n != 0 && *n != count) {
         return refuse(format!("it has {count} positions but {n} {what}"));
@@ -71,7 +72,7 @@ pub(crate) fn check(path: &Path, model: &Model) -> Result<(), FileError> {
             return refuse("parts that stay apart cannot have a rig".into());
         }
     }
-    let finite = mesh.positions.iter().all(|p| p.is_finite())
+    let finite = mesh.positions.iter().chain(&mesh.parallax_offsets).all(|p| p.is_finite())
         && mesh.uvs.iter().chain(&mesh.uvs1).all(|uv| uv.is_finite())
         && mesh.colors.iter().all(|c| c.is_finite());
     if !finite {

@@ -172,6 +172,7 @@ fn glb() -> Vec<u8> {
         uvs: vec![Vec2::ONE; 3],
         uvs1: vec![Vec2::ZERO; 3],
         colors: vec![Vec4::ONE; 3],
+        parallax_offsets: vec![Vec3::Z; 3],
         triangles: vec![[0, 1, 2]],
         triangle_materials: vec![0],
     };

@@ -192,7 +192,7 @@ pub fn fit_parallax_maps(
         let (own, start) = if own.0.map.size == pass.texture_size {
             own
         } else {
-            let low = LowPoly::new(low, &high.frame, pass.texture_size)?;
+            let low = LowPoly::for_parallax(low, &high.frame, pass.texture_size)?;
             let start = project(&low, high);
             made = (low, start);
             (&made.0, &made.1)
@@ -232,7 +232,7 @@ pub fn fit_parallax_maps(
     };
     report.steps = losses.iter().map(Vec::len).sum();
     report.mean_square = losses.iter().map(ends).collect();
-    let LowPoly { placed, map: texels, .. } = LowPoly::new(low, &high.frame, TERRITORY)?;
+    let LowPoly { placed, map: texels, .. } = LowPoly::for_parallax(low, &high.frame, TERRITORY)?;
     let chart_ownership = ChartOwnership::new(&Atlas::new(&texels, &charts(&placed), TERRITORY));
     report.cross_chart = clamp_to_chart(&views, &chart_ownership, &mut map);
     let parallax = map.as_stored();

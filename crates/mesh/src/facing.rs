@@ -69,6 +69,7 @@ fn copied(mesh: &mut Mesh, vertex: u32, normal: Vec3) -> u32 {
     again(&mut mesh.tangents, vertex);
     again(&mut mesh.uvs, vertex);
     again(&mut mesh.uvs1, vertex);
+    again(&mut mesh.parallax_offsets, vertex);
     again(&mut mesh.colors, vertex);
     mesh.normals.push(normal);
     new

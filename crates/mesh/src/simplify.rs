@@ -203,6 +203,7 @@ impl Attempt {
             uvs: pick(&mesh.uvs, &sources),
             uvs1: pick(&mesh.uvs1, &sources),
             colors: pick(&mesh.colors, &sources),
+            parallax_offsets: pick(&mesh.parallax_offsets, &sources),
             triangles: vertex_of.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
             triangle_materials: Vec::new(),
         };

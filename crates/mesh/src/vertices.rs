@@ -21,6 +21,7 @@ pub fn push_copy(mesh: &mut Mesh, vertex: u32) -> u32 {
     push(&mut mesh.uvs, vertex);
     push(&mut mesh.uvs1, vertex);
     push(&mut mesh.colors, vertex);
+    push(&mut mesh.parallax_offsets, vertex);
     copy
 }
 
@@ -42,6 +43,7 @@ pub fn push_midpoint(mesh: &mut Mesh, a: u32, b: u32) -> u32 {
     push_mean!(mesh.uvs);
     push_mean!(mesh.uvs1);
     push_mean!(mesh.colors);
+    push_mean!(mesh.parallax_offsets);
     if let (Some(&x), Some(&y)) = (mesh.normals.get(a as usize), mesh.normals.get(b as usize)) {
         mesh.normals.push((x + y).try_normalize().unwrap_or(x));
     }
@@ -75,6 +77,7 @@ pub fn drop_unused(mesh: &mut Mesh) {
     keep(&mut mesh.uvs, &used);
     keep(&mut mesh.uvs1, &used);
     keep(&mut mesh.colors, &used);
+    keep(&mut mesh.parallax_offsets, &used);
     for triangle in &mut mesh.triangles {
         *triangle = triangle.map(|v| renumbered[v as usize]);
     }

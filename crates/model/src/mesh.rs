@@ -21,6 +21,9 @@ pub struct Mesh {
     pub uvs1: Vec<Vec2>,
     /// V linear RGBA vertex colours that multiply the base colour, or empty.
     pub colors: Vec<Vec4>,
+    /// V offsets, or empty: what to add to positions where the parallax maps of their materials are shown. Cutouts take
+    /// away and cannot add, so the surface that they are cut from reaches further than the one without.
+    pub parallax_offsets: Vec<Vec3>,
     /// F triangles, counter-clockwise from the front.
     pub triangles: Vec<[u32; 3]>,
     /// F material indices.
@@ -28,6 +31,13 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Moves vertices to where parallax maps are shown.
+    pub fn apply_parallax_offsets(&mut self) {
+        for (position, offset) in self.positions.iter_mut().zip(std::mem::take(&mut self.parallax_offsets)) {
+            *position += offset;
+        }
+    }
+
     /// The three positions of a triangle.
     #[inline]
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {

@@ -52,5 +52,8 @@ impl Placement {
         for p in &mut mesh.positions {
             *p = (*p - self.centre) * self.scale;
         }
+        for offset in &mut mesh.parallax_offsets {
+            *offset *= self.scale;
+        }
     }
 }

@@ -13,7 +13,7 @@ use crate::budget::{at_the_end, check_budget, stage_weights};
 use crate::error::BakeError;
 use crate::geometry::{Geometry, move_geometry};
 use crate::importance::importances;
-use crate::look::Look;
+use crate::look::{self, Look};
 use crate::lost::lost;
 use crate::low_poly::{check_triangles, low_poly};
 use crate::options::{BakeOptions, Shading, UvMode};
@@ -21,7 +21,7 @@ use crate::parts::{with_kept_parts, with_parted_materials, with_parts};
 use crate::plan::Plan;
 use crate::report::{BakeReport, Work, layout_warning};
 use crate::rigs::{carried, rigged};
-use crate::textures::{FittedTextures, Subject, fit_views};
+use crate::textures::{FittedTextures, Subject, fit_fallback, fit_views, training_views};
 use crate::warnings::{Warnings, swapped, unseen};
 use parbake_atlas::check_mesh;
 use parbake_image::quantise::to_image;
@@ -207,9 +207,10 @@ fn run(
     // Of a low-poly that was made here there is nothing that its maker should mend.
     let is_given = work != Work::Level;
     warnings.tell(turned.iter().filter(|_| is_given).flat_map(|(_, of_normals)| of_normals.clone()));
-    let Geometry { uv_stage, shape, map } = move_geometry(low, work, high, options, &scope, &mut clock)?;
+    let Geometry { uv_stage, shape, growth, map } = move_geometry(low, work, high, options, &scope, &mut clock)?;
     let low = uv_stage.as_ref().map_or(low, |u| &u.model);
-    let prepared = LowPoly::new(low, &high.frame, size)?;
+    // The surface that maps are fitted on: that which viewers of parallax maps show.
+    let prepared = LowPoly::for_parallax(low, &high.frame, size)?;
     warnings.tell(prepared.warnings.iter().cloned());
     let repaired = uv_stage.iter().filter(|_| is_given).flat_map(|u| &u.report.repaired);
     warnings.tell(repaired.map(|done| format!("{}: {done}", low.name)));
@@ -221,9 +222,17 @@ fn run(
     let kinds = layer_kinds(&prepared.placed, delivered, high);
     let subject = Subject { model: low, prepared: &prepared, projected: &projected, kinds: &kinds };
     let order = Order { high, plan: &plan, options, work };
-    let textures = fit_views(&order, subject, map, &scope, &mut clock)?;
+    let references = training_views(&order, &scope);
+    clock.lap(Stage::Reference);
+    let for_fallback = references.clone().filter(|_| options.fallback_texture_size().is_some());
+    let textures = fit_views(&order, subject, references, map, &scope, &mut clock)?;
     let FittedTextures { fitted, views, samples, parallax, parallax_report } = textures;
     let LowPoly { written, map: texels, .. } = &prepared;
+    clock.lap(Stage::Solve);
+    let fallback = match &parallax {
+        Some(_) => fit_fallback(&order, low, &kinds, for_fallback, &scope, &mut clock)?,
+        None => Vec::new(),
+    };
     clock.lap(Stage::Solve);
     let (look, srgb) = (Look::new(high, &prepared, kinds), high.conventions.srgb());
     let is_whole = high.is_whole_material;
@@ -251,6 +260,7 @@ fn run(
     let report = BakeReport {
         work,
         shape,
+        growth,
         parallax_maps: parallax_report,
         uv_stage: uv_stage.as_ref().filter(|_| options.uv != UvMode::Keep).map(|u| u.report.clone()),
         options: options.clone(),
@@ -271,7 +281,8 @@ fn run(
         written: None,
         peak_memory: crate::memory::peak_memory(),
     };
-    let model = look.textured(low, written, fitted.images, parallax.as_ref());
+    let mut model = look.textured(low, written, fitted.images, parallax.as_ref());
+    look::add_fallback(&mut model, fallback);
     let moving = |model: Model| with_parts(Model { rig: carried(given, &model.mesh), ..model }, given);
     Ok(Baked {
         ray_cast: moving(ray_cast),

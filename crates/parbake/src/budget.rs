@@ -86,7 +86,8 @@ pub(crate) fn stage_weights(options: &BakeOptions) -> Vec<(Stage, f64)> {
         stages.extend([(Stage::Cutout, 6.0), (Stage::Parallax, 0.03 * steps as f64)]);
     }
     stages.push((Stage::Sampling, 0.02 * pixels));
-    stages.push((Stage::Solve, plan.schedule.rounds as f64 * (0.5 * million + 0.03 * pixels)));
+    let fallback = options.fallback_texture_size().map_or(0.0, |size| texels(size) / 1e6);
+    stages.push((Stage::Solve, plan.schedule.rounds as f64 * (0.5 * (million + fallback) + 0.03 * pixels)));
     stages.push((Stage::Evaluate, 2.0));
     stages
 }
@@ -96,6 +97,8 @@ pub(crate) fn stage_weights(options: &BakeOptions) -> Vec<(Stage, f64)> {
 pub(crate) mod shares {
     /// Of moving vertices.
     pub const SHAPE: f64 = 0.2;
+    /// Of vertices that reach further, for a cutout.
+    pub const GROWTH: f64 = 0.1;
     /// Of optimising texture coordinates.
     pub const UV: f64 = 0.15;
     /// Of rendering the high-poly.

@@ -270,6 +270,7 @@ impl OwnSurface<'_> {
         BakeReport {
             work: Work::Compress,
             shape: None,
+            growth: None,
             parallax_maps: None,
             uv_stage: (self.options.uv != UvMode::Keep).then_some(uv_stage),
             options: self.options.clone(),

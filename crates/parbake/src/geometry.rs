@@ -2,8 +2,8 @@
 //! the paper's method, coordinates and then the rest of its Algorithm 1.
 //!
 //! ```text
-//! low ─ repair ─┬─ shape ─ UV stage ─────────────────── (fit)
-//!               └───────── UV stage ─ paper_joint_fit ─ (paper)
+//! low ─ repair ─┬─ shape ─ UV stage ─ offsets for a cutout ─ (fit)
+//!               └───────── UV stage ─ paper_joint_fit ────── (paper)
 //! ```
 //!
 //! Contract: what is not moved keeps its value to the bit; with nothing to move there is no copy.
@@ -17,7 +17,7 @@ use parbake_model::Model;
 use parbake_progress::{Clock, ProgressScope, Stage, Watcher};
 use parbake_render::parallax::ParallaxCoefficients;
 use parbake_shape::paper_joint_fit::paper_joint_fit;
-use parbake_shape::stage::{ShapeReport, shape};
+use parbake_shape::stage::{ShapeReport, grow_for_cutout, shape, smooth_references};
 use parbake_uv::surface::{Source, UvStageResult, optimise_uvs, repair_uvs_with_room};
 use parbake_views::high_poly::HighPoly;
 
@@ -28,6 +28,9 @@ pub struct Geometry {
     pub uv_stage: Option<UvStageResult>,
     /// How vertices moved, where they did.
     pub shape: Option<ShapeReport>,
+    /// How far vertices reach beyond the high-poly for a cutout to take away, if they do: the offsets of
+    /// `uv_stage`'s mesh.
+    pub growth: Option<ShapeReport>,
     /// The map of the paper's method, where it was asked for.
     pub map: Option<ParallaxCoefficients>,
 }
@@ -59,9 +62,12 @@ pub fn move_geometry<W: Watcher>(
     let mut uv_options = options.uv_stage_for(work);
     let mut low = repair_uvs_with_room(low, &mut uv_options)?;
     clock.lap(Stage::Prepare);
-    if let Some(plan) = &shape_plan {
-        let share = scope.share(shares::SHAPE);
-        geometry.shape = Some(shape(&low.name, &mut low.mesh, high, plan, options.seed, &share)?);
+    let share = scope.share(shares::SHAPE);
+    let references = shape_plan.as_ref().map(|plan| {
+        smooth_references(high, plan.views, plan.view_size, plan.samples, options.seed, &share)
+    });
+    if let (Some(plan), Some(references)) = (&shape_plan, &references) {
+        geometry.shape = Some(shape(&low.name, &mut low.mesh, high, references, plan, &share)?);
         clock.lap(Stage::Shape);
     }
     let importances = importances_of(&low.mesh, high);
@@ -79,6 +85,11 @@ pub fn move_geometry<W: Watcher>(
     };
     let mut uv_stage = optimise_uvs(low, &high.frame, &source, &uv_options, &scope.share(shares::UV));
     clock.lap(Stage::Uv);
+    if let (Some(plan), Some(references)) = (options.growth_plan(geometry.shape.as_ref()), &references) {
+        let (Model { name, mesh, .. }, share) = (&mut uv_stage.model, scope.share(shares::GROWTH));
+        geometry.growth = Some(grow_for_cutout(name, mesh, high, references, &plan, &share)?);
+        clock.lap(Stage::Shape);
+    }
     if let Some(plan) = &paper_joint_plan {
         let share = scope.share(shares::PARALLAX);
         let outcome = paper_joint_fit(&mut uv_stage.model, high, plan, options.seed, &share)?;

@@ -55,6 +55,9 @@ impl Look {
         let mut mesh = mesh.clone();
         mesh.colors.clear();
         mesh.uvs1.clear();
+        if parallax.is_none() {
+            mesh.parallax_offsets.clear();
+        }
         let mut material = Material { name: low.name.clone(), ..Material::default() };
         let mut images = Vec::new();
         if self.is_whole {
@@ -169,6 +172,30 @@ impl Look {
             }
             let name = "occlusion roughness metallic".into();
             images.push(Image { name, ..image });
+        }
+    }
+}
+
+/// Gives a model with parallax maps textures for viewers that do not know these: what it has then goes with the maps.
+pub(crate) fn add_fallback(model: &mut Model, maps: Vec<(MapKind, Image)>) {
+    for (kind, image) in maps {
+        let index = model.images.len();
+        let mut is_used = false;
+        for material in &mut model.materials {
+            let Some(map) = &mut material.parallax else { continue };
+            let (own, of_map) = match kind {
+                MapKind::BaseColor => (&mut material.base_color_texture, &mut map.base_color_texture),
+                MapKind::Normal => (&mut material.normal_texture, &mut map.normal_texture),
+                MapKind::MetallicRoughness | MapKind::Emissive | MapKind::Occlusion => continue,
+            };
+            // A map of one value became a factor, which serves all viewers.
+            if let Some(own) = own {
+                *of_map = Some(std::mem::replace(own, TextureSlot { image: index, ..*own }));
+                is_used = true;
+            }
+        }
+        if is_used {
+            model.images.push(Image { name: format!("{} without parallax", image.name), ..image });
         }
     }
 }

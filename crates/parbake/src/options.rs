@@ -7,7 +7,7 @@ use crate::importance::Importance;
 use crate::normal_y::NormalY;
 #[cfg(feature = "clap")]
 use crate::texels::parse_texels;
-use crate::texels::texels;
+use crate::texels::{some_texels, texels};
 use parbake_files::WriteOptions;
 use parbake_image::display::{Curve, Display};
 use parbake_render::interpretation::Interpretation;
@@ -212,6 +212,12 @@ pub struct BakeOptions {
     #[serde(deserialize_with = "texels")]
     pub cutout_size: usize,
 
+    /// Side in texels of the textures for viewers that do not know parallax maps, 16 to 8192; 0: the same textures serve
+    /// all viewers. Needs --parallax [default: half of --texture-size]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", value_parser = parse_texels, help_heading = heading::PARALLAX))]
+    #[serde(deserialize_with = "some_texels")]
+    pub fallback_size: Option<usize>,
+
     /// Side of the parallax map in texels, 4 to 1024; needs --parallax
     #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 64, value_parser = parse_texels, help_heading = heading::PARALLAX))]
     #[serde(deserialize_with = "texels")]
@@ -344,6 +350,7 @@ impl Default for BakeOptions {
             no_cutout: false,
             cutout_order: 4,
             cutout_size: 128,
+            fallback_size: None,
             method: Method::Fit,
             no_content_aware: false,
             gutter: None,
@@ -410,6 +417,9 @@ impl BakeOptions {
         within("parallax-size", self.parallax_size as f64, 4.0, 1024.0)?;
         within("cutout-order", self.cutout_order as f64, 0.0, 7.0)?;
         within("cutout-size", self.cutout_size as f64, 4.0, 1024.0)?;
+        if let Some(size) = self.fallback_size.filter(|&size| size > 0) {
+            within("fallback-size", size as f64, 16.0, 8192.0)?;
+        }
         within("threads", self.threads as f64, 0.0, crate::threads::MOST_THREADS as f64)?;
         within("time-budget", self.time_budget.unwrap_or(0.0), 0.0, 1e9)?;
         within("texture-quality", f64::from(self.write.texture_quality), 1.0, 100.0)?;

@@ -11,7 +11,7 @@ use parbake_fit::separate_maps::SeparateSchedule;
 use parbake_model::Basis;
 use parbake_shape::paper::PaperOptions as PaperJointOptions;
 use parbake_shape::paper_joint_fit::PaperJointPlan;
-use parbake_shape::stage::ShapePlan;
+use parbake_shape::stage::{ShapePlan, ShapeReport};
 use parbake_shape::{Motion, ShapeOptions};
 use parbake_uv::paper::PaperOptions;
 use parbake_uv::surface::UvStageOptions;
@@ -90,15 +90,23 @@ impl BakeOptions {
             Preset::Best => (384, 384, 2, 256, 400),
         };
         let laplacian = if self.shape == ShapeMode::Laplacian { LAPLACIAN } else { 0.0 };
-        // What stands out will be cut out, what is missing cannot be put there.
-        let overhang_discount = if self.cuts() { 0.9 } else { 0.0 };
         (self.method == Method::Fit && !self.hurried()).then_some(ShapePlan {
             views: self.at_most_views(views),
             view_size: self.at_most_pixels(view_size),
             texture_size,
             samples,
-            fit: ShapeOptions { motion, steps, overhang_discount, laplacian, ..ShapeOptions::default() },
+            fit: ShapeOptions { motion, steps, laplacian, seed: self.seed, ..ShapeOptions::default() },
         })
+    }
+
+    /// How far vertices reach beyond the high-poly for a cutout to take away; none where nothing is cut, or vertices stay.
+    /// `shape` is how they moved before.
+    pub(crate) fn growth_plan(&self, shape: Option<&ShapeReport>) -> Option<ShapePlan> {
+        let plan = self.shape_plan().filter(|_| self.cuts())?;
+        // As far as outlines of the delivered shape were apart: those of the moved one hardly are.
+        let gap = shape.map_or(0.0, |shape| 2.0 * shape.gap[0]);
+        // What stands out will be cut out, what is missing cannot be put there.
+        Some(ShapePlan { fit: ShapeOptions { overhang_discount: 0.9, least_gap: gap, ..plan.fit }, ..plan })
     }
 
     /// How cutout and parallax map are fitted; none where there are none.
@@ -144,6 +152,13 @@ impl BakeOptions {
     /// Whether the low-poly is cut at the high-poly's silhouettes.
     fn cuts(&self) -> bool {
         self.parallax != Parallax::None && self.method == Method::Fit && !self.no_cutout
+    }
+
+    /// Side of the textures for viewers that do not know parallax maps; none where there are no others.
+    pub(crate) fn fallback_texture_size(&self) -> Option<usize> {
+        // A plain bake's texture is as blurred as its triangles are coarse: with half the side, pictures lose 0.1 dB.
+        let size = self.fallback_size.unwrap_or((self.texture_size / 2).max(16));
+        (self.parallax != Parallax::None && self.method == Method::Fit && size > 0).then_some(size)
     }
 
     /// The paper's optimiser for vertices and parallax; none where neither is asked for.

@@ -79,6 +79,9 @@ pub struct BakeReport {
     /// What was done with vertices; none where they were kept.
     #[serde(default)]
     pub shape: Option<ShapeReport>,
+    /// How far vertices reach beyond the high-poly for the cutout; none where nothing is cut or vertices were kept.
+    #[serde(default)]
+    pub growth: Option<ShapeReport>,
     /// How cutout and parallax map were fitted; none where there are none.
     #[serde(default)]
     pub parallax_maps: Option<ParallaxReport>,

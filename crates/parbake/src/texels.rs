@@ -20,18 +20,30 @@ pub fn parse_texels(text: &str) -> Result<usize, String> {
         .ok_or_else(|| "give a whole number of texels, such as 512, or 1k, 2k, 4k or 8k".into())
 }
 
+#[derive(serde::Deserialize)]
+#[serde(untagged)]
+enum Texels {
+    Number(usize),
+    Text(String),
+}
+
+impl Texels {
+    fn count<E: Error>(self) -> Result<usize, E> {
+        match self {
+            Texels::Number(number) => Ok(number),
+            Texels::Text(text) => parse_texels(&text).map_err(E::custom),
+        }
+    }
+}
+
 /// A field of texels: a number, or a text that [`parse_texels`] reads.
 pub(crate) fn texels<'de, D: Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> {
-    #[derive(serde::Deserialize)]
-    #[serde(untagged)]
-    enum Texels {
-        Number(usize),
-        Text(String),
-    }
-    match Texels::deserialize(deserializer)? {
-        Texels::Number(number) => Ok(number),
-        Texels::Text(text) => parse_texels(&text).map_err(D::Error::custom),
-    }
+    Texels::deserialize(deserializer)?.count()
+}
+
+/// The same, or nothing.
+pub(crate) fn some_texels<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<usize>, D::Error> {
+    Option::<Texels>::deserialize(deserializer)?.map(Texels::count).transpose()
 }
 
 #[cfg(test)]

@@ -8,14 +8,18 @@
 use crate::bake::Order;
 use crate::budget::shares;
 use crate::error::BakeError;
+use crate::options::{BakeOptions, Parallax};
+use crate::plan::Plan;
 use crate::report::Work;
 use parbake_fit::backend::{Backend, Cpu};
-use parbake_fit::parallax_maps::{FittedMaps, ParallaxMaps, ParallaxReport, fit_parallax_maps};
+use parbake_fit::parallax_maps::{
+    FittedMaps, ParallaxMaps, ParallaxPlan, ParallaxReport, fit_parallax_maps,
+};
 use parbake_fit::schedule::{Comparison, Fitted, fit_textures};
 use parbake_fit::separate_maps::fit_separate_maps;
 use parbake_image::MapKind;
 use parbake_image::quantise::from_image;
-use parbake_model::Model;
+use parbake_model::{Image, Model};
 use parbake_model::glam::{Vec2, Vec3};
 use parbake_progress::{Clock, ProgressScope, Stage, Watcher};
 use parbake_render::directions::{VertexFrame, sight};
@@ -25,9 +29,11 @@ use parbake_views::alpha_layers::{LayerKind, alpha_layers};
 use parbake_views::high_poly::{Conventions, ViewSet};
 use parbake_views::low_poly::LowPoly;
 use parbake_views::material_sampler::MaterialSampler;
-use parbake_views::projection::ProjectedMaps;
+use parbake_views::projection::{ProjectedMaps, project};
+use parbake_views::reference::Reference;
 use parbake_views::view_sample::sample_views;
 use parbake_views::view_sampler::ViewSampler;
+use std::sync::Arc;
 
 /// Maps, and what they were fitted to.
 pub(crate) struct FittedTextures {
@@ -48,29 +54,71 @@ pub(crate) struct Subject<'a> {
     pub kinds: &'a [LayerKind],
 }
 
-/// Fits the maps of a low-poly whose shape and coordinates stay from now on. `given` is a parallax map
-/// that was fitted before.
+fn view_set(order: &Order) -> ViewSet {
+    let &Order { plan, options, .. } = order;
+    ViewSet { count: plan.views, seed: options.seed, jitter: true, sampling: plan.reference }
+}
+
+fn parallax_plan(order: &Order) -> Option<ParallaxPlan> {
+    order.options.parallax_plan().filter(|_| order.work != Work::Compress)
+}
+
+/// The pictures that [`fit_views`] needs; none where materials are fitted alone, for what is seen of these needs none.
+pub(crate) fn training_views<W: Watcher>(
+    order: &Order,
+    scope: &ProgressScope<W>,
+) -> Option<Arc<Vec<Reference>>> {
+    let is_needed = !order.high.is_whole_material || parallax_plan(order).is_some();
+    is_needed.then(|| order.high.references(&view_set(order), &scope.share(shares::REFERENCE)))
+}
+
+/// Fits the maps that a file has for viewers without parallax maps: base colour and normals as of a bake without these, in a
+/// size of their own. None where the same serve all viewers, or the time is over.
+///
+/// # Errors
+/// As of [`fit_views`].
+pub(crate) fn fit_fallback<W: Watcher>(
+    order: &Order,
+    low: &Model,
+    kinds: &[LayerKind],
+    references: Option<Arc<Vec<Reference>>>,
+    scope: &ProgressScope<W>,
+    clock: &mut Clock,
+) -> Result<Vec<(MapKind, Image)>, BakeError> {
+    let &Order { high, plan, options, work } = order;
+    let Some(size) = options.fallback_texture_size().filter(|_| !scope.stopped()) else { return Ok(Vec::new()) };
+    let options = BakeOptions { parallax: Parallax::None, texture_size: size, ..options.clone() };
+    let own = options.plan();
+    let plan = &Plan { schedule: own.schedule, ..*plan };
+    let prepared = &LowPoly::new(low, &high.frame, size)?;
+    let projected = &project(prepared, high);
+    let subject = Subject { model: low, prepared, projected, kinds };
+    let order = Order { high, plan, options: &options, work };
+    let mut images = fit_views(&order, subject, references, None, scope, clock)?.fitted.images;
+    images.retain(|(kind, _)| matches!(kind, MapKind::BaseColor | MapKind::Normal));
+    Ok(images)
+}
+
+/// Fits the maps of a low-poly whose shape and coordinates stay from now on to `references`
+/// ([`training_views`]). `given` is a parallax map that was fitted before.
 ///
 /// # Errors
 /// Where no view shows the low-poly before the high-poly.
 pub(crate) fn fit_views<W: Watcher>(
     order: &Order,
     subject: Subject,
+    references: Option<Arc<Vec<Reference>>>,
     given: Option<ParallaxCoefficients>,
     scope: &ProgressScope<W>,
     clock: &mut Clock,
 ) -> Result<FittedTextures, BakeError> {
-    let &Order { high, plan, options, work } = order;
+    let &Order { high, plan, options, .. } = order;
     let Subject { model: low, prepared, projected, kinds } = subject;
     let (size, placed) = (options.texture_size, &prepared.placed);
     let Conventions { display, .. } = high.conventions;
-    let set = ViewSet { count: plan.views, seed: options.seed, jitter: true, sampling: plan.reference };
-    let parallax_plan = options.parallax_plan().filter(|_| work != Work::Compress);
+    let set = view_set(order);
+    let parallax_plan = parallax_plan(order);
     let whole = high.is_whole_material;
-    // What is seen of materials needs no pictures.
-    let references =
-        (!whole || parallax_plan.is_some()).then(|| high.references(&set, &scope.share(shares::REFERENCE)));
-    clock.lap(Stage::Reference);
 
     let mut sampler = ViewSampler::new(placed, plan.reference.size, &display, options.beyond());
     if let Some(plan) = &parallax_plan {

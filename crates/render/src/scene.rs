@@ -95,7 +95,15 @@ impl Scene {
     /// Unpacks every texture that a material uses.
     ///
     /// The mesh must have normals, and tangents if a material has a normal map.
-    pub fn new(mesh: Mesh, materials: &[Material], images: &[Image], interpretation: Interpretation) -> Self {
+    pub fn new(
+        mut mesh: Mesh,
+        materials: &[Material],
+        images: &[Image],
+        interpretation: Interpretation,
+    ) -> Self {
+        if interpretation.parallax {
+            mesh.apply_parallax_offsets();
+        }
         let mut builder = Builder::new(images, interpretation);
         let surfaces = materials.iter().map(|m| builder.surface(m)).collect();
         let pyramids = builder.pyramids;

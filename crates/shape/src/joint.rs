@@ -65,6 +65,8 @@ pub struct ShapeOptions {
     /// How much less overhang counts, 0 … 1, where outlines are a pixel apart or more: what
     /// stands out can be cut out, what is missing cannot be put there.
     pub overhang_discount: f32,
+    /// How far apart outlines are taken to be at least, in the common frame.
+    pub least_gap: f32,
     /// How many gaps between outlines a vertex may move before that costs as much as the
     /// picture's loss at first.
     pub reach: f32,
@@ -91,6 +93,7 @@ impl Default for ShapeOptions {
             texture_rate: 0.02,
             coverage: 1.0,
             overhang_discount: 0.0,
+            least_gap: 0.0,
             reach: 8.0,
             laplacian: 0.0,
             worth_moving: 0.9,
@@ -174,10 +177,11 @@ pub fn fit_shape(
     };
     let measured: Vec<(usize, u64)> = (0..references.len().min(MEASURED)).map(|i| (i, i as u64)).collect();
     let before = fit.look(&points.rest, &start, &measured);
-    let gap_in_pixels = before.outline.gap().max(LEAST_GAP);
+    let pixel = references.first().map_or(0.0, |r| pixel_width(&r.view.camera, size));
+    let least_gap = if pixel > 0.0 { f64::from(options.least_gap / pixel) } else { 0.0 };
+    let gap_in_pixels = before.outline.gap().max(LEAST_GAP).max(least_gap);
     let discount = options.overhang_discount * (gap_in_pixels / WIDE_GAP).min(1.0) as f32;
     fit.views.comparison.overhang_discount = discount;
-    let pixel = references.first().map_or(0.0, |r| pixel_width(&r.view.camera, size));
     let gap = gap_in_pixels as f32 * pixel;
     let held = before.loss.image as f32 / (options.reach * gap).powi(2).max(1e-12);
 

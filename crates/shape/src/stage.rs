@@ -10,7 +10,7 @@
 //! order, and so do their corners' texture coordinates. Vertices are split where a normal would end up on its
 //! face's back.
 
-use crate::joint::{ShapeOptions, fit_shape};
+use crate::joint::{ShapeOptions, Shaped, fit_shape};
 use crate::normals::turned_normals;
 use crate::provisional::Provisional;
 use crate::views::Outline;
@@ -60,7 +60,8 @@ pub struct ShapeReport {
     pub after: [f64; 2],
 }
 
-/// Moves the vertices of a low-poly that `frame` places.
+/// Moves the vertices of a low-poly to where its outlines and pictures agree with `references`
+/// ([`smooth_references`]).
 ///
 /// # Errors
 /// Where its texture coordinates are absent or have no area.
@@ -68,10 +69,44 @@ pub fn shape(
     name: &str,
     mesh: &mut Mesh,
     high: &HighPoly,
+    references: &[Reference],
     plan: &ShapePlan,
-    seed: u64,
     watcher: &impl Watcher,
 ) -> Result<ShapeReport, PrepareError> {
+    let (placed, shaped) = fitted(name, mesh, high, references, plan, watcher)?;
+    move_vertices(mesh, &placed, &shaped.positions, &high.frame);
+    Ok(report(&shaped))
+}
+
+/// Sets the offsets of a low-poly's vertices from which a cutout can take away what stands out: where outlines are
+/// apart, they reach beyond the high-poly's rather than stay behind. Positions and normals stay.
+///
+/// # Errors
+/// As of [`shape`].
+pub fn grow_for_cutout(
+    name: &str,
+    mesh: &mut Mesh,
+    high: &HighPoly,
+    references: &[Reference],
+    plan: &ShapePlan,
+    watcher: &impl Watcher,
+) -> Result<ShapeReport, PrepareError> {
+    let (placed, shaped) = fitted(name, mesh, high, references, plan, watcher)?;
+    let ways = shaped.positions.iter().zip(&placed.positions).map(|(after, before)| *after - *before);
+    // Copies for tangents are at the end, and of what is here.
+    mesh.parallax_offsets = ways.take(mesh.positions.len()).map(|way| way / high.frame.scale).collect();
+    Ok(report(&shaped))
+}
+
+/// The low-poly in the common frame, and where its vertices are to go.
+fn fitted(
+    name: &str,
+    mesh: &Mesh,
+    high: &HighPoly,
+    references: &[Reference],
+    plan: &ShapePlan,
+    watcher: &impl Watcher,
+) -> Result<(Mesh, Shaped), PrepareError> {
     let model = Model {
         name: name.into(),
         mesh: mesh.clone(),
@@ -83,25 +118,25 @@ pub fn shape(
     let start = project(&low, high);
     let LowPoly { placed, map, .. } = low;
     let start = provisional(start.maps, &placed, &map);
-    let references = smooth_references(high, plan.views, plan.view_size, plan.samples, seed, watcher);
-    let options = ShapeOptions { seed, ..plan.fit };
-    let shaped =
-        fit_shape(&placed, start, &references, plan.view_size, high.conventions.display, &options, watcher);
+    let display = high.conventions.display;
+    let shaped = fit_shape(&placed, start, references, plan.view_size, display, &plan.fit, watcher);
+    Ok((placed, shaped))
+}
 
-    move_vertices(mesh, &placed, &shaped.positions, &high.frame);
+fn report(shaped: &Shaped) -> ShapeReport {
     let outlines = |o: &Outline| [o.overhang, o.underhang];
-    Ok(ShapeReport {
+    ShapeReport {
         steps: shaped.losses.len(),
         moved: shaped.moved.map(|way| 0.5 * way),
         gap: shaped.gap.map(|gap| 0.5 * gap),
         before: outlines(&shaped.outline[0]),
         after: outlines(&shaped.outline[1]),
-    })
+    }
 }
 
 /// Views of the high-poly for gradients through silhouettes: edges are told from each other by
 /// how much of a pixel they cover, so whole pixels are averaged, and none is shifted.
-pub(crate) fn smooth_references(
+pub fn smooth_references(
     high: &HighPoly,
     views: usize,
     size: usize,

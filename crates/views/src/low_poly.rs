@@ -84,6 +84,16 @@ impl LowPoly {
         }
         Ok(Self { written, placed, map, atlas, warnings })
     }
+
+    /// The same as parallax maps show it: vertices with their offsets. Normals and tangents stay, for a file has one set.
+    ///
+    /// # Errors
+    /// As of [`LowPoly::new`].
+    pub fn for_parallax(model: &Model, frame: &Placement, size: usize) -> Result<Self, PrepareError> {
+        let mut low = Self::new(model, frame, size)?;
+        low.placed.apply_parallax_offsets();
+        Ok(low)
+    }
 }
 
 /// A low-poly is as large as its high-poly within this factor, and its centre lies

@@ -2,7 +2,7 @@
 // of sight misses, towards the light or the camera that draws them.
 import { MeshDepthMaterial, MeshDistanceMaterial, ShaderChunk } from 'three';
 import { SIDE } from './glsl.js';
-import { defines, patchFragment } from './patch.js';
+import { OFFSET, defines, patchFragment, patchVertex } from './patch.js';
 
 // Shadow passes leave normalMatrix as the camera's, but not modelViewMatrix.
 const NORMALS = ['beginnormal_vertex', 'morphnormal_vertex', 'skinnormal_vertex', 'defaultnormal_vertex', 'normal_vertex']
@@ -12,12 +12,12 @@ const DISPLACED = /#ifdef USE_DISPLACEMENTMAP\s+(?:#include <\w+>\s+)+#endif/;
 
 const isOpaque = (material) => !(material.alphaTest > 0) && !material.alphaHash;
 
-function patch(shader, source, { hasTangents, hasNormals }) {
+function patch(shader, source, { hasTangents, hasNormals, hasOffsets }) {
   const { maps } = source.parallax, anchor = source.map ?? source.normalMap, isShifted = !isOpaque(source);
   const hasFrame = hasNormals && hasTangents;
   const names = [
     'PARALLAX_CUTOUT', isShifted && 'PARALLAX_SHIFT', maps.isFading && 'PARALLAX_FADE', !hasNormals && 'PARALLAX_FLAT',
-    hasFrame && 'PARALLAX_TANGENT', hasFrame && 'USE_TANGENT',
+    hasFrame && 'PARALLAX_TANGENT', hasFrame && 'USE_TANGENT', hasOffsets && 'PARALLAX_OFFSET',
   ].filter(Boolean);
   const set = `uv${anchor.channel || ''}`;
   // With a map three.js brings the coordinate.
@@ -25,7 +25,7 @@ function patch(shader, source, { hasTangents, hasNormals }) {
     + '#define PARALLAX_IS_ORTHOGRAPHIC ( vParallaxIsPerspective < 0.5 )\n';
   const varyings = `varying vec3 vViewPosition;\nvarying float vParallaxIsPerspective;\n${source.map ? '' : 'varying vec2 vParallaxUv;\n'}`;
   const normals = hasNormals ? NORMALS : '';
-  shader.vertexShader = macros + shader.vertexShader
+  shader.vertexShader = macros + patchVertex(shader.vertexShader)
     .replace('#include <common>', `#include <common>
       ${varyings}
       ${hasNormals ? ShaderChunk.normal_pars_vertex : ''}
@@ -51,7 +51,9 @@ function patch(shader, source, { hasTangents, hasNormals }) {
 export function createDepthMaterial(source, geometry, { isDistance = false } = {}) {
   const depth = isDistance ? new MeshDistanceMaterial() : new MeshDepthMaterial();
   const { attributes } = geometry;
-  const has = { hasTangents: Boolean(attributes.tangent), hasNormals: Boolean(attributes.normal) };
+  const has = {
+    hasTangents: Boolean(attributes.tangent), hasNormals: Boolean(attributes.normal), hasOffsets: Boolean(attributes[OFFSET]),
+  };
   Object.assign(depth, { map: source.map, alphaMap: source.alphaMap, alphaTest: source.alphaTest, side: source.side });
   depth.onBeforeCompile = (shader) => {
     const { parallax, map, normalMap } = source;
@@ -62,7 +64,7 @@ export function createDepthMaterial(source, geometry, { isDistance = false } = {
   depth.customProgramCacheKey = () => {
     const { parallax } = source, anchor = source.map ?? source.normalMap;
     if (!parallax.isActive) return '';
-    const flags = [has.hasTangents, has.hasNormals, parallax.maps.isFading, isOpaque(source), Boolean(source.map)].map(Number);
+    const flags = [has.hasTangents, has.hasNormals, has.hasOffsets, parallax.maps.isFading, isOpaque(source), Boolean(source.map)].map(Number);
     return `parallax depth ${flags.join('')} ${anchor.channel}`;
   };
   source.parallax.followers.add(depth);
@@ -75,7 +77,7 @@ export function addShadowMaterials(root) {
   root.traverse((object) => {
     const { material, geometry } = object;
     if (!object.isMesh || !material?.parallax?.maps.hasCutout || object.customDepthMaterial) return;
-    const key = `${material.uuid} ${geometry.attributes.tangent !== undefined} ${geometry.attributes.normal !== undefined}`;
+    const key = [material.uuid, ...['tangent', 'normal', OFFSET].map((name) => geometry.attributes[name] !== undefined)].join(' ');
     if (!made.has(key))
       made.set(key, [false, true].map((isDistance) => createDepthMaterial(material, geometry, { isDistance })));
     [object.customDepthMaterial, object.customDistanceMaterial] = made.get(key);

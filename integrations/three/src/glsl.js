@@ -138,6 +138,13 @@ export const BEGIN = /* glsl */ `
 }
 `;
 
+/** In the vertex shader: a cutout cannot add, so the surface that it cuts reaches further than the one without. */
+export const REACH = /* glsl */ `
+#ifdef PARALLAX_OFFSET
+  transformed += _parallax_offset;
+#endif
+`;
+
 /** In the vertex shader, after the tangent is known. A mirrored mesh turns cross products over. */
 export const SIDE = /* glsl */ `
 #ifdef PARALLAX_TANGENT

@@ -12,9 +12,19 @@ export interface ParallaxOptions {
   alphaToCoverage?: boolean;
 }
 
+export interface PluginOptions extends ParallaxOptions {
+  /** Also load the textures for viewers without the maps, which are shown while these are switched off. Default false. */
+  fallback?: boolean;
+}
+
+export interface ApplyOptions extends ParallaxOptions {
+  /** What slots of the material hold while the maps are switched off. */
+  fallback?: { map?: Texture | null; normalMap?: Texture | null };
+}
+
 /** `loader.register((parser) => new ParallaxPlugin(parser))` */
 export class ParallaxPlugin implements GLTFLoaderPlugin {
-  constructor(parser: GLTFParser, options?: ParallaxOptions);
+  constructor(parser: GLTFParser, options?: PluginOptions);
   readonly name: 'PARBAKE_materials_parallax';
   beforeRoot(): null;
   loadMaterial(materialIndex: number): Promise<Material> | null;
@@ -25,7 +35,7 @@ export class ParallaxPlugin implements GLTFLoaderPlugin {
 export interface Parallax {
   /** Switches shift and cutout; shadows follow. */
   enabled: boolean;
-  /** The images of coefficients: shift, then cutout. Dispose of them with the material's own textures. */
+  /** The images of coefficients and textures that are not shown now. Dispose of them with the material's own textures. */
   readonly textures: Texture[];
 }
 
@@ -49,7 +59,7 @@ export class ParallaxMaps {
 
 /** Gives a material maps, without GLTFLoader. Returns the material. */
 export function applyParallax<M extends MeshStandardMaterial>(
-  material: M, maps: ParallaxMaps, options?: ParallaxOptions,
+  material: M, maps: ParallaxMaps, options?: ApplyOptions,
 ): M & { parallax: Parallax };
 
 /** All materials below an object that have maps. */

@@ -1,8 +1,9 @@
 // The plug-in of GLTFLoader: reads the extension, loads its images, and gives the materials their maps.
-import { ClampToEdgeWrapping, LinearFilter, NoColorSpace } from 'three';
+import { ClampToEdgeWrapping, LinearFilter, NoColorSpace, SRGBColorSpace, Vector3 } from 'three';
 import { ParallaxMaps, applyParallax } from './material.js';
 import { NAME, readParallax, withOwnTextures } from './format.js';
 import { addShadowMaterials } from './depth.js';
+import { OFFSET } from './patch.js';
 
 const warn = (text) => console.warn(`${NAME}: ${text}`);
 
@@ -15,20 +16,41 @@ function asData(texture) {
   });
 }
 
+/** Culling is by the surface that reaches furthest. */
+function growBounds(root) {
+  const offset = new Vector3(), grown = new Set();
+  root.traverse(({ geometry }) => {
+    const offsets = geometry?.attributes[OFFSET];
+    if (!offsets || grown.has(geometry)) return;
+    grown.add(geometry);
+    let reach = 0;
+    for (let i = 0; i < offsets.count; i++) reach = Math.max(reach, offset.fromBufferAttribute(offsets, i).length());
+    geometry.computeBoundingSphere();
+    geometry.boundingSphere.radius += reach;
+    geometry.boundingBox?.expandByScalar(reach);
+  });
+}
+
 /** `loader.register((parser) => new ParallaxPlugin(parser))` */
 export class ParallaxPlugin {
-  /** `alphaToCoverage: false` leaves the borders of cutouts jagged where the target has several samples. */
-  constructor(parser, { alphaToCoverage = true } = {}) {
+  /**
+   * `alphaToCoverage: false` leaves the borders of cutouts jagged where the target has several samples. `fallback: true`
+   * also loads the textures for other viewers, which are shown while maps are switched off.
+   */
+  constructor(parser, { alphaToCoverage = true, fallback = false } = {}) {
     this.name = NAME;
     this.parser = parser;
     this.options = { alphaToCoverage };
+    this.loadsFallback = fallback;
     this.maps = [];
+    this.plain = [];
   }
 
   beforeRoot() {
     const { json } = this.parser;
     this.maps = (json.materials ?? []).map((material) => readParallax(material, warn));
-    // The small textures for other viewers are then never asked for.
+    this.plain = json.materials ?? [];
+    // The small textures for other viewers are then never asked for, but here.
     if (json.materials) json.materials = json.materials.map((material, i) => (this.maps[i] ? withOwnTextures(material) : material));
     return null;
   }
@@ -42,19 +64,35 @@ export class ParallaxPlugin {
     const { parser } = this;
     const data = (info) => (info ? parser.getDependency('texture', info.index) : null);
     const [material, shift, cut] = await Promise.all([parser.loadMaterial(index), data(map.texture), data(map.cutout?.texture)]);
+    const fallback = this.loadsFallback ? await this.#loadFallback(this.plain[index]) : {};
     try {
       if (!material.isMeshStandardMaterial) throw new Error('the material is not lit, and this reads lit ones');
       if (!shift?.image || (map.cutout && !cut?.image)) throw new Error('an image of it cannot be read');
       const cutout = map.cutout && { ...map.cutout, texture: asData(cut) };
-      applyParallax(material, new ParallaxMaps({ ...map, texture: asData(shift), cutout }), this.options);
+      applyParallax(material, new ParallaxMaps({ ...map, texture: asData(shift), cutout }), { ...this.options, fallback });
     } catch (error) {
       warn(`the parallax map of material "${material.name}" was left out: ${error.message}`);
     }
     return material;
   }
 
+  /** What slots of a material hold without the maps, of those where they hold something else with them. */
+  async #loadFallback(json) {
+    const own = json.extensions[NAME], held = {};
+    const slots = [
+      ['map', own.baseColorTexture, json.pbrMetallicRoughness?.baseColorTexture, SRGBColorSpace],
+      ['normalMap', own.normalTexture, json.normalTexture],
+    ];
+    await Promise.all(slots.filter(([, ofMap, plain]) => ofMap && plain)
+      .map(([slot, , plain, space]) => this.parser.assignTexture(held, slot, plain, space)));
+    return held;
+  }
+
   afterRoot({ scenes }) {
-    for (const scene of scenes) addShadowMaterials(scene);
+    for (const scene of scenes) {
+      growBounds(scene);
+      addShadowMaterials(scene);
+    }
     return null;
   }
 }

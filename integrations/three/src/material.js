@@ -3,7 +3,7 @@
 import { CustomBlending, MaxEquation, OneFactor, Vector2, Vector4, ZeroFactor } from 'three';
 import { SIDE } from './glsl.js';
 import { LAYERS } from './format.js';
-import { defines, patchFragment } from './patch.js';
+import { OFFSET, defines, patchFragment, patchVertex } from './patch.js';
 
 const vectors = (numbers) => Array.from({ length: numbers.length / 4 }, (_, i) => new Vector4(...numbers.slice(4 * i, 4 * i + 4)));
 
@@ -36,24 +36,32 @@ export class ParallaxMaps {
 class Parallax {
   #isOn = true;
 
-  constructor(material, maps) {
+  constructor(material, maps, fallback) {
     this.material = material;
     this.maps = maps;
+    /** What other slots hold while the maps are off: the textures for viewers without them. */
+    this.fallback = { ...fallback };
     /** Materials of depth passes, which follow the switch. */
     this.followers = new Set();
     /** Whether the geometry has tangents, where three.js itself does not want to know. */
     this.hasTangents = false;
+    /** Whether the geometry has offsets. */
+    this.hasOffsets = false;
     /** Whether maps are to be filtered along the longer side of a pixel's footprint. */
     this.isAnisotropic = isAnisotropic(material);
   }
 
-  get textures() { return this.maps.textures; }
+  get textures() { return [...this.maps.textures, ...Object.values(this.fallback).filter(Boolean)]; }
 
   get enabled() { return this.#isOn; }
 
   set enabled(isOn) {
     if (this.#isOn === isOn) return;
     this.#isOn = isOn;
+    for (const [slot, texture] of Object.entries(this.fallback)) {
+      this.fallback[slot] = this.material[slot];
+      this.material[slot] = texture;
+    }
     for (const material of [this.material, ...this.followers]) material.needsUpdate = true;
   }
 
@@ -66,17 +74,17 @@ const isAnisotropic = ({ map, normalMap }) => map?.anisotropy > 1 || normalMap?.
 /** Whether three.js tells shaders of the geometry's tangents. */
 const usesTangents = (material) => Boolean(material.normalMap || material.anisotropy > 0);
 
-function patch(shader, { material, maps, hasTangents, isAnisotropic: isStretched }) {
+function patch(shader, { material, maps, hasTangents, hasOffsets, isAnisotropic: isStretched }) {
   const isOwn = !usesTangents(material) && hasTangents;
   const isFlat = material.flatShading, hasFrame = !isFlat && (shader.vertexTangents || isOwn);
   const names = [
     'PARALLAX_SHIFT', maps.hasCutout && 'PARALLAX_CUTOUT', maps.isFading && 'PARALLAX_FADE', isFlat && 'PARALLAX_FLAT',
-    isStretched && 'PARALLAX_ANISOTROPIC',
+    isStretched && 'PARALLAX_ANISOTROPIC', hasOffsets && 'PARALLAX_OFFSET',
     hasFrame && 'PARALLAX_TANGENT', isOwn && !isFlat && 'USE_TANGENT',
   ].filter(Boolean);
   const macros = `${defines(names)}#define PARALLAX_UV ${material.map ? 'vMapUv' : 'vNormalMapUv'}\n`
     + '#define PARALLAX_IS_ORTHOGRAPHIC isOrthographic\n';
-  shader.vertexShader = defines(names) + shader.vertexShader
+  shader.vertexShader = defines(names) + patchVertex(shader.vertexShader)
     .replace('void main() {', `${isOwn ? 'attribute vec4 tangent;\n' : ''}#ifdef PARALLAX_TANGENT\nvarying float vParallaxSide;\n#endif\nvoid main() {`)
     .replace('#include <normal_vertex>', `#include <normal_vertex>\n${SIDE}`);
   let fragment = shader.fragmentShader;
@@ -104,9 +112,9 @@ function isMultisampled(renderer) {
  * Gives a material parallax maps, which then are `material.parallax`. Calls of its onBeforeCompile and
  * customProgramCacheKey that were there before go first. Clones have the maps, too.
  */
-export function applyParallax(material, maps, { alphaToCoverage = true } = {}) {
+export function applyParallax(material, maps, { alphaToCoverage = true, fallback = {} } = {}) {
   if (!material.isMeshStandardMaterial) throw new Error('Parallax maps are for MeshStandardMaterial and MeshPhysicalMaterial.');
-  const parallax = new Parallax(material, maps);
+  const parallax = new Parallax(material, maps, fallback);
   const { onBeforeCompile, customProgramCacheKey, onBeforeRender, clone } = material;
   const hasOwnKey = Object.hasOwn(material, 'customProgramCacheKey');
   material.parallax = parallax;
@@ -120,21 +128,29 @@ export function applyParallax(material, maps, { alphaToCoverage = true } = {}) {
     const before = hasOwnKey ? customProgramCacheKey.call(this) : onBeforeCompile.toString();
     if (!parallax.isActive) return before;
     const isOpaque = !this.transparent && !(this.alphaTest > 0) && !this.alphaHash;
-    const own = [Boolean(this.map), parallax.hasTangents, parallax.isAnisotropic, maps.hasCutout, maps.isFading, isOpaque].map(Number).join('');
+    const own = [Boolean(this.map), parallax.hasTangents, parallax.hasOffsets, parallax.isAnisotropic, maps.hasCutout, maps.isFading, isOpaque].map(Number).join('');
     return `${before} parallax ${own}`;
   };
   material.onBeforeRender = function (renderer, scene, camera, geometry, ...rest) {
     onBeforeRender.call(this, renderer, scene, camera, geometry, ...rest);
     if (maps.hasCutout) maps.uniforms.parallaxIsMultisampled.value = isMultisampled(renderer);
-    // Neither is told to three.js' own programs.
-    const now = { hasTangents: Boolean(geometry.attributes.tangent) && !usesTangents(this), isAnisotropic: isAnisotropic(this) };
-    if (now.hasTangents === parallax.hasTangents && now.isAnisotropic === parallax.isAnisotropic) return;
+    // None of these is told to three.js' own programs.
+    const now = {
+      hasTangents: Boolean(geometry.attributes.tangent) && !usesTangents(this), isAnisotropic: isAnisotropic(this),
+      hasOffsets: Boolean(geometry.attributes[OFFSET]),
+    };
+    if (Object.entries(now).every(([name, value]) => parallax[name] === value)) return;
     Object.assign(parallax, now);
     this.needsUpdate = true;
   };
   material.clone = function () {
     const copy = clone.call(this);
-    if (!copy.parallax) applyParallax(copy, maps, { alphaToCoverage: false });
+    if (!copy.parallax) {
+      // The copy's slots are those of the moment.
+      const own = parallax.enabled ? parallax.fallback : Object.fromEntries(Object.keys(parallax.fallback).map((slot) => [slot, material[slot]]));
+      if (!parallax.enabled) Object.assign(copy, parallax.fallback);
+      applyParallax(copy, maps, { alphaToCoverage: false, fallback: own });
+    }
     copy.parallax.enabled = parallax.enabled;
     return copy;
   };

@@ -1,6 +1,6 @@
 // Puts the parallax into a shader of three.js, by exchanging whole chunks; what other patches look for stays there.
 import { ShaderChunk } from 'three';
-import { BEGIN, DECLARED } from './glsl.js';
+import { BEGIN, DECLARED, REACH } from './glsl.js';
 
 /** A fetch of one of the material's maps. Baked light has a layout of its own, and no depth. */
 const FETCH = /texture2D\(\s*((?!lightMap\b)\w*[mM]ap),\s*(v\w+Uv)\b/g;
@@ -15,6 +15,16 @@ function shiftFetches(fragment) {
 }
 
 export const defines = (names) => names.map((name) => `#define ${name}\n`).join('');
+
+/** The attribute of vertex offsets, as GLTFLoader names it. */
+export const OFFSET = '_parallax_offset';
+
+/** The vertex shader with the offsets in it. */
+export function patchVertex(vertex) {
+  return vertex
+    .replace('void main() {', `#ifdef PARALLAX_OFFSET\nattribute vec3 ${OFFSET};\n#endif\nvoid main() {`)
+    .replace('#include <begin_vertex>', `#include <begin_vertex>\n${REACH}`);
+}
 
 /** The fragment shader with the parallax in it. `macros` are lines of the preprocessor. */
 export function patchFragment(fragment, macros, isShifted) {

@@ -72,6 +72,13 @@ pub(super) struct MaterialExtensions {
     pub dispersion: Option<Dispersion>,
 }
 
+impl MaterialExtensions {
+    /// Whether there is a parallax map of either kind.
+    pub fn has_parallax(&self) -> bool {
+        self.parallax.is_some() || self.parallax_sh.is_some()
+    }
+}
+
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
 pub(super) struct EmissiveStrength {

@@ -13,7 +13,7 @@ use super::json::Primitive;
 use super::morphs::{Morphs, Part};
 use super::motion::Motion;
 use super::painted::Painted;
-use super::parallax::turns;
+use super::parallax::{OFFSETS, turns};
 use super::scene::{Instance, visit};
 use super::sources::{Attributes, Sources, draco_stream};
 use super::topology::{has_triangles, triangles};
@@ -72,6 +72,8 @@ impl<'a, 'd> Merge<'a, 'd> {
             uvs: uvs(0),
             uvs1: uvs(1),
             colors: any(|p| p.attributes.color_0.is_some()),
+            parallax_offsets: all().any(|p| p.attributes.named(OFFSETS).is_some())
+                && buffers.document.materials.iter().any(|m| m.extensions.has_parallax()),
         };
         let (mesh, materials, turned, scales, material_ids, placed, drawn, places) = Default::default();
         let (binding, morphs, triangle_nodes, painted) = Default::default();
@@ -322,6 +324,7 @@ impl<'a, 'd> Merge<'a, 'd> {
             if still { v } else { (*m * v.as_dvec3()).normalize_or_zero().as_vec3() }
         };
         let numbered = || elements.iter().enumerate().map(|(i, &e)| (&turns[placing.of(i)], e as usize));
+        let numbers = || elements.iter().enumerate();
         let elements = || elements.iter().map(|&e| e as usize);
         let mesh = &mut self.mesh;
         if let Some(source) = &sources.normal {
@@ -345,6 +348,17 @@ impl<'a, 'd> Merge<'a, 'd> {
         }
         if self.has.uvs1 {
             mesh.uvs1.extend(elements().map(|e| uv(&sources.uv1, e)));
+        }
+        if self.has.parallax_offsets {
+            let read = |(i, &e): (usize, &u32)| {
+                let source = sources.parallax_offset.as_ref();
+                let offset = source.map_or(Vec3::ZERO, |s| Vec3::from_array(s.read(e as usize, [0.0; 3])));
+                let matrix = &placing.matrices[placing.of(i)].matrix3;
+                let offset = (*matrix * offset.as_dvec3()).as_vec3();
+                // One that is no number moves nothing.
+                if offset.is_finite() { offset } else { Vec3::ZERO }
+            };
+            mesh.parallax_offsets.extend(numbers().map(read));
         }
         if self.has.colors {
             // Colours go from 0 to 1; NaN passes through, to be repaired and counted.

@@ -95,7 +95,7 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
     let rig = merge.rig()?;
     let nodes = hierarchy::hierarchy(&buffers, std::mem::take(&mut merge.triangle_nodes))?;
     let painted = std::mem::take(&mut merge.painted).values(&buffers)?;
-    let (mesh, used) = (std::mem::take(&mut merge.mesh), std::mem::take(&mut merge.materials));
+    let (mut mesh, used) = (std::mem::take(&mut merge.mesh), std::mem::take(&mut merge.materials));
     let turned = std::mem::take(&mut merge.turned);
     let scales = std::mem::take(&mut merge.scales);
     if mesh.triangles.is_empty() {
@@ -105,6 +105,7 @@ pub(crate) fn read(context: Context<'_>, bytes: &[u8]) -> Result<Loaded, FileErr
     let (materials, images) = materials::build(&buffers, &used, &scales, &turned)?;
     drop(merge);
     drop(buffers);
+    parallax::leave_out_offsets(&mut mesh, &materials);
     for (material, index) in materials.iter().zip(&used) {
         let json = index.and_then(|index| document.materials.get(index));
         let sets = json.map(uv_sets::UvSets::of).unwrap_or_default();

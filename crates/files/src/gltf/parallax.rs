@@ -11,13 +11,15 @@ use super::json_texture::TextureInfo;
 use super::textures::TextureReader;
 use crate::FileError;
 use crate::context::{Context, Textures};
-use parbake_model::glam::DMat3;
-use parbake_model::{Basis, CutoutMap, DepthMap, Image, Material, ParallaxMap, TextureSlot, Wrap};
+use parbake_model::glam::{DMat3, Vec3};
+use parbake_model::{Basis, CutoutMap, DepthMap, Image, Material, Mesh, ParallaxMap, TextureSlot, Wrap};
 
 /// The name in a document of maps in the tangent frame.
 pub(super) const NAME: &str = "PARBAKE_materials_parallax";
 /// That of spherical harmonics.
 pub(super) const NAME_SH: &str = "PARBAKE_materials_parallax_sh";
+/// The vertex attribute that readers of either add to positions.
+pub(super) const OFFSETS: &str = "_PARALLAX_OFFSET";
 /// The version of the format in the tangent frame.
 pub(super) const VERSION: usize = 2;
 
@@ -207,6 +209,21 @@ pub(super) fn leave_out(
             left_out(context, &material.name, &fault);
             material.parallax = None;
         }
+    }
+}
+
+/// Leaves out offsets of vertices whose material has no map that is shown.
+pub(super) fn leave_out_offsets(mesh: &mut Mesh, materials: &[Material]) {
+    if mesh.parallax_offsets.is_empty() {
+        return;
+    }
+    let has_map = |material: u32| materials.get(material as usize).is_some_and(|m| m.parallax.is_some());
+    let without = mesh.triangles.iter().zip(&mesh.triangle_materials).filter(|&(_, &m)| !has_map(m));
+    for &vertex in without.flat_map(|(triangle, _)| triangle) {
+        mesh.parallax_offsets[vertex as usize] = Vec3::ZERO;
+    }
+    if mesh.parallax_offsets.iter().all(|&offset| offset == Vec3::ZERO) {
+        mesh.parallax_offsets.clear();
     }
 }
 

@@ -110,6 +110,9 @@ fn bring_into(mesh: &mut Mesh, world: &DAffine3) {
     for position in &mut mesh.positions {
         *position = inverse.transform_point3(position.as_dvec3()).as_vec3();
     }
+    for offset in &mut mesh.parallax_offsets {
+        *offset = inverse.transform_vector3(offset.as_dvec3()).as_vec3();
+    }
     for normal in &mut mesh.normals {
         *normal = (turned * normal.as_dvec3()).normalize_or_zero().as_vec3();
     }

@@ -4,6 +4,7 @@ use super::accessor::Accessor;
 use super::buffers::{Buffers, pointer};
 use super::draco::Decoded;
 use super::json::{self, Primitive};
+use super::parallax::OFFSETS;
 use super::uv_sets::UvSets;
 use crate::FileError;
 
@@ -14,6 +15,7 @@ pub(super) struct Attributes {
     pub uvs: bool,
     pub uvs1: bool,
     pub colors: bool,
+    pub parallax_offsets: bool,
 }
 
 /// The accessors of one primitive.
@@ -24,6 +26,7 @@ pub(super) struct Sources<'a> {
     pub uv: Option<Accessor<'a>>,
     pub uv1: Option<Accessor<'a>>,
     pub color: Option<Accessor<'a>>,
+    pub parallax_offset: Option<Accessor<'a>>,
     /// What was asked for by its name (`Context::attribute`).
     pub painted: Option<Accessor<'a>>,
     /// Joints and their weights, four at a time.
@@ -103,11 +106,12 @@ impl<'a> Sources<'a> {
             uv: uv(0)?,
             uv1: uv(1)?,
             color: open(&|a| a.color_0, "COLOR_0", &[3, 4], true)?,
+            parallax_offset: open(&|a| a.named(OFFSETS), OFFSETS, &[3], has.parallax_offsets)?,
             position,
         };
         let count = sources.position.count;
         let others = [&sources.normal, &sources.tangent, &sources.uv, &sources.uv1];
-        let others = others.into_iter().chain([&sources.color, &sources.painted]).flatten();
+        let others = others.into_iter().chain([&sources.color, &sources.parallax_offset, &sources.painted]).flatten();
         let different = others.chain(sources.influences.iter().flatten()).find(|a| a.count != count);
         if let Some(other) = different {
             let reason = format!("there are {count} positions, but {} has {}", other.pointer, other.count);

@@ -5,6 +5,7 @@
 //! they are many, and come back to the bit.
 
 use super::binary::Binary;
+use super::parallax::OFFSETS;
 use super::quantise::{Grid, byte, signed_byte};
 use super::runs::{Run, runs};
 use super::write_rig;
@@ -102,6 +103,7 @@ fn stride(mesh: &Mesh, sets: [bool; 2]) -> usize {
         + has(mesh.uvs.len(), uv(sets[0]))
         + has(mesh.uvs1.len(), uv(sets[1]))
         + has(mesh.colors.len(), 16)
+        + has(mesh.parallax_offsets.len(), 12)
 }
 
 fn triangles_of(mesh: &Mesh, material: usize) -> Vec<[u32; 3]> {
@@ -121,6 +123,7 @@ pub fn picked(mesh: &Mesh, vertices: &[u32]) -> Mesh {
         uvs: of(&mesh.uvs, vertices),
         uvs1: of(&mesh.uvs1, vertices),
         colors: of(&mesh.colors, vertices),
+        parallax_offsets: of(&mesh.parallax_offsets, vertices),
         ..Mesh::default()
     }
 }
@@ -167,6 +170,12 @@ fn attributes(binary: &mut Binary, mesh: &Mesh, Stored { short_sets, grid }: Sto
             binary.floats("VEC4", rows)
         };
         attributes["COLOR_0"] = accessor.into();
+    }
+    if !mesh.parallax_offsets.is_empty() {
+        // In the unit of positions, which nodes or joints place.
+        let unit = grid.map_or(1.0, Grid::unit);
+        let rows = mesh.parallax_offsets.iter().map(|&offset| (offset / unit).to_array());
+        attributes[OFFSETS] = binary.floats("VEC3", rows).into();
     }
     attributes
 }

@@ -1,13 +1,13 @@
 //! The baked textures on the page, the first one under the texture layout.
 //!
 //! Contract: a bake's materials share their textures, so the first material says what each image is; images that
-//! no map of it uses, as those of parallax maps, are left out.
+//! no map of it uses, as those of parallax maps and what viewers without these show, are left out.
 
 use crate::page::text::escape;
 use crate::page::{embed, uv_layout};
 use parbake::BakeError;
 use parbake_image::MapKind;
-use parbake_image::material_maps::texture_slot;
+use parbake_image::material_maps::shifted_texture_slot;
 use parbake_model::{Image, Model};
 
 /// What a map is called; of an image that several maps share, each names its channels.
@@ -25,7 +25,7 @@ fn name(kind: MapKind) -> &'static str {
 fn maps(model: &Model) -> Vec<(&Image, String)> {
     let mut found: Vec<(usize, String)> = Vec::new();
     let slots = MapKind::ALL.into_iter().filter_map(|kind| {
-        let slot = texture_slot(model.materials.first()?, kind)?;
+        let slot = shifted_texture_slot(model.materials.first()?, kind)?;
         Some((kind, slot.image))
     });
     for (kind, image) in slots {
