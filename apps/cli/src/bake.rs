@@ -316,4 +316,14 @@ fn tell_of_shape(console: &Console, report: &BakeReport) {
             depth.steps
         ));
     }
+    if let Some(fallback) = &report.fallback {
+        let tried: Vec<String> =
+            fallback.tried.iter().map(|(side, psnr)| format!("{psnr:.1} dB with {side}²")).collect();
+        let taken = fallback.side.map_or("the maps' textures".into(), |side| format!("textures of {side}²"));
+        console.say(&format!(
+            "viewers without the maps show {taken}: {}, {:.1} dB with the maps' (training views, on black)",
+            tried.join(", "),
+            fallback.shared
+        ));
+    }
 }

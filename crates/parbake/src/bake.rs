@@ -11,9 +11,10 @@
 use crate::baseline::other_baseline;
 use crate::budget::{at_the_end, check_budget, stage_weights};
 use crate::error::BakeError;
+use crate::fallback::fit_fallback;
 use crate::geometry::{Geometry, move_geometry};
 use crate::importance::importances;
-use crate::look::{self, Look};
+use crate::look::{Look, add_fallback};
 use crate::lost::lost;
 use crate::low_poly::{check_triangles, low_poly};
 use crate::options::{BakeOptions, Shading, UvMode};
@@ -21,7 +22,7 @@ use crate::parts::{with_kept_parts, with_parted_materials, with_parts};
 use crate::plan::Plan;
 use crate::report::{BakeReport, Work, layout_warning};
 use crate::rigs::{carried, rigged};
-use crate::textures::{FittedTextures, Subject, fit_fallback, fit_views, training_views};
+use crate::textures::{FittedTextures, Subject, fit_views, training_views};
 use crate::warnings::{Warnings, swapped, unseen};
 use parbake_atlas::check_mesh;
 use parbake_image::quantise::to_image;
@@ -207,7 +208,8 @@ fn run(
     // Of a low-poly that was made here there is nothing that its maker should mend.
     let is_given = work != Work::Level;
     warnings.tell(turned.iter().filter(|_| is_given).flat_map(|(_, of_normals)| of_normals.clone()));
-    let Geometry { uv_stage, shape, growth, map } = move_geometry(low, work, high, options, &scope, &mut clock)?;
+    let Geometry { uv_stage, shape, growth, map } =
+        move_geometry(low, work, high, options, &scope, &mut clock)?;
     let low = uv_stage.as_ref().map_or(low, |u| &u.model);
     // The surface that maps are fitted on: that which viewers of parallax maps show.
     let prepared = LowPoly::for_parallax(low, &high.frame, size)?;
@@ -224,17 +226,21 @@ fn run(
     let order = Order { high, plan: &plan, options, work };
     let references = training_views(&order, &scope);
     clock.lap(Stage::Reference);
-    let for_fallback = references.clone().filter(|_| options.fallback_texture_size().is_some());
+    let for_fallback = references.clone().filter(|_| options.has_fallback());
     let textures = fit_views(&order, subject, references, map, &scope, &mut clock)?;
     let FittedTextures { fitted, views, samples, parallax, parallax_report } = textures;
     let LowPoly { written, map: texels, .. } = &prepared;
     clock.lap(Stage::Solve);
-    let fallback = match &parallax {
-        Some(_) => fit_fallback(&order, low, &kinds, for_fallback, &scope, &mut clock)?,
-        None => Vec::new(),
-    };
-    clock.lap(Stage::Solve);
     let (look, srgb) = (Look::new(high, &prepared, kinds), high.conventions.srgb());
+    let mut model = look.textured(low, written, fitted.images, parallax.as_ref());
+    let mut fallback = None;
+    if let Some(references) = for_fallback {
+        let subject = (low, &look.kinds[..]);
+        let (maps, report) = fit_fallback(&order, subject, &model, references, &scope, &mut clock)?;
+        add_fallback(&mut model, maps);
+        fallback = Some(report);
+    }
+    clock.lap(Stage::Solve);
     let is_whole = high.is_whole_material;
     let unfit = if is_whole { look.extensions.lost.clone() } else { lost(high.extensions.materials()) };
     warnings.tell(unfit.into_iter().map(|text| format!("{}: {text}", high.name)));
@@ -262,6 +268,7 @@ fn run(
         shape,
         growth,
         parallax_maps: parallax_report,
+        fallback,
         uv_stage: uv_stage.as_ref().filter(|_| options.uv != UvMode::Keep).map(|u| u.report.clone()),
         options: options.clone(),
         high_triangles: high.triangles,
@@ -281,8 +288,6 @@ fn run(
         written: None,
         peak_memory: crate::memory::peak_memory(),
     };
-    let mut model = look.textured(low, written, fitted.images, parallax.as_ref());
-    look::add_fallback(&mut model, fallback);
     let moving = |model: Model| with_parts(Model { rig: carried(given, &model.mesh), ..model }, given);
     Ok(Baked {
         ray_cast: moving(ray_cast),

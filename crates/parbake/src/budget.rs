@@ -86,8 +86,8 @@ pub(crate) fn stage_weights(options: &BakeOptions) -> Vec<(Stage, f64)> {
         stages.extend([(Stage::Cutout, 6.0), (Stage::Parallax, 0.03 * steps as f64)]);
     }
     stages.push((Stage::Sampling, 0.02 * pixels));
-    let fallback = options.fallback_texture_size().map_or(0.0, |size| texels(size) / 1e6);
-    stages.push((Stage::Solve, plan.schedule.rounds as f64 * (0.5 * (million + fallback) + 0.03 * pixels)));
+    let fits = if options.has_fallback() { 1.5 } else { 1.0 };
+    stages.push((Stage::Solve, fits * plan.schedule.rounds as f64 * (0.5 * million + 0.03 * pixels)));
     stages.push((Stage::Evaluate, 2.0));
     stages
 }

@@ -272,6 +272,7 @@ impl OwnSurface<'_> {
             shape: None,
             growth: None,
             parallax_maps: None,
+            fallback: None,
             uv_stage: (self.options.uv != UvMode::Keep).then_some(uv_stage),
             options: self.options.clone(),
             high_triangles: self.model.mesh.triangles.len(),

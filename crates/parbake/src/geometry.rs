@@ -63,9 +63,9 @@ pub fn move_geometry<W: Watcher>(
     let mut low = repair_uvs_with_room(low, &mut uv_options)?;
     clock.lap(Stage::Prepare);
     let share = scope.share(shares::SHAPE);
-    let references = shape_plan.as_ref().map(|plan| {
-        smooth_references(high, plan.views, plan.view_size, plan.samples, options.seed, &share)
-    });
+    let references = shape_plan
+        .as_ref()
+        .map(|plan| smooth_references(high, plan.views, plan.view_size, plan.samples, options.seed, &share));
     if let (Some(plan), Some(references)) = (&shape_plan, &references) {
         geometry.shape = Some(shape(&low.name, &mut low.mesh, high, references, plan, &share)?);
         clock.lap(Stage::Shape);

@@ -270,6 +270,28 @@ mod tests {
         assert_eq!(model.images[1].pixels, [[255, 51, 255, 255], [40, 99, 255, 255]]);
     }
 
+    /// Protects viewers without parallax maps, and those with them: each has its own textures; a map that became a
+    /// factor serves both.
+    #[test]
+    fn textures_without_maps_take_the_materials_place() {
+        let maps = vec![(MapKind::BaseColor, image([[255, 188, 0, 9], [0, 0, 0, 255]]))];
+        let low = two_triangles();
+        let mut model = whole(vec![AlphaMode::Opaque, AlphaMode::Mask]).textured(&low, &low.mesh, maps, None);
+        for material in &mut model.materials {
+            material.parallax = Some(parbake_model::ParallaxMap::default());
+        }
+        let plain = image([[1, 2, 3, 4]; 2]);
+        add_fallback(&mut model, vec![(MapKind::BaseColor, plain.clone()), (MapKind::Normal, plain.clone())]);
+        assert_eq!((model.images.len(), &model.images[1].pixels), (2, &plain.pixels));
+        for material in &model.materials {
+            let map = material.parallax.as_ref().expect("a map");
+            let textures =
+                [material.base_color_texture, map.base_color_texture].map(|slot| slot.map(|s| s.image));
+            assert_eq!(textures, [Some(1), Some(0)]);
+            assert!(material.normal_texture.is_none() && map.normal_texture.is_none());
+        }
+    }
+
     /// Protects draw calls: there is one material for each alpha mode in use, on the same textures.
     #[test]
     fn each_alpha_mode_has_one_material() {

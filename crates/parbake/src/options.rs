@@ -213,7 +213,7 @@ pub struct BakeOptions {
     pub cutout_size: usize,
 
     /// Side in texels of the textures for viewers that do not know parallax maps, 16 to 8192; 0: the same textures serve
-    /// all viewers. Needs --parallax [default: half of --texture-size]
+    /// all viewers. Needs --parallax [default: as small as shows no less, by 0.2 dB]
     #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", value_parser = parse_texels, help_heading = heading::PARALLAX))]
     #[serde(deserialize_with = "some_texels")]
     pub fallback_size: Option<usize>,

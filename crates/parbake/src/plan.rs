@@ -106,7 +106,10 @@ impl BakeOptions {
         // As far as outlines of the delivered shape were apart: those of the moved one hardly are.
         let gap = shape.map_or(0.0, |shape| 2.0 * shape.gap[0]);
         // What stands out will be cut out, what is missing cannot be put there.
-        Some(ShapePlan { fit: ShapeOptions { overhang_discount: 0.9, least_gap: gap, ..plan.fit }, ..plan })
+        // They are near.
+        let fit =
+            ShapeOptions { overhang_discount: 0.9, least_gap: gap, steps: plan.fit.steps / 2, ..plan.fit };
+        Some(ShapePlan { fit, ..plan })
     }
 
     /// How cutout and parallax map are fitted; none where there are none.
@@ -154,11 +157,9 @@ impl BakeOptions {
         self.parallax != Parallax::None && self.method == Method::Fit && !self.no_cutout
     }
 
-    /// Side of the textures for viewers that do not know parallax maps; none where there are no others.
-    pub(crate) fn fallback_texture_size(&self) -> Option<usize> {
-        // A plain bake's texture is as blurred as its triangles are coarse: with half the side, pictures lose 0.1 dB.
-        let size = self.fallback_size.unwrap_or((self.texture_size / 2).max(16));
-        (self.parallax != Parallax::None && self.method == Method::Fit && size > 0).then_some(size)
+    /// Whether there are textures for viewers that do not know parallax maps.
+    pub(crate) fn has_fallback(&self) -> bool {
+        self.parallax != Parallax::None && self.method == Method::Fit && self.fallback_size != Some(0)
     }
 
     /// The paper's optimiser for vertices and parallax; none where neither is asked for.

@@ -1,6 +1,7 @@
 //! What a bake saw, as plain data: the JSON report, and what the HTML report shows.
 
 use crate::comparison::Comparison;
+use crate::fallback::FallbackReport;
 use crate::options::BakeOptions;
 use parbake_atlas::UvCheck;
 use parbake_files::Written;
@@ -85,6 +86,9 @@ pub struct BakeReport {
     /// How cutout and parallax map were fitted; none where there are none.
     #[serde(default)]
     pub parallax_maps: Option<ParallaxReport>,
+    /// The textures for viewers without the maps; none where there are no maps, or no such textures are asked for.
+    #[serde(default)]
+    pub fallback: Option<FallbackReport>,
     /// What was done with texture coordinates; none where they were kept.
     pub uv_stage: Option<UvStageReport>,
     /// What was asked.

@@ -8,18 +8,14 @@
 use crate::bake::Order;
 use crate::budget::shares;
 use crate::error::BakeError;
-use crate::options::{BakeOptions, Parallax};
-use crate::plan::Plan;
 use crate::report::Work;
 use parbake_fit::backend::{Backend, Cpu};
-use parbake_fit::parallax_maps::{
-    FittedMaps, ParallaxMaps, ParallaxPlan, ParallaxReport, fit_parallax_maps,
-};
+use parbake_fit::parallax_maps::{FittedMaps, ParallaxMaps, ParallaxPlan, ParallaxReport, fit_parallax_maps};
 use parbake_fit::schedule::{Comparison, Fitted, fit_textures};
 use parbake_fit::separate_maps::fit_separate_maps;
 use parbake_image::MapKind;
 use parbake_image::quantise::from_image;
-use parbake_model::{Image, Model};
+use parbake_model::Model;
 use parbake_model::glam::{Vec2, Vec3};
 use parbake_progress::{Clock, ProgressScope, Stage, Watcher};
 use parbake_render::directions::{VertexFrame, sight};
@@ -29,7 +25,7 @@ use parbake_views::alpha_layers::{LayerKind, alpha_layers};
 use parbake_views::high_poly::{Conventions, ViewSet};
 use parbake_views::low_poly::LowPoly;
 use parbake_views::material_sampler::MaterialSampler;
-use parbake_views::projection::{ProjectedMaps, project};
+use parbake_views::projection::ProjectedMaps;
 use parbake_views::reference::Reference;
 use parbake_views::view_sample::sample_views;
 use parbake_views::view_sampler::ViewSampler;
@@ -54,7 +50,7 @@ pub(crate) struct Subject<'a> {
     pub kinds: &'a [LayerKind],
 }
 
-fn view_set(order: &Order) -> ViewSet {
+pub(crate) fn view_set(order: &Order) -> ViewSet {
     let &Order { plan, options, .. } = order;
     ViewSet { count: plan.views, seed: options.seed, jitter: true, sampling: plan.reference }
 }
@@ -70,33 +66,6 @@ pub(crate) fn training_views<W: Watcher>(
 ) -> Option<Arc<Vec<Reference>>> {
     let is_needed = !order.high.is_whole_material || parallax_plan(order).is_some();
     is_needed.then(|| order.high.references(&view_set(order), &scope.share(shares::REFERENCE)))
-}
-
-/// Fits the maps that a file has for viewers without parallax maps: base colour and normals as of a bake without these, in a
-/// size of their own. None where the same serve all viewers, or the time is over.
-///
-/// # Errors
-/// As of [`fit_views`].
-pub(crate) fn fit_fallback<W: Watcher>(
-    order: &Order,
-    low: &Model,
-    kinds: &[LayerKind],
-    references: Option<Arc<Vec<Reference>>>,
-    scope: &ProgressScope<W>,
-    clock: &mut Clock,
-) -> Result<Vec<(MapKind, Image)>, BakeError> {
-    let &Order { high, plan, options, work } = order;
-    let Some(size) = options.fallback_texture_size().filter(|_| !scope.stopped()) else { return Ok(Vec::new()) };
-    let options = BakeOptions { parallax: Parallax::None, texture_size: size, ..options.clone() };
-    let own = options.plan();
-    let plan = &Plan { schedule: own.schedule, ..*plan };
-    let prepared = &LowPoly::new(low, &high.frame, size)?;
-    let projected = &project(prepared, high);
-    let subject = Subject { model: low, prepared, projected, kinds };
-    let order = Order { high, plan, options: &options, work };
-    let mut images = fit_views(&order, subject, references, None, scope, clock)?.fitted.images;
-    images.retain(|(kind, _)| matches!(kind, MapKind::BaseColor | MapKind::Normal));
-    Ok(images)
 }
 
 /// Fits the maps of a low-poly whose shape and coordinates stay from now on to `references`
@@ -158,7 +127,8 @@ pub(crate) fn fit_views<W: Watcher>(
     let views = references.len();
     let (samples, maps, parallax_report) = match parallax {
         None => {
-            let samples = Cpu.view_samples(&sampler, &references, size, scope);
+            let some = &references[..views.min(plan.views)];
+            let samples = Cpu.view_samples(&sampler, some, size, scope);
             drop(references);
             (samples, None, None)
         }

@@ -130,3 +130,18 @@ fn a_broken_cutout_takes_its_map_along() {
     let plain = render(&materials, &images, Vec3::Z, false);
     assert_eq!(render(&materials, &images, Vec3::Z, true), plain);
 }
+
+/// Protects both looks of a file: vertices have their offsets where maps are shown, and only there.
+#[test]
+fn offsets_belong_to_the_maps() {
+    let mut images = Vec::new();
+    let materials = [material(RED, &mut images), material(BLUE, &mut images)];
+    let mut mesh = squares();
+    mesh.parallax_offsets = vec![Vec3::new(0.0, 0.0, -0.25); 4];
+    mesh.parallax_offsets.resize(8, Vec3::ZERO);
+    let depth = |parallax| {
+        let interpretation = Interpretation { parallax, ..Interpretation::default() };
+        Scene::new(mesh.clone(), &materials, &images, interpretation).mesh().positions[0].z
+    };
+    assert_eq!([depth(false), depth(true)], [0.0, -0.25]);
+}

@@ -111,7 +111,8 @@ impl<'a> Sources<'a> {
         };
         let count = sources.position.count;
         let others = [&sources.normal, &sources.tangent, &sources.uv, &sources.uv1];
-        let others = others.into_iter().chain([&sources.color, &sources.parallax_offset, &sources.painted]).flatten();
+        let others =
+            others.into_iter().chain([&sources.color, &sources.parallax_offset, &sources.painted]).flatten();
         let different = others.chain(sources.influences.iter().flatten()).find(|a| a.count != count);
         if let Some(other) = different {
             let reason = format!("there are {count} positions, but {} has {}", other.pointer, other.count);

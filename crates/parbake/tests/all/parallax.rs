@@ -2,7 +2,8 @@
 
 use parbake::{BakeOptions, Parallax, Preset};
 use parbake::{Baked, EvaluateOptions, bake, demo_pair, evaluate, with_threads};
-use parbake_model::Model;
+use parbake_model::glam::Vec3;
+use parbake_model::{Model, TextureSlot};
 
 fn quick(parallax: Parallax) -> BakeOptions {
     BakeOptions {
@@ -47,12 +48,39 @@ fn maps_improve_the_look_whatever_the_number_of_threads() {
         let (better, worse) = (psnr(&with.model), psnr(&without.model));
         assert!(better > worse, "{background}: {better} {worse}");
     }
+    assert_fallback_is_a_bake(&high, &with, &without);
     let report = with.report.parallax_maps.unwrap();
     let [before, after] = report.misplaced.unwrap();
     assert!(after < before && report.cross_chart[1] <= report.cross_chart[0]);
     assert!(report.mean_square.iter().all(|[first, last]| last < first));
     let [exact, rounded] = report.rounding;
     assert!(exact > 0.0 && rounded < 1.1 * exact, "8 bits do: {exact} {rounded}");
+}
+
+/// Protects viewers without the maps: they show the bake without maps, vertex by vertex, with textures that show no less.
+fn assert_fallback_is_a_bake(high: &Model, with: &Baked, without: &Baked) {
+    let (model, plain) = (&with.model, &without.model);
+    let corners = |model: &Model| -> Vec<Vec3> {
+        model.mesh.triangles.iter().flatten().map(|&v| model.mesh.positions[v as usize]).collect()
+    };
+    assert_eq!(corners(model), corners(plain));
+    let material = &model.materials[0];
+    let report = with.report.fallback.as_ref().expect("there are other viewers");
+    let map = material.parallax.as_ref().expect("a map");
+    let side = |slot: Option<TextureSlot>| slot.map(|slot| model.images[slot.image].width);
+    // Of many triangles in a small texture: shifts are short, so it serves both.
+    assert!(report.side.is_none() && report.tried.len() == 3, "{report:?}");
+    assert_eq!([side(material.base_color_texture), side(map.base_color_texture)], [Some(64), None]);
+    let options = EvaluateOptions {
+        views: 6,
+        resolution: 96,
+        no_parallax: true,
+        no_flip: true,
+        ..EvaluateOptions::default()
+    };
+    let psnr = |low: &Model| evaluate(high, low, &options, &()).expect("it has an extent").mean.psnr;
+    let (fallback, plain) = (psnr(model), psnr(plain));
+    assert!(fallback > plain - 0.3, "{fallback} {plain}");
 }
 
 /// Protects textures from maps that only make up for a coarse one's blur: where high-poly and low-poly

@@ -1,7 +1,7 @@
 //! Parallax maps, written, read back and read from broken documents.
 
 use super::*;
-use crate::{encode_png, write_obj};
+use crate::{MeshCompression, WriteOptions, encode_png, write_obj};
 use parbake_model::{
     Basis, CutoutMap, DepthMap, Image, Material, Mesh, ParallaxMap, TextureSlot, UvTransform, Wrap,
 };
@@ -361,4 +361,40 @@ fn geometry_and_obj_have_no_maps() {
     assert_eq!((loaded.model.materials[0].parallax.as_ref(), loaded.warnings.len()), (None, 0));
     let error = write_obj(&folder.path().join("a.obj"), &model()).unwrap_err().to_string();
     assert!(error.contains("a parallax map") && error.contains(".glb"), "{error}");
+}
+
+/// Protects the surface that is cut: offsets come back to the bit, turn and grow with their node as positions do, stand
+/// on the grid of quantised positions, and go with a map that is left out.
+#[test]
+fn offsets_follow_their_positions() {
+    let mut model = tangent_model();
+    let offsets = [Vec3::new(0.1, -0.2, 0.3), Vec3::ZERO, Vec3::new(-0.7, 0.0, 0.01)];
+    model.mesh.parallax_offsets = offsets.to_vec();
+    assert_eq!(read_glb(&model).model.mesh.parallax_offsets, offsets);
+
+    let read = |document: &Value| {
+        let bytes = glb_of(&model, document);
+        read_gltf_bytes(Path::new("x.glb"), &bytes, &NoResources, &Limits::default()).unwrap()
+    };
+    let mut document = written(&model);
+    assert!(document["meshes"][0]["primitives"][0]["attributes"]["_PARALLAX_OFFSET"].is_u64());
+    document["nodes"][0]["rotation"] =
+        json!([0, 0, std::f32::consts::FRAC_1_SQRT_2, std::f32::consts::FRAC_1_SQRT_2]);
+    document["nodes"][0]["scale"] = json!([2, 2, 2]);
+    document["nodes"][0]["translation"] = json!([5, 6, 7]);
+    let turned = read(&document).model.mesh.parallax_offsets;
+    for (turned, offset) in turned.iter().zip(offsets) {
+        assert!(turned.distance(2.0 * Vec3::new(-offset.y, offset.x, offset.z)) < 1e-6, "{turned} {offset}");
+    }
+
+    let options = WriteOptions { mesh_compression: MeshCompression::Meshopt, ..WriteOptions::default() };
+    let (bytes, _) = glb_bytes_with(&model, &options).unwrap();
+    let loaded = read_gltf_bytes(Path::new("x.glb"), &bytes, &NoResources, &Limits::default()).unwrap();
+    for (read, offset) in loaded.model.mesh.parallax_offsets.iter().zip(offsets) {
+        assert!(read.distance(offset) < 1e-6, "{read} {offset}");
+    }
+
+    let mut document = written(&model);
+    document["materials"][0]["extensions"]["PARBAKE_materials_parallax"]["version"] = json!(3);
+    assert!(read(&document).model.mesh.parallax_offsets.is_empty());
 }

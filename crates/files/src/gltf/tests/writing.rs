@@ -18,6 +18,7 @@ fn model() -> Model {
         uvs: vec![Vec2::new(0.1, -0.7), Vec2::ONE, Vec2::X, Vec2::Y],
         uvs1: vec![Vec2::new(0.3, 0.9); 4],
         colors: vec![Vec4::splat(0.3), Vec4::ONE, Vec4::W, Vec4::ONE],
+        parallax_offsets: Vec::new(),
         triangles: vec![[0, 1, 2], [3, 2, 1]],
         triangle_materials: vec![0, 0],
     };
