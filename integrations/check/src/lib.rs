@@ -7,7 +7,8 @@
 //! Unity, Unreal  HLSL ── glslang ── SPIR-V ┘
 //! ```
 //!
-//! `shaders.rs` compiles, `interpreter.rs` executes, `operators.rs` is its arithmetic, and `numbers.rs` compares. There is nothing
+//! `shaders.rs` compiles, `interpreter.rs` executes, `operators.rs` is its arithmetic, `numbers.rs` compares, and
+//! `whole.rs` compiles the shaders that need an engine, with stand-ins for what the engine declares. There is nothing
 //! here but tests, so that naga is built for these alone.
 
 #[cfg(test)]
@@ -18,3 +19,5 @@ mod numbers;
 mod operators;
 #[cfg(test)]
 mod shaders;
+#[cfg(test)]
+mod whole;

@@ -72,7 +72,10 @@ pub(crate) fn glslang(language: &str, options: &[&str], source: &str) -> Option<
     let folder = tempfile::tempdir().expect("a folder for temporary files");
     let (input, output) = (folder.path().join("shader.frag"), folder.path().join("shader.spv"));
     std::fs::write(&input, source).expect("the folder can be written");
-    let command = Command::new(program()).arg("-V").args(options).arg("-o").arg(&output).arg(&input).output();
+    // HLSL is for Vulkan; of GLSL, OpenGL alone has uniforms with defaults.
+    let target: &[&str] = if options.contains(&"-G") { &[] } else { &["-V"] };
+    let command =
+        Command::new(program()).args(target).args(options).arg("-o").arg(&output).arg(&input).output();
     let ran = match command {
         Ok(ran) => ran,
         Err(error) => {
