@@ -39,11 +39,13 @@ def image_of(document, binary, info):
 
 def numbers_of(json_map):
     """Lines such as `ShiftScale0 = 0.2, 0.1, 0.1, 0.4`."""
-    parts = [("Shift", json_map)]
+    parts = [("Shift", json_map, 8)]
     if "cutout" in json_map:
-        parts.append(("Cutout", json_map["cutout"]))
-    for prefix, part in parts:
+        parts.append(("Cutout", json_map["cutout"], 12))
+    for prefix, part, count in parts:
         for key in ["scale", "offset"]:
+            if len(part[key]) != count:
+                sys.exit(f"a map breaks the format: it has not {count} scales and offsets")
             for i in range(0, len(part[key]), 4):
                 four = ", ".join(f"{x:.9g}" for x in part[key][i : i + 4])
                 yield f"{prefix}{key.capitalize()}{i // 4} = {four}"
