@@ -8,9 +8,8 @@ use bevy::gltf::{GltfMaterial, gltf};
 use bevy::mesh::UvChannel;
 use bevy::platform::collections::HashSet;
 use bevy::prelude::*;
-use std::mem;
 
-/// Lives as long as a file is loaded; there is one for each file.
+/// Bevy makes a copy for each file, which lives as long as the file is loaded.
 #[derive(Clone)]
 pub(crate) struct Handler {
     smooth_borders: bool,
@@ -119,10 +118,5 @@ impl GltfExtensionHandler for Handler {
             let handle = load_context.get_label_handle::<ParallaxMaterial>(of(material_label));
             entity.remove::<MeshMaterial3d<StandardMaterial>>().insert(MeshMaterial3d(handle));
         }
-    }
-
-    fn on_root(&mut self, _: &mut LoadContext<'_>, _: &gltf::Gltf, _: &bevy::gltf::GltfLoaderSettings) {
-        drop(mem::take(&mut self.textures));
-        self.labels.clear();
     }
 }

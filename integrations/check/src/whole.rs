@@ -169,3 +169,25 @@ fn unreal_s_node_compiles() {
     let source = read("hlsl/ParbakeParallax.hlsl") + &main;
     glslang("Unreal's node", &["-D", "-e", "main", "--amb", "--aml"], &source);
 }
+
+/// Protects readers that take the shader of the format page as it is.
+#[test]
+fn the_shader_of_the_format_page_compiles() {
+    let page = read("../docs/parallax_format.md");
+    let shader = page.split("```glsl\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    // What its last lines have in a comment is the fragment shader.
+    let (functions, main) = shader.split_once("// In the fragment shader:\n").unwrap();
+    let main: String = main.lines().map(|line| format!("{}\n", line.trim_start_matches("//"))).collect();
+    let source = format!(
+        "#version 310 es
+        precision highp float; precision highp int;
+        uniform sampler2D baseColorMap, normalMap;
+        in vec2 uv; in vec3 position, normal; in vec4 tangent; uniform vec3 eye; out vec4 shown;
+        {functions}
+        void main() {{
+            {main}
+            shown = color + bump.xyzz;
+        }}"
+    );
+    glslang("the format page", &["-G", "--amb", "--aml"], &source);
+}
