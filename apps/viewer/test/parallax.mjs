@@ -49,7 +49,7 @@ const MODELS = {
   } },
   'no cutout': { change: (_, map) => { delete map.cutout; } },
   'fades': { change: (_, map) => { map.fadeFootprint = 0.01; } },
-  'faded': { change: (_, map) => { map.fadeFootprint = 1e-6; } },
+  'faded': { reach: 0, change: (_, map) => { map.fadeFootprint = 1e-6; } },
   'own textures': { change: (json, map) => { Object.assign(map, { baseColorTexture: { index: 4 }, normalTexture: { index: 4 } }); } },
   'next version': { change: (_, map) => { map.version = 3; } },
   'too few numbers': { change: (_, map) => { map.scale.pop(); } },
