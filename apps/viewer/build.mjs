@@ -1,4 +1,5 @@
-// Builds dist/ from src/: the page's own scripts in app.js, three.js in three.js, its decoders as they come.
+// Builds dist/ from src/: the page's own scripts in app.js, three.js in three.js, its decoders as they come. And the small
+// view in reports in embed.js, three.js included.
 //   node build.mjs           builds
 //   node build.mjs --check   builds elsewhere and compares with dist/, byte for byte
 import * as esbuild from 'esbuild';
@@ -29,6 +30,13 @@ async function basisWorker() {
   return [...constants, transcoder, body.slice(body.indexOf('{') + 1, body.lastIndexOf('}'))].join('\n');
 }
 
+/** What a report has to say of three.js, which it contains. */
+function threeLicence() {
+  const all = fs.readFileSync(at('THIRD_PARTY_LICENSES.txt'), 'utf8');
+  const three = all.match(/^three\.js .*$/m)[0], [licence] = all.match(/^Permission is hereby granted[\s\S]*?SOFTWARE\.$/m);
+  return `/*\n${three}\n\n${licence}\n*/`;
+}
+
 async function build(out) {
   fs.rmSync(out, { recursive: true, force: true });
   const shared = {
@@ -44,6 +52,11 @@ async function build(out) {
     },
   };
   await esbuild.build({ ...shared, entryPoints: ['src/main.js'], outfile: path.join(out, 'app.js'), plugins: [apart] });
+  await esbuild.build({
+    ...shared, entryPoints: ['src/embed.js'], outfile: path.join(out, 'embed.js'), banner: { js: threeLicence() },
+    // The package of integrations/three has no three.js of its own.
+    alias: { three: at('node_modules', 'three') },
+  });
   await esbuild.build({ ...shared, entryPoints: ['src/style.css'], outfile: path.join(out, 'style.css') });
   fs.copyFileSync(at('src/index.html'), path.join(out, 'index.html'));
   for (const [name, from] of Object.entries(DECODERS)) {

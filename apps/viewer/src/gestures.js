@@ -2,9 +2,10 @@
 
 /**
  * `turn(dx, dy)` and `move(dx, dy)` are in CSS pixels, `zoom(factor, x, y)` about a point of the element.
- * One pointer turns; with shift, control or another button, or with two fingers, it moves.
+ * One pointer turns; with shift, control or another button, or with two fingers, it moves. The wheel zooms where
+ * `takesWheel()`.
  */
-export function listenToGestures(element, { turn, move, zoom }) {
+export function listenToGestures(element, { turn, move, zoom, takesWheel = () => true }) {
   const pointers = new Map();
   const middle = () => {
     const all = [...pointers.values()];
@@ -36,6 +37,7 @@ export function listenToGestures(element, { turn, move, zoom }) {
   element.addEventListener('pointercancel', release);
   element.addEventListener('contextmenu', (event) => event.preventDefault());
   element.addEventListener('wheel', (event) => {
+    if (!takesWheel()) return;
     event.preventDefault();
     const lines = event.deltaMode === 1 ? 16 : 1;
     zoom(Math.exp(Math.max(-120, Math.min(120, event.deltaY * lines)) * 0.0018), event.offsetX, event.offsetY);

@@ -33,7 +33,9 @@ mod write_options;
 pub use atomic::{write_atomically, write_streamed};
 pub use contents::{Contents, PictureFormat, StoredPicture};
 pub use error::{FileError, Place};
-pub use gltf::{glb_bytes, glb_bytes_with, read_gltf_bytes, write_glb, write_glb_with, write_lod_glb};
+pub use gltf::{
+    glb_bytes, glb_bytes_with, quick_glb_bytes, read_gltf_bytes, write_glb, write_glb_with, write_lod_glb,
+};
 pub use image_in::{decode_image, read_image};
 pub use image_out::{encode_png, encode_png16};
 pub use limits::Limits;

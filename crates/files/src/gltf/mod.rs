@@ -57,8 +57,7 @@ mod write_rig;
 
 pub(crate) use names::named_files;
 pub(crate) use pack::pack;
-pub(crate) use write::quick_glb_bytes;
-pub use write::{glb_bytes, glb_bytes_with, write_glb, write_glb_with, write_lod_glb};
+pub use write::{glb_bytes, glb_bytes_with, quick_glb_bytes, write_glb, write_glb_with, write_lod_glb};
 
 use crate::context::{Context, Textures};
 use crate::finish::finish;

@@ -82,7 +82,10 @@ pub fn glb_bytes_with(model: &Model, options: &WriteOptions) -> Result<(Vec<u8>,
 }
 
 /// As [`glb_bytes`], for one look at it: textures are encoded fast instead of small.
-pub(crate) fn quick_glb_bytes(model: &Model) -> Result<Vec<u8>, FileError> {
+///
+/// # Errors
+/// As [`glb_bytes`].
+pub fn quick_glb_bytes(model: &Model) -> Result<Vec<u8>, FileError> {
     let encode = |image: &Image, _: Purpose, _: &WriteOptions| {
         let bytes = encode_png(image)?;
         Ok(Encoded { bytes, format: TextureFormat::Png, psnr: None, reason: None })

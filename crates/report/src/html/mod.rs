@@ -5,7 +5,8 @@
 //!         └ scenes ┬ pictures ─ gallery ─────────────┤
 //!                  └ channels ───────────────────────┤
 //! report ─ loss_curve, tables, settings ─────────────┼─ page
-//! textures ─ uv_layout, textures, uv_check, uv_moves ─┘
+//! textures ─ uv_layout, textures, uv_check, uv_moves ─┤
+//! baked model ─ model_view ──────────────────────────┘
 //! ```
 //!
 //! `variants.rs` is a page of its own, about a comparison of parallax variants.
@@ -19,6 +20,7 @@ mod channels;
 mod figures;
 mod gallery;
 mod loss_curve;
+mod model_view;
 mod page;
 pub(crate) mod pictures;
 mod scenes;

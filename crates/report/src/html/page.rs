@@ -3,6 +3,7 @@
 use super::channels::{ChannelRow, channels};
 use super::gallery::gallery;
 use super::loss_curve::loss_curve;
+use super::model_view::{SCRIPT, model_view};
 use super::pictures::{AMPLIFIED, Side};
 use super::settings::{Used, settings};
 use super::tables;
@@ -11,7 +12,7 @@ use super::uv_check::uv_check;
 use super::uv_moves::uv_moves;
 use super::view_chart::view_chart;
 use crate::page::text::{bytes, change, count, decimal, duration, escape, verdict};
-use crate::page::{document, section};
+use crate::page::{document_with_script, section};
 use parbake::BakeError;
 use parbake::BakeReport;
 use parbake::{Baked, BeforeAndAfter, Comparison, Parallax, Shading};
@@ -45,6 +46,14 @@ pub fn page(
             lighting(compared.shading)
         ),
         &gallery(sides)?,
+    );
+    section(
+        &mut out,
+        "model",
+        "The model",
+        "Drag to turn it, use the wheel or two fingers to come closer, or choose it and use the arrow keys, + and −. Light \
+         comes from a room. Textures are shown with 1024 texels along a side at most.",
+        &model_view(&baked.model)?,
     );
     section(
         &mut out,
@@ -106,7 +115,7 @@ pub fn page(
             settings(&report.options, report.work, Used::of(report))
         ),
     );
-    Ok(document(&name, &out))
+    Ok(document_with_script(&name, &out, SCRIPT))
 }
 
 /// How pictures and figures are lit.

@@ -14,6 +14,6 @@ mod uv_layout;
 
 pub use axes::Axes;
 pub use base64::encode as base64;
-pub use document::{document, section};
+pub use document::{document, document_with_script, section};
 pub use picture::{Embedded, amplified_difference, embed, embed_rgb};
 pub use uv_layout::{UvLayout, uv_layout};
