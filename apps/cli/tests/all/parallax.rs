@@ -120,7 +120,7 @@ fn a_bake_writes_maps_that_are_read_again() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     demo_pair(folder);
-    let arguments = ["bake", "demo_high.glb", "demo_low.glb", "-o", "deep.glb", "-q", "--preset", "fast"];
+    let arguments = ["bake", "demo_high.glb", "demo_low.glb", "-o", "deep.glb", "-q"];
     let maps =
         ["--parallax", "tangent", "--parallax-size", "16", "--cutout-size", "32", "--json", "deep.json"];
     run(folder, &[&arguments[..], &maps, &SMALL].concat());

@@ -223,7 +223,7 @@ fn strict_wants_all_textures() {
     let high = format!("mtllib high.mtl\n{square}usemtl m\nf 1/1 2/2 3/3 4/4\n");
     fs::write(folder.join("high.obj"), high).unwrap();
     fs::write(folder.join("low.obj"), format!("{square}f 1/1 2/2 3/3 4/4\n")).unwrap();
-    let bake = [&["bake", "high.obj", "low.obj", "-o", "a.glb", "--preset", "fast"][..], &SMALL].concat();
+    let bake = [&["bake", "high.obj", "low.obj", "-o", "a.glb"][..], &SMALL].concat();
     let compress = ["compress", "high.obj", "-o", "b.glb", "--texture-size", "16"];
     assert_eq!(refusal(folder, &bake).0, Some(0));
     fs::remove_file(folder.join("a.glb")).unwrap();
@@ -266,7 +266,7 @@ fn normal_maps_can_point_down() {
 fn the_demo_draws_its_pictures() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let demo = ["demo", "-o", "out", "--pictures", "pictures", "-q", "--preset", "fast"];
+    let demo = ["demo", "-o", "out", "--pictures", "pictures", "-q"];
     run(folder, &[&demo[..], &SMALL].concat());
     let file = fs::read(folder.join("pictures/demo.webp")).unwrap();
     assert!(file.len() < 300_000 && file.starts_with(b"RIFF"), "{} bytes", file.len());

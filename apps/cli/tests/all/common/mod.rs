@@ -9,7 +9,8 @@ use std::sync::OnceLock;
 use tempfile::TempDir;
 
 /// Options with which a bake takes a fraction of a second.
-pub const SMALL: [&str; 8] = ["--texture-size", "64", "--views", "12", "--view-size", "64", "--rounds", "1"];
+pub const SMALL: [&str; 10] =
+    ["--texture-size", "64", "--preset", "fast", "--views", "12", "--view-size", "64", "--rounds", "1"];
 
 /// The command in this folder.
 pub fn parbake(folder: &Path) -> Command {
