@@ -38,7 +38,8 @@ def write_glb(path, document, binary):
     """The opposite of read_glb."""
     text = json.dumps(document, ensure_ascii=False, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)
-    chunks = b"".join(struct.pack("<I4s", len(data), kind) + data for kind, data in [(JSON_CHUNK, text), (BINARY_CHUNK, binary)])
+    parts = [(JSON_CHUNK, text), (BINARY_CHUNK, binary + bytes(-len(binary) % 4))]
+    chunks = b"".join(struct.pack("<I4s", len(data), kind) + data for kind, data in parts)
     Path(path).write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks)
 
 
@@ -95,8 +96,8 @@ def vectors_of(document, binary, index):
 
 
 def with_maps_vertices(document, binary):
-    """The file with offsets added to positions, and with the extension's textures in the material's place. New positions
-    go behind all other bytes, since primitives without maps may share the old ones."""
+    """The file with offsets added to positions, and with the extension's textures in the material's place. New
+    positions go behind all other bytes, since primitives without maps may share the old ones."""
     document = json.loads(json.dumps(document))
     materials = document.get("materials", [])
     for material in materials:
