@@ -23,9 +23,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 const USAGE: &str =
-    "usage: show FILE.glb [--picture OUT.png] [--size N] [--from X,Y,Z] [--off] [--hard] [--msaa-off] [--headlight]
+    "usage: show FILE.glb [--picture OUT.png] [--size N] [--from X,Y,Z] [--box X,Y,Z,X,Y,Z] [--off] [--hard] [--msaa-off] [--headlight]
             [--prepass] [--deferred]
   --from     where the camera stands, seen from the model's middle
+  --box      two corners of the box that it looks at, for the same view of two models; by default the model's
   --off      without the maps, as viewers show the file that do not know them
   --hard     borders of cutouts are not smooth
   --msaa-off one sample a pixel
@@ -45,12 +46,19 @@ struct Options {
     picture: Option<PathBuf>,
     size: u32,
     from: Vec3,
+    looked_at: Option<[Vec3; 2]>,
     is_off: bool,
     is_hard: bool,
     is_msaa_off: bool,
     is_headlight: bool,
     is_prepass: bool,
     is_deferred: bool,
+}
+
+/// So many numbers, with commas between them.
+fn numbers<const N: usize>(text: &str) -> Option<[f32; N]> {
+    let numbers: Result<Vec<f32>, _> = text.split(',').map(str::parse).collect();
+    numbers.ok()?.try_into().ok()
 }
 
 impl Options {
@@ -60,6 +68,7 @@ impl Options {
             picture: None,
             size: 512,
             from: Vec3::new(1.0, 0.6, 2.0),
+            looked_at: None,
             is_off: false,
             is_hard: false,
             is_msaa_off: false,
@@ -72,9 +81,10 @@ impl Options {
             match argument.as_str() {
                 "--picture" => options.picture = Some(arguments.next()?.into()),
                 "--size" => options.size = arguments.next()?.parse().ok()?,
-                "--from" => {
-                    let numbers: Result<Vec<f32>, _> = arguments.next()?.split(',').map(str::parse).collect();
-                    options.from = Vec3::from_array(numbers.ok()?.try_into().ok()?);
+                "--from" => options.from = Vec3::from_array(numbers(&arguments.next()?)?),
+                "--box" => {
+                    let [a, b, c, d, e, f] = numbers(&arguments.next()?)?;
+                    options.looked_at = Some([Vec3::new(a, b, c), Vec3::new(d, e, f)]);
                 }
                 "--off" => options.is_off = true,
                 "--hard" => options.is_hard = true,
@@ -191,12 +201,13 @@ fn frame_all(
     let [low, high] = corners.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], corner| {
         [low.min(corner), high.max(corner)]
     });
+    shown.bottom = Vec3::new((low.x + high.x) / 2.0, low.y, (low.z + high.z) / 2.0);
+    let [low, high] = options.looked_at.unwrap_or([low, high]);
     let (middle, radius) = ((low + high) / 2.0, (high - low).max_element() / 2.0);
     let eye = Transform::from_translation(middle + options.from.normalize() * radius * 3.5);
     for mut transform in &mut camera {
         *transform = eye.looking_at(middle, Vec3::Y);
     }
-    shown.bottom = Vec3::new(middle.x, low.y, middle.z);
     shown.radius = radius;
 }
 

@@ -1,5 +1,6 @@
 //! The extension's JSON, version 2: read and checked. A map that breaks a rule is left out as a whole.
 
+use bevy::math::{Affine2, Vec2};
 use serde_json::Value;
 use std::fmt::{Display, Formatter};
 
@@ -30,9 +31,20 @@ pub struct ParallaxJson {
     /// The cutout's texture, scales and offsets.
     pub cutout: Option<(usize, [f32; 12], [f32; 12])>,
     /// A texture instead of the material's.
-    pub base_color_texture: Option<usize>,
+    pub base_color_texture: Option<OwnTexture>,
     /// A texture instead of the material's.
-    pub normal_texture: Option<usize>,
+    pub normal_texture: Option<OwnTexture>,
+}
+
+/// A texture of the extension's own, and where it is fetched.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OwnTexture {
+    /// Index of the texture.
+    pub index: usize,
+    /// The set of coordinates.
+    pub tex_coord: u64,
+    /// What is done to the coordinates.
+    pub transform: Affine2,
 }
 
 /// Why a map is left out.
@@ -68,6 +80,23 @@ fn index(info: Option<&Value>) -> Option<usize> {
     info?.get("index")?.as_u64().and_then(|index| usize::try_from(index).ok())
 }
 
+fn own_texture(info: Option<&Value>) -> Option<OwnTexture> {
+    let index = index(info)?;
+    let transform = info?.pointer("/extensions/KHR_texture_transform");
+    let pair = |key: &str, otherwise: f32| {
+        let at =
+            |i: usize| transform.and_then(|t| t.get(key)?.get(i)?.as_f64()).map_or(otherwise, |x| x as f32);
+        Vec2::new(at(0), at(1))
+    };
+    let angle = transform.and_then(|t| t.get("rotation")?.as_f64()).unwrap_or_default() as f32;
+    let tex_coord = |json: Option<&Value>| json?.get("texCoord")?.as_u64();
+    Some(OwnTexture {
+        index,
+        tex_coord: tex_coord(transform).or(tex_coord(info)).unwrap_or(0),
+        transform: Affine2::from_scale_angle_translation(pair("scale", 1.0), -angle, pair("offset", 0.0)),
+    })
+}
+
 fn numbers<const N: usize>(list: Option<&Value>) -> Result<[f32; N], ParallaxFault> {
     let read = |value: &Value| value.as_f64().map(|x| x as f32).filter(|x| x.is_finite());
     let list: Option<Vec<f32>> =
@@ -100,8 +129,8 @@ impl ParallaxJson {
             limit: or("limit", 0.25).filter(|&x| x > 0.0 && x <= 1.0).ok_or(ParallaxFault::Limit)?,
             fade_footprint: or("fadeFootprint", NO_FADE).filter(|&x| x > 0.0).ok_or(ParallaxFault::Fade)?,
             cutout,
-            base_color_texture: index(json.get("baseColorTexture")),
-            normal_texture: index(json.get("normalTexture")),
+            base_color_texture: own_texture(json.get("baseColorTexture")),
+            normal_texture: own_texture(json.get("normalTexture")),
         })
     }
 }
@@ -125,6 +154,21 @@ mod tests {
         assert_eq!((map.texture, map.limit, map.scale[7], map.offset[7]), (2, 0.25, 8.0, 1.0));
         assert_eq!(map.fade_footprint, NO_FADE);
         assert_eq!(map.cutout, Some((3, [1.0; 12], [0.5; 12])));
+    }
+
+    /// Protects files whose own textures lie elsewhere than the material's.
+    #[test]
+    fn own_textures_have_their_own_coordinates() {
+        let mut json = example();
+        json["normalTexture"] = json!({ "index": 5 });
+        json["baseColorTexture"] = json!({ "index": 4, "texCoord": 1, "extensions": {
+            "KHR_texture_transform": { "scale": [2, 4], "offset": [0.5, 0.25] },
+        } });
+        let map = ParallaxJson::read(&json).unwrap();
+        let (color, normal) = (map.base_color_texture.unwrap(), map.normal_texture.unwrap());
+        assert_eq!((color.index, color.tex_coord), (4, 1));
+        assert_eq!(color.transform.transform_point2(Vec2::new(0.25, 0.5)), Vec2::new(1.0, 2.25));
+        assert_eq!(normal, OwnTexture { index: 5, tex_coord: 0, transform: Affine2::IDENTITY });
     }
 
     /// Protects viewers from maps that they would show wrong.

@@ -41,16 +41,23 @@ pub(crate) fn prepare(mut materials: ResMut<Assets<ParallaxMaterial>>, mut image
     }
 }
 
-/// An image of so many layers, one below the other, as a linear array. The rows of a layer follow each other in memory.
-fn make_data(image: &mut Image, layers: u32) -> Result<(), String> {
-    let format = image.texture_descriptor.format.remove_srgb_suffix();
+/// Whether an image has so many layers of four channels, one below the other.
+pub(crate) fn check(image: &Image, layers: u32) -> Result<(), String> {
+    let format = image.texture_descriptor.format;
     if format.components() != 4 {
         return Err(format!("an image of it has the format {format:?}, which has not four channels"));
     }
-    // Checked before anything is changed, since the image may be a picture of the material as well.
     if !image.height().is_multiple_of(layers) || image.texture_descriptor.size.depth_or_array_layers != 1 {
         return Err(format!("an image of {} rows has no {layers} layers of one height", image.height()));
     }
+    Ok(())
+}
+
+/// An image of so many layers, one below the other, as a linear array. The rows of a layer follow each other in memory.
+fn make_data(image: &mut Image, layers: u32) -> Result<(), String> {
+    // Before anything is changed, since the image may be a picture of the material as well.
+    check(image, layers)?;
+    let format = image.texture_descriptor.format.remove_srgb_suffix();
     image.texture_descriptor.format = format;
     if format == TextureFormat::Rgba16Unorm {
         // Not every GPU filters numbers of 16 bits, and 8 are what Parbake writes.

@@ -4,7 +4,8 @@
 //! which are Bevy's `StandardMaterial` with a [`ParallaxExtension`]. Lights, shadows, skins and instances go on as they
 //! are.
 //!
-//! `format.rs` reads the extension's JSON, `loader.rs` is called by Bevy's glTF loader, `images.rs` makes the images of
+//! `format.rs` reads the extension's JSON, `loader.rs` is called by Bevy's glTF loader, `offsets.rs`
+//! moves vertices to where the maps have them, `images.rs` makes the images of
 //! numbers what shaders want, `material.rs` is the material. `parallax.wgsl` has the formulas, `parallax_seen.wgsl`
 //! what both passes do with them, `parallax_material.wgsl` and `parallax_prepass.wgsl` are the passes.
 
@@ -12,11 +13,13 @@ mod format;
 mod images;
 mod loader;
 mod material;
+mod offsets;
 
-pub use format::{NAME, ParallaxFault, ParallaxJson};
+pub use format::{NAME, OwnTexture, ParallaxFault, ParallaxJson};
 pub use material::{ParallaxExtension, ParallaxMaterial, ParallaxNumbers};
 
 use bevy::asset::embedded_asset;
+use bevy::gltf::GltfPlugin;
 use bevy::gltf::extensions::GltfExtensionHandlers;
 use bevy::prelude::*;
 use bevy::shader::load_shader_library;
@@ -48,6 +51,8 @@ impl Plugin for ParallaxPlugin {
             warn!("parallax maps are not loaded: ParallaxPlugin was added before Bevy's own plug-ins");
             return;
         };
-        handlers.0.write_blocking().push(Box::new(loader::Handler::new(self.smooth_borders)));
+        let default = app.get_added_plugins::<GltfPlugin>().first().map(|gltf| gltf.convert_coordinates);
+        let handler = loader::Handler::new(self.smooth_borders, default.unwrap_or_default().rotate_meshes);
+        handlers.0.write_blocking().push(Box::new(handler));
     }
 }

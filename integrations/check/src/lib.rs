@@ -1,5 +1,5 @@
-//! Tests of the shaders in `integrations/`: each is compiled, and its functions are compared with those of the CPU
-//! renderer, without a GPU.
+//! Tests of `integrations/`: each shader is compiled, and its functions are compared with those of the CPU renderer,
+//! without a GPU.
 //!
 //! ```text
 //! Bevy   WGSL ─────────────────────────┐
@@ -8,9 +8,11 @@
 //! ```
 //!
 //! `shaders.rs` compiles, `interpreter.rs` executes, `operators.rs` is its arithmetic, `numbers.rs` compares, and
-//! `whole.rs` compiles the shaders that need an engine, with stand-ins for what the engine declares. There is nothing
-//! here but tests, so that naga is built for these alone.
+//! `whole.rs` compiles the shaders that need an engine, with stand-ins for what the engine declares. `extract.rs` runs
+//! the tests of the script for importers. There is nothing here but tests, so that naga is built for these alone.
 
+#[cfg(test)]
+mod extract;
 #[cfg(test)]
 mod interpreter;
 #[cfg(test)]

@@ -3,37 +3,55 @@
 @tool
 extends GLTFDocumentExtension
 
+const GltfBytes := preload("gltf_bytes.gd")
 const ParallaxMap := preload("parallax_map.gd")
+const ParallaxVertices := preload("parallax_vertices.gd")
 const FOLDER := "res://addons/parbake_parallax"
 
 var _shaders := {}
-
-
-func _import_preflight(_state: GLTFState, extensions: PackedStringArray) -> Error:
-	return OK if extensions.has(ParallaxMap.NAME) else ERR_SKIP
 
 
 func _get_supported_extensions() -> PackedStringArray:
 	return [ParallaxMap.NAME]
 
 
-func _import_post_parse(state: GLTFState) -> Error:
-	var materials: Array[Material] = state.get_materials()
-	var made := {}
+# Before Godot parses the file: what it is to read from other places than it would.
+func _import_preflight(state: GLTFState, extensions: PackedStringArray) -> Error:
+	if not extensions.has(ParallaxMap.NAME):
+		return ERR_SKIP
+	var maps := {}
 	var described: Array = state.json.get("materials", [])
-	for i in mini(described.size(), materials.size()):
+	for i in described.size():
 		var json: Variant = described[i].get("extensions", {}).get(ParallaxMap.NAME)
 		if json is Dictionary:
-			var reason := ParallaxMap.fault(json)
-			var result: Variant = reason
-			if reason.is_empty():
-				result = _made(state, json, materials[i] as BaseMaterial3D)
-			if result is Material:
-				made[materials[i]] = result
-				materials[i] = result
+			var map: Variant = _map(state, described[i], json)
+			if map is Dictionary:
+				maps[i] = map
+				_put_textures(described[i], json)
 			else:
 				push_warning("The parallax map of material \"%s\" was left out: %s."
-						% [described[i].get("name", ""), result])
+						% [described[i].get("name", ""), map])
+	# Without its map a material's primitives stay where they are.
+	ParallaxVertices.move(state, maps)
+	state.set_additional_data(ParallaxMap.NAME, maps)
+	return OK
+
+
+func _import_post_parse(state: GLTFState) -> Error:
+	var maps: Dictionary = state.get_additional_data(ParallaxMap.NAME)
+	var materials: Array[Material] = state.get_materials()
+	var made := {}
+	for i: int in maps:
+		if i >= materials.size():
+			# Godot was told to import no materials.
+			break
+		var from := materials[i] as BaseMaterial3D
+		if from == null:
+			push_warning("The parallax map of material \"%s\" was left out: it is not one of Godot's own."
+					% materials[i].resource_name)
+			continue
+		made[from] = _made(maps[i], from)
+		materials[i] = made[from]
 	state.set_materials(materials)
 	# Meshes have their materials by now.
 	for gltf_mesh: GLTFMesh in state.get_meshes():
@@ -49,33 +67,49 @@ func _import_post_parse(state: GLTFState) -> Error:
 	return OK
 
 
-# The material with the map, or a sentence that says why there is none.
-func _made(state: GLTFState, json: Dictionary, from: BaseMaterial3D) -> Variant:
-	if from == null:
-		return "the material is not one of Godot's own"
-	if from.shading_mode == BaseMaterial3D.SHADING_MODE_UNSHADED:
+# The map's JSON and textures, or a sentence that says why there is none.
+func _map(state: GLTFState, described: Dictionary, json: Dictionary) -> Variant:
+	var reason := ParallaxMap.fault(json)
+	if not reason.is_empty():
+		return reason
+	if described.get("extensions", {}).has("KHR_materials_unlit"):
 		return "the material is not lit, and this reads lit ones"
-	var albedo_texture := _texture(state, json.get("baseColorTexture"), from.albedo_texture)
-	var normal_texture := _texture(state, json.get("normalTexture"), from.normal_texture)
-	if albedo_texture == null and normal_texture == null:
+	var has_color: bool = described.get("pbrMetallicRoughness", {}).has("baseColorTexture")
+	var has_any: bool = has_color or described.has("normalTexture")
+	if not has_any and not json.has("baseColorTexture") and not json.has("normalTexture"):
 		return "there is neither a base colour nor a normal texture to shift"
-	var images := {"shift_map": _data_texture(state, json.texture, ParallaxMap.SHIFT_LAYERS)}
+	var textures := {"shift_map": _data_texture(state, json.texture, ParallaxMap.SHIFT_LAYERS)}
 	if json.has("cutout"):
-		images["cutout_map"] = _data_texture(state, json.cutout.texture, ParallaxMap.CUTOUT_LAYERS)
-	if images.values().has(null):
+		textures["cutout_map"] = _data_texture(state, json.cutout.texture, ParallaxMap.CUTOUT_LAYERS)
+	if textures.values().has(null):
 		return "an image of it cannot be read"
+	return {"json": json, "textures": textures}
 
+
+# The extension's textures take the place of the material's, which are for viewers that do not know
+# it: so Godot reads them, as colours and as normals.
+func _put_textures(described: Dictionary, json: Dictionary) -> void:
+	if json.has("baseColorTexture"):
+		if not described.has("pbrMetallicRoughness"):
+			described["pbrMetallicRoughness"] = {}
+		described.pbrMetallicRoughness["baseColorTexture"] = json.baseColorTexture
+	if json.has("normalTexture"):
+		var normal: Dictionary = json.normalTexture.duplicate()
+		# The strength stays that of the material.
+		normal["scale"] = described.get("normalTexture", {}).get("scale", 1.0)
+		described["normalTexture"] = normal
+
+
+func _made(map: Dictionary, from: BaseMaterial3D) -> ShaderMaterial:
+	var json: Dictionary = map.json
 	var material := ShaderMaterial.new()
 	material.resource_name = from.resource_name
 	material.shader = _shader(from, json.has("cutout"))
 	material.render_priority = from.render_priority
 	ParallaxMap.set_numbers(material, json)
-	for parameter: String in images:
-		material.set_shader_parameter(parameter, images[parameter])
+	for parameter: String in map.textures:
+		material.set_shader_parameter(parameter, map.textures[parameter])
 	_set_material(material, from)
-	material.set_shader_parameter("albedo_texture", albedo_texture)
-	material.set_shader_parameter("normal_texture", normal_texture)
-	material.set_shader_parameter("normal_scale", from.normal_scale if normal_texture else 0.0)
 	return material
 
 
@@ -86,6 +120,9 @@ func _set_material(material: ShaderMaterial, from: BaseMaterial3D) -> void:
 		"uv_scale": Vector2(from.uv1_scale.x, from.uv1_scale.y),
 		"uv_offset": Vector2(from.uv1_offset.x, from.uv1_offset.y),
 		"albedo": from.albedo_color,
+		"albedo_texture": from.albedo_texture,
+		"normal_texture": from.normal_texture,
+		"normal_scale": from.normal_scale if from.normal_texture else 0.0,
 		"alpha_cutoff": from.alpha_scissor_threshold if is_mask else 0.0,
 		"metallic": from.metallic,
 		"metallic_texture": from.metallic_texture,
@@ -119,58 +156,11 @@ func _shader(from: BaseMaterial3D, has_cutout: bool) -> Shader:
 	return _shaders[key]
 
 
-# A texture of the extension's own, instead of the material's.
-func _texture(state: GLTFState, info: Variant, otherwise: Texture2D) -> Texture2D:
-	if not info is Dictionary or not info.has("index"):
-		return otherwise
-	var textures := state.get_textures()
-	var images := state.get_images()
-	var index := int(info.index)
-	if index < 0 or index >= textures.size():
-		return otherwise
-	var image: int = textures[index].src_image
-	return images[image] if image >= 0 and image < images.size() else otherwise
-
-
 # An image of numbers. It is read from the file, since Godot's importer may compress what it takes
 # for a picture.
 func _data_texture(state: GLTFState, info: Dictionary, layers: int) -> ImageTexture:
-	var textures: Array = state.json.get("textures", [])
-	var described: Array = state.json.get("images", [])
-	var index := int(info.index)
-	if index >= textures.size() or not textures[index].has("source"):
-		return null
-	var source := int(textures[index].source)
-	if source < 0 or source >= described.size():
-		return null
-	var image := _decoded(_bytes(state, described[source]))
+	var image := GltfBytes.image(state, int(info.index))
 	if image == null or image.get_height() % layers != 0:
 		return null
 	image.convert(Image.FORMAT_RGBA8)
 	return ImageTexture.create_from_image(image)
-
-
-func _bytes(state: GLTFState, described: Dictionary) -> PackedByteArray:
-	if described.has("bufferView"):
-		var view: GLTFBufferView = state.get_buffer_views()[int(described.bufferView)]
-		var buffer: PackedByteArray = state.get_buffers()[view.buffer]
-		return buffer.slice(view.byte_offset, view.byte_offset + view.byte_length)
-	var uri: String = described.get("uri", "")
-	if uri.begins_with("data:"):
-		return Marshalls.base64_to_raw(uri.get_slice(",", 1))
-	return FileAccess.get_file_as_bytes(state.base_path.path_join(uri.uri_decode()))
-
-
-# PNG, JPEG or WebP, told apart by their first bytes.
-func _decoded(bytes: PackedByteArray) -> Image:
-	if bytes.size() < 12:
-		return null
-	var image := Image.new()
-	var error := ERR_FILE_UNRECOGNIZED
-	if bytes[0] == 0x89:
-		error = image.load_png_from_buffer(bytes)
-	elif bytes[0] == 0xff:
-		error = image.load_jpg_from_buffer(bytes)
-	elif bytes[0] == 0x52:
-		error = image.load_webp_from_buffer(bytes)
-	return image if error == OK else null
