@@ -50,16 +50,7 @@ fn formats_are_options_and_are_reported() {
         let output = run(folder, &[&arguments[..], more].concat());
         (fs::read(folder.join(name)).unwrap(), text(&output.stderr))
     };
-    let reports = [
-        "--options",
-        "formats.json",
-        "--threads",
-        "1",
-        "--json",
-        "1.json",
-        "--report",
-        "1.html",
-    ];
+    let reports = ["--options", "formats.json", "--threads", "1", "--json", "1.json", "--report", "1.html"];
     let (one, said) = bake("1.glb", &[&SMALL[..], &reports].concat());
     assert!(one == bake("2.glb", &["--options", "1.json", "--threads", "2"]).0);
     assert!(said.contains("as KTX2 (ETC1S)") && said.contains("positions within"), "{said}");
