@@ -52,8 +52,12 @@ def map_of(material):
 def image_of(document, binary, info):
     """The bytes of a texture's image, and how its file name ends."""
     texture = document["textures"][info["index"]]
-    basis = texture.get("extensions", {}).get("KHR_texture_basisu", texture)
-    image = document["images"][basis["source"]]
+    extensions = texture.get("extensions", {})
+    named = [extensions.get("KHR_texture_basisu"), extensions.get("EXT_texture_webp"), texture]
+    source = next((holder["source"] for holder in named if holder and "source" in holder), None)
+    if source is None:
+        sys.exit(f"texture {info['index']} has no image that is known here")
+    image = document["images"][source]
     if "bufferView" not in image:
         sys.exit(f"{image.get('uri')} lies beside the file: only images inside of a GLB are taken out")
     view = document["bufferViews"][image["bufferView"]]

@@ -5,7 +5,7 @@ import {
 import { byId } from './dom.js';
 import { listenToGestures } from './gestures.js';
 import { View } from './view.js';
-import { ParallaxPlugin, parallaxMaterials, setParallax } from '../../../integrations/three/src/index.js';
+import { ParallaxPlugin, followOffsets, parallaxMaterials, setParallax } from '../../../integrations/three/src/index.js';
 
 const RADIANS_PER_PIXEL = 0.01, STEP = 0.12;
 const KEYS = {
@@ -36,6 +36,7 @@ async function start(canvas) {
   showWhole();
 
   const wire = new MeshBasicMaterial({ wireframe: true, transparent: true, opacity: 0.5, depthWrite: false });
+  const wireFollows = followOffsets(wire);
   let isWanted = false;
   const draw = () => {
     isWanted = false;
@@ -77,7 +78,7 @@ async function start(canvas) {
   byId('view-whole').addEventListener('click', () => { showWhole(); ask(); });
   const maps = byId('view-parallax');
   maps.closest('label').hidden = !parallaxMaterials(root).length;
-  maps.addEventListener('change', () => { setParallax(root, maps.checked); ask(); });
+  maps.addEventListener('change', () => { setParallax(root, maps.checked); wireFollows(maps.checked); ask(); });
   new ResizeObserver(ask).observe(canvas);
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', ask);
   for (const control of document.querySelectorAll('#view-controls input, #view-controls button')) control.disabled = false;

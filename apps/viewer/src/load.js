@@ -111,6 +111,9 @@ export class Model {
   /** Shows parallax maps and their cutouts, or the plain materials. */
   setParallax(isOn) { setParallax(this.root, isOn); }
 
+  /** Whether maps are shown. */
+  get showsMaps() { return this.parallax.some((material) => material.parallax.enabled); }
+
   /** Whether borders are drawn with their coverage as alpha. */
   get isCut() { return this.parallax.some((material) => material.parallax.enabled && material.alphaToCoverage); }
 

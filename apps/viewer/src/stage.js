@@ -10,6 +10,7 @@ import { CHANNELS, SHADED, show, turnStudio } from './materials.js';
 import { UvLayout } from './uv_layout.js';
 import { View } from './view.js';
 import { psnr } from './psnr.js';
+import { followOffsets } from '../../../integrations/three/src/index.js';
 
 /** Pixels of a picture, at most: what is more is scaled up by the browser. */
 const MOST_PIXELS = 9e6;
@@ -35,6 +36,9 @@ export class Stage {
       blendSrcAlpha: OneFactor, blendDstAlpha: ZeroFactor,
     });
     this.cover.onBeforeCompile = (shader) => { shader.fragmentShader = 'void main() { gl_FragColor = vec4(1.0); }'; };
+    // Drawn where something is cut, so always where maps are shown.
+    followOffsets(this.cover);
+    this.wireFollows = followOffsets(this.wire);
     this.targets = [null, null];
     this.measured = [null, null];
     this.levels = null;
@@ -120,6 +124,7 @@ export class Stage {
     }
     if (!wireframe) return;
     this.wire.color.set(ink);
+    this.wireFollows(owners.some((model) => model.showsMaps));
     this.over(scene, camera, this.wire);
   }
 

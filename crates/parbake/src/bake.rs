@@ -9,9 +9,9 @@
 //! ```
 
 use crate::baseline::other_baseline;
-use crate::budget::{at_the_end, check_budget, stage_weights};
+use crate::budget::{at_the_end, check_budget, shares, stage_weights};
 use crate::error::BakeError;
-use crate::fallback::fit_fallback;
+use crate::fallback::{Fallback, fit_fallback};
 use crate::geometry::{Geometry, move_geometry};
 use crate::importance::importances;
 use crate::look::{Look, add_fallback};
@@ -227,7 +227,8 @@ fn run(
     let references = training_views(&order, &scope);
     clock.lap(Stage::Reference);
     let for_fallback = references.clone().filter(|_| options.has_fallback());
-    let textures = fit_views(&order, subject, references, map, &scope, &mut clock)?;
+    let for_textures = scope.share(if for_fallback.is_some() { shares::SHIFTED_TEXTURES } else { 1.0 });
+    let textures = fit_views(&order, subject, references, map, &for_textures, &mut clock)?;
     let FittedTextures { fitted, views, samples, parallax, parallax_report } = textures;
     let LowPoly { written, map: texels, .. } = &prepared;
     clock.lap(Stage::Solve);
@@ -236,11 +237,18 @@ fn run(
     let mut fallback = None;
     if let Some(references) = for_fallback {
         let subject = (low, &look.kinds[..]);
-        let (maps, report) = fit_fallback(&order, subject, &model, references, &scope, &mut clock)?;
+        let Fallback { maps, report } =
+            fit_fallback(&order, subject, &model, references, &scope, &mut clock)?;
         add_fallback(&mut model, maps);
-        fallback = Some(report);
+        clock.lap(Stage::Solve);
+        if report.is_none() {
+            warnings.tell([format!(
+                "{}: there was no time for textures of viewers without parallax maps; these show the maps' textures",
+                low.name
+            )]);
+        }
+        fallback = report;
     }
-    clock.lap(Stage::Solve);
     let is_whole = high.is_whole_material;
     let unfit = if is_whole { look.extensions.lost.clone() } else { lost(high.extensions.materials()) };
     warnings.tell(unfit.into_iter().map(|text| format!("{}: {text}", high.name)));

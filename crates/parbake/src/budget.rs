@@ -73,7 +73,8 @@ pub(crate) fn stage_weights(options: &BakeOptions) -> Vec<(Stage, f64)> {
     let mut stages = Vec::new();
     if let Some(shape) = options.shape_plan() {
         let pixels = (shape.views * shape.view_size * shape.view_size) as f64 / 1e6;
-        stages.push((Stage::Shape, 0.003 * shape.fit.steps as f64 * pixels.max(0.1)));
+        let growth = options.growth_plan(None).map_or(0, |plan| plan.fit.steps);
+        stages.push((Stage::Shape, 0.003 * (shape.fit.steps + growth) as f64 * pixels.max(0.1)));
     } else if algorithm && options.uv == UvMode::Keep {
         stages.push((Stage::Shape, 60.0));
     }
@@ -105,6 +106,8 @@ pub(crate) mod shares {
     pub const REFERENCE: f64 = 0.25;
     /// Of fitting parallax map and cutout.
     pub const PARALLAX: f64 = 0.35;
+    /// Of the textures, where others for viewers without parallax maps follow.
+    pub const SHIFTED_TEXTURES: f64 = 0.75;
 }
 
 #[cfg(test)]

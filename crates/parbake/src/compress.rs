@@ -309,6 +309,7 @@ fn textured(mut model: Model, solved: &SurfaceTexture) -> Model {
     let pixels = solved.texture.texels.iter().map(texel).collect();
     model.mesh.colors.clear();
     model.mesh.uvs1.clear();
+    model.mesh.parallax_offsets.clear();
     let slot = TextureSlot { image: 0, wrap: [Wrap::Clamp; 2], ..TextureSlot::default() };
     model.materials =
         vec![Material { name: model.name.clone(), base_color_texture: Some(slot), ..Material::default() }];

@@ -17,7 +17,7 @@ use crate::textures::{Subject, fit_views};
 use parbake_image::MapKind;
 use parbake_image::display::Display;
 use parbake_model::{Image, Model};
-use parbake_progress::{Clock, ProgressScope, Watcher};
+use parbake_progress::{Clock, ProgressScope, Stage, Watcher};
 use parbake_render::interpretation::Interpretation;
 use parbake_render::shade::Lambert;
 use parbake_views::alpha_layers::LayerKind;
@@ -53,6 +53,15 @@ pub struct FallbackReport {
     pub side: Option<usize>,
 }
 
+/// What came of it.
+#[derive(Default)]
+pub(crate) struct Fallback {
+    /// The textures; none where the maps' own serve all viewers.
+    pub maps: Vec<(MapKind, Image)>,
+    /// What was tried; none where there was no time to.
+    pub report: Option<FallbackReport>,
+}
+
 /// Textures of one size.
 struct Tried {
     maps: Vec<(MapKind, Image)>,
@@ -60,7 +69,7 @@ struct Tried {
     psnr: f64,
 }
 
-/// The textures; none where those of `with_maps`, the finished model, serve all viewers or the time is over.
+/// The textures of viewers without the maps; `with_maps` is the model as it is finished but for these.
 ///
 /// # Errors
 /// As of [`fit_views`].
@@ -71,7 +80,7 @@ pub(crate) fn fit_fallback<W: Watcher>(
     references: Arc<Vec<Reference>>,
     scope: &ProgressScope<W>,
     clock: &mut Clock,
-) -> Result<(Vec<(MapKind, Image)>, FallbackReport), BakeError> {
+) -> Result<Fallback, BakeError> {
     let judged = &references[..references.len().min(JUDGING)];
     let psnr = |maps: &[(MapKind, Image)]| psnr(order, with_maps, maps, judged, scope);
     let mut report = FallbackReport::default();
@@ -82,6 +91,7 @@ pub(crate) fn fit_fallback<W: Watcher>(
         }
         let maps = fit(order, low, kinds, side, references.clone(), scope, clock)?;
         let found = psnr(&maps);
+        clock.lap(Stage::Solve);
         report.tried.push((side, found));
         let gain = best.as_ref().map_or(f64::INFINITY, |before| found - before.psnr);
         if gain >= WORTH_DOUBLING {
@@ -91,14 +101,14 @@ pub(crate) fn fit_fallback<W: Watcher>(
             break;
         }
     }
-    let Some(Tried { maps, side, psnr: found }) = best else { return Ok((Vec::new(), report)) };
+    let Some(Tried { maps, side, psnr: found }) = best else { return Ok(Fallback::default()) };
     report.shared = psnr(&[]);
     // What was asked for is written.
     if order.options.fallback_size.is_none() && report.shared > found - WORTH_THEIR_BYTES {
-        return Ok((Vec::new(), report));
+        return Ok(Fallback { maps: Vec::new(), report: Some(report) });
     }
     report.side = Some(side);
-    Ok((maps, report))
+    Ok(Fallback { maps, report: Some(report) })
 }
 
 /// Sides to try, growing.

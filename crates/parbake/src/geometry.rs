@@ -63,12 +63,16 @@ pub fn move_geometry<W: Watcher>(
     let mut low = repair_uvs_with_room(low, &mut uv_options)?;
     clock.lap(Stage::Prepare);
     let share = scope.share(shares::SHAPE);
-    let references = shape_plan
+    let mut references = shape_plan
         .as_ref()
         .map(|plan| smooth_references(high, plan.views, plan.view_size, plan.samples, options.seed, &share));
     if let (Some(plan), Some(references)) = (&shape_plan, &references) {
         geometry.shape = Some(shape(&low.name, &mut low.mesh, high, references, plan, &share)?);
         clock.lap(Stage::Shape);
+    }
+    let growth_plan = options.growth_plan(geometry.shape.as_ref()).filter(|_| !same);
+    if growth_plan.is_none() {
+        references = None;
     }
     let importances = importances_of(&low.mesh, high);
     if options.uv != UvMode::Keep {
@@ -85,7 +89,7 @@ pub fn move_geometry<W: Watcher>(
     };
     let mut uv_stage = optimise_uvs(low, &high.frame, &source, &uv_options, &scope.share(shares::UV));
     clock.lap(Stage::Uv);
-    if let (Some(plan), Some(references)) = (options.growth_plan(geometry.shape.as_ref()), &references) {
+    if let (Some(plan), Some(references)) = (growth_plan, &references) {
         let (Model { name, mesh, .. }, share) = (&mut uv_stage.model, scope.share(shares::GROWTH));
         geometry.growth = Some(grow_for_cutout(name, mesh, high, references, &plan, &share)?);
         clock.lap(Stage::Shape);

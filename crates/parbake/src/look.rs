@@ -189,9 +189,14 @@ pub(crate) fn add_fallback(model: &mut Model, maps: Vec<(MapKind, Image)>) {
                 MapKind::MetallicRoughness | MapKind::Emissive | MapKind::Occlusion => continue,
             };
             // A map of one value became a factor, which serves all viewers.
-            if let Some(own) = own {
-                *of_map = Some(std::mem::replace(own, TextureSlot { image: index, ..*own }));
-                is_used = true;
+            let Some(own) = own else { continue };
+            let with_map = std::mem::replace(own, TextureSlot { image: index, ..*own });
+            *of_map = Some(with_map);
+            is_used = true;
+            // A coat has one texture for all viewers.
+            let coat = material.extensions.clearcoat.as_mut().and_then(|coat| coat.normal_texture.as_mut());
+            if let Some(coat) = coat.filter(|coat| kind == MapKind::Normal && coat.image == with_map.image) {
+                coat.image = index;
             }
         }
         if is_used {

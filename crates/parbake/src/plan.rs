@@ -106,9 +106,14 @@ impl BakeOptions {
         // As far as outlines of the delivered shape were apart: those of the moved one hardly are.
         let gap = shape.map_or(0.0, |shape| 2.0 * shape.gap[0]);
         // What stands out will be cut out, what is missing cannot be put there.
-        // They are near.
-        let fit =
-            ShapeOptions { overhang_discount: 0.9, least_gap: gap, steps: plan.fit.steps / 2, ..plan.fit };
+        // Vertices are nearly there, so half of the steps do. No one has chosen offsets, so any gain is worth them.
+        let fit = ShapeOptions {
+            overhang_discount: 0.9,
+            least_gap: gap,
+            steps: plan.fit.steps / 2,
+            worth_moving: 1.0,
+            ..plan.fit
+        };
         Some(ShapePlan { fit, ..plan })
     }
 

@@ -16,7 +16,7 @@ pub struct StageTime {
 /// Measures the stages of a run.
 pub struct Clock {
     since: Instant,
-    /// In the order in which they ended.
+    /// In the order in which they first ended; a stage that ran in parts has the sum.
     pub stages: Vec<StageTime>,
 }
 
@@ -30,6 +30,9 @@ impl Clock {
     pub fn lap(&mut self, stage: Stage) {
         let seconds = self.since.elapsed().as_secs_f64();
         self.since = Instant::now();
-        self.stages.push(StageTime { stage, seconds });
+        match self.stages.iter_mut().find(|time| time.stage == stage) {
+            Some(time) => time.seconds += seconds,
+            None => self.stages.push(StageTime { stage, seconds }),
+        }
     }
 }

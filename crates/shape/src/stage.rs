@@ -79,7 +79,8 @@ pub fn shape(
 }
 
 /// Sets the offsets of a low-poly's vertices from which a cutout can take away what stands out: where outlines are
-/// apart, they reach beyond the high-poly's rather than stay behind. Positions and normals stay.
+/// apart, they reach beyond the high-poly's rather than stay behind. Positions and normals stay; where that gains nothing,
+/// there are no offsets.
 ///
 /// # Errors
 /// As of [`shape`].
@@ -94,7 +95,10 @@ pub fn grow_for_cutout(
     let (placed, shaped) = fitted(name, mesh, high, references, plan, watcher)?;
     let ways = shaped.positions.iter().zip(&placed.positions).map(|(after, before)| *after - *before);
     // Copies for tangents are at the end, and of what is here.
-    mesh.parallax_offsets = ways.take(mesh.positions.len()).map(|way| way / high.frame.scale).collect();
+    let offsets: Vec<Vec3> = ways.take(mesh.positions.len()).map(|way| way / high.frame.scale).collect();
+    if offsets.iter().any(|&offset| offset != Vec3::ZERO) {
+        mesh.parallax_offsets = offsets;
+    }
     Ok(report(&shaped))
 }
 

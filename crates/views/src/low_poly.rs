@@ -34,6 +34,8 @@ pub fn lit(model: &Model) -> (Model, Vec<String>) {
     let Model { name, mesh, materials, .. } = model;
     let mut model =
         Model { name: name.clone(), mesh: mesh.clone(), materials: materials.clone(), ..Model::default() };
+    // They belong to maps of an earlier bake.
+    model.mesh.parallax_offsets.clear();
     let had = !model.mesh.normals.is_empty();
     let repaired = ensure_normals(&mut model.mesh);
     let turned = face_outwards(&mut model.mesh);
@@ -131,8 +133,10 @@ mod tests {
         let mut turned = sound.clone();
         ensure_normals(&mut turned.mesh);
         turned.mesh.normals.iter_mut().for_each(|n| *n = -*n);
+        turned.mesh.parallax_offsets = turned.mesh.positions.clone();
         let (repaired, warnings) = lit(&turned);
         assert!(warnings.len() == 1 && warnings[0].contains("points to their back side"), "{warnings:?}");
+        assert!(repaired.mesh.parallax_offsets.is_empty(), "an earlier bake's");
         for (index, triangle) in repaired.mesh.triangles.iter().enumerate() {
             let face = repaired.mesh.area_normal(index);
             let looks_back = |&v: &u32| repaired.mesh.normals[v as usize].dot(face) < 0.0;

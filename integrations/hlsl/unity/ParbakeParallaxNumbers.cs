@@ -20,6 +20,12 @@ public static class ParbakeParallaxNumbers
         if (string.IsNullOrEmpty(path)) return;
         var material = (Material)Selection.activeObject;
         Undo.RecordObject(material, "Read numbers of a parallax map");
+        // Of a map without a cutout the text has none: whole from everywhere.
+        for (int layer = 0; layer < 3; layer++)
+        {
+            material.SetVector($"_CutoutScale{layer}", Vector4.zero);
+            material.SetVector($"_CutoutOffset{layer}", layer == 0 ? new Vector4(1, 0, 0, 0) : Vector4.zero);
+        }
         foreach (string line in File.ReadAllLines(path))
         {
             string[] sides = line.Split('=');

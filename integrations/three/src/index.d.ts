@@ -62,6 +62,12 @@ export function applyParallax<M extends MeshStandardMaterial>(
   material: M, maps: ParallaxMaps, options?: ApplyOptions,
 ): M & { parallax: Parallax };
 
+/**
+ * Lets another material of the same geometries, such as one that draws their edges, stand where maps are shown. The
+ * function that comes back switches that.
+ */
+export function followOffsets(material: Material): (isOn: boolean) => void;
+
 /** All materials below an object that have maps. */
 export function parallaxMaterials(root: Object3D): ParallaxMaterial[];
 

@@ -18,16 +18,25 @@ function asData(texture) {
 
 /** Culling is by the surface that reaches furthest. */
 function growBounds(root) {
-  const offset = new Vector3(), grown = new Set();
-  root.traverse(({ geometry }) => {
-    const offsets = geometry?.attributes[OFFSET];
-    if (!offsets || grown.has(geometry)) return;
-    grown.add(geometry);
-    let reach = 0;
-    for (let i = 0; i < offsets.count; i++) reach = Math.max(reach, offset.fromBufferAttribute(offsets, i).length());
-    geometry.computeBoundingSphere();
-    geometry.boundingSphere.radius += reach;
-    geometry.boundingBox?.expandByScalar(reach);
+  const offset = new Vector3(), reaches = new Map();
+  root.traverse((object) => {
+    const { geometry } = object, offsets = geometry?.attributes[OFFSET];
+    if (!offsets) return;
+    if (!reaches.has(geometry)) {
+      let reach = 0;
+      for (let i = 0; i < offsets.count; i++) reach = Math.max(reach, offset.fromBufferAttribute(offsets, i).length());
+      reaches.set(geometry, reach);
+      geometry.computeBoundingSphere();
+      geometry.boundingSphere.radius += reach;
+      geometry.boundingBox?.expandByScalar(reach);
+    }
+    if (!object.isSkinnedMesh) return;
+    // Its bones move the sphere, which is made anew when it is asked for.
+    const { computeBoundingSphere } = object;
+    object.computeBoundingSphere = function () {
+      computeBoundingSphere.call(this);
+      this.boundingSphere.radius += reaches.get(geometry);
+    };
   });
 }
 

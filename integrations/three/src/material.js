@@ -62,6 +62,7 @@ class Parallax {
       this.fallback[slot] = this.material[slot];
       this.material[slot] = texture;
     }
+    for (const follower of this.followers) follower.map = this.material.map;
     for (const material of [this.material, ...this.followers]) material.needsUpdate = true;
   }
 
@@ -163,6 +164,26 @@ export function applyParallax(material, maps, { alphaToCoverage = true, fallback
     });
   }
   return material;
+}
+
+/**
+ * Lets another material of the same geometries, such as one that draws their edges, stand where maps are shown. The function
+ * that comes back switches that.
+ */
+export function followOffsets(material) {
+  const { onBeforeCompile, customProgramCacheKey } = material;
+  let isOn = true;
+  material.onBeforeCompile = function (shader, renderer) {
+    onBeforeCompile.call(this, shader, renderer);
+    // Of a geometry without offsets the attribute is 0.
+    if (isOn) shader.vertexShader = defines(['PARALLAX_OFFSET']) + patchVertex(shader.vertexShader);
+  };
+  material.customProgramCacheKey = function () { return `${customProgramCacheKey.call(this)} offsets ${isOn}`; };
+  return (on) => {
+    if (on === isOn) return;
+    isOn = on;
+    material.needsUpdate = true;
+  };
 }
 
 /** All materials below an object that have parallax maps. */

@@ -1,8 +1,8 @@
 //! The model on the page, to be turned: a canvas, the file in base 64, and the script that shows it
 //! (`apps/viewer/src/embed.js`, built with three.js into one).
 //!
-//! Contract: the page's Content-Security-Policy names this script by its hash, and lets no other run. Textures have
-//! 1024 texels along a side at most, so that pages can be sent.
+//! Contract: the page's Content-Security-Policy names this script by its hash, and lets no other run. Maps have
+//! 1024 texels along a side at most, so that pages can be sent; images that only extensions of materials use stay.
 
 use crate::page::{base64, text::escape};
 use parbake::BakeError;

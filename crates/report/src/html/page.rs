@@ -51,8 +51,14 @@ pub fn page(
         &mut out,
         "model",
         "The model",
-        "Drag to turn it, use the wheel or two fingers to come closer, or choose it and use the arrow keys, + and −. Light \
-         comes from a room. Textures are shown with 1024 texels along a side at most.",
+        &format!(
+            "Drag to turn it. Click it, then use the wheel, the arrow keys, + and − to come closer; two fingers do so, too. \
+             Light comes from a room. Maps have 1024 texels along a side at most here.{}",
+            match report.options.parallax {
+                Parallax::Sh => " Maps of spherical harmonics are not shown.",
+                Parallax::None | Parallax::Tangent => "",
+            }
+        ),
         &model_view(&baked.model)?,
     );
     section(

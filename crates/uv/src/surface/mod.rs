@@ -201,6 +201,8 @@ pub fn repair_uvs(low: &Model, options: &UvStageOptions) -> Result<RepairedLowPo
     let mut mesh = low.mesh.clone();
     mesh.uvs = material_uvs(&low.mesh, &low.materials);
     mesh.tangents.clear();
+    // They belong to maps of an earlier bake.
+    mesh.parallax_offsets.clear();
     let normals_replaced = ensure_normals(&mut mesh);
     let pack = packing(options);
     let sound = || check(&Layout::new(&mesh), options.texture_size).is_bijective();
