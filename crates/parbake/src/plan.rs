@@ -105,8 +105,8 @@ impl BakeOptions {
         let plan = self.shape_plan().filter(|_| self.cuts())?;
         // As far as outlines of the delivered shape were apart: those of the moved one hardly are.
         let gap = shape.map_or(0.0, |shape| 2.0 * shape.gap[0]);
-        // What stands out will be cut out, what is missing cannot be put there.
-        // Vertices are nearly there, so half of the steps do. No one has chosen offsets, so any gain is worth them.
+        // Overhang counts little, for it will be cut out; what is missing cannot be put there. Vertices are nearly there,
+        // so half of the steps do. No artist has chosen offsets, so any gain is worth them.
         let fit = ShapeOptions {
             overhang_discount: 0.9,
             least_gap: gap,

@@ -50,7 +50,8 @@ pub(crate) struct Subject<'a> {
     pub kinds: &'a [LayerKind],
 }
 
-pub(crate) fn view_set(order: &Order) -> ViewSet {
+/// The training views of an order.
+fn view_set(order: &Order) -> ViewSet {
     let &Order { plan, options, .. } = order;
     ViewSet { count: plan.views, seed: options.seed, jitter: true, sampling: plan.reference }
 }
@@ -127,6 +128,7 @@ pub(crate) fn fit_views<W: Watcher>(
     let views = references.len();
     let (samples, maps, parallax_report) = match parallax {
         None => {
+            // Textures that follow others may need fewer than were rendered.
             let some = &references[..views.min(plan.views)];
             let samples = Cpu.view_samples(&sampler, some, size, scope);
             drop(references);

@@ -183,6 +183,11 @@ fn header(name: &str, high: &Model, report: &BakeReport, compared: &Comparison) 
         };
         facts.push(("parallax", format!("{kind}, {}²", options.parallax_size)));
     }
+    if let Some(fallback) = &report.fallback {
+        let textures =
+            fallback.side.map_or("the maps' textures".into(), |side| format!("textures of {side} × {side}"));
+        facts.push(("viewers without the maps show", textures));
+    }
     if let Some(peak) = report.peak_memory {
         facts.push(("peak memory", bytes(peak)));
     }
