@@ -123,6 +123,22 @@ pub struct Reading {
     pub confine: bool,
 }
 
+/// Whether and where a running bake is shown.
+#[derive(Args, Debug, Clone, Copy)]
+pub struct Watch {
+    /// Show the running bake in the browser: its look, its UVs, and what each stage still gets wrong
+    #[arg(long)]
+    pub watch: bool,
+
+    /// Port of that page, 0 to 65535; 0 is any that is free
+    #[arg(long, value_name = "PORT", default_value_t = 0, requires = "watch")]
+    pub port: u16,
+
+    /// Print the page's address without opening a browser
+    #[arg(long, requires = "watch")]
+    pub no_open: bool,
+}
+
 /// Arguments of `bake`.
 #[derive(Args, Debug)]
 pub struct BakeCommand {
@@ -156,6 +172,10 @@ pub struct BakeCommand {
     /// Fail if a texture or material that a model names is missing, instead of warning
     #[arg(long, help_heading = IO)]
     pub strict: bool,
+
+    /// Where to watch
+    #[command(flatten, next_help_heading = IO)]
+    pub watch: Watch,
 
     /// How to bake
     #[command(flatten)]

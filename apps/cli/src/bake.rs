@@ -8,6 +8,7 @@ use crate::options_file::merged;
 use crate::outputs::{check_beside, check_maps, check_not_input, check_output, is_obj, is_stdout};
 use crate::progress::{Console, interrupted};
 use crate::rules;
+use crate::watch;
 use clap::ArgMatches;
 use parbake::{
     BakeOptions, BakeReport, Baked, Comparison, Convention, Detail, Loaded, Message, Model, NormalY, Shading,
@@ -35,35 +36,49 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
     check_not_input(output, &inputs)?;
     check_beside(Some(output), command.json.as_ref(), command.report.as_ref(), &inputs)?;
     let console = Console::for_bake(command.talk, options.time_budget).confined(command.reading);
+    let page = watch::open(&command.watch, output, &command.high, &console)?;
+    let console = console.with_page(page);
+    let ending = bake_files(command, &options, &inputs, &console);
+    watch::close(console.page(), &ending);
+    ending
+}
+
+fn bake_files(
+    command: &BakeCommand,
+    options: &BakeOptions,
+    inputs: &[&Path],
+    console: &Console,
+) -> Result<Ending, Failure> {
+    let output = &command.output;
     with_threads(options.threads, || {
         let attribute = options.importance_attribute.as_deref();
-        let pair = read_painted_pair(&command.high, attribute, command.low.as_deref(), &console)?;
+        let pair = read_painted_pair(&command.high, attribute, command.low.as_deref(), console)?;
         if command.strict {
             check_textures(&pair.warnings)?;
         }
         let mut baked = match command.triangles {
-            None => bake_and_write(&pair, &options, output, &console)?,
+            None => bake_and_write(&pair, options, output, console)?,
             Some(count) => {
-                let baked = bake_to_triangles(&pair.high, count as usize, &options, &console)?;
-                finish(baked, &pair, &options, output, &console)?
+                let baked = bake_to_triangles(&pair.high, count as usize, options, console)?;
+                finish(baked, &pair, options, output, console)?
             }
         };
         if !command.talk.quiet || command.json.is_some() || command.report.is_some() {
             let (flip, channels) =
                 (command.report.is_some(), command.report.is_some() || command.json.is_some());
-            compare(&pair.high, &mut baked, Detail { flip, channels }, &console)?;
+            compare(&pair.high, &mut baked, Detail { flip, channels }, console)?;
         }
         if let Some(path) = &command.json {
             let names = ["high", "low"].into_iter();
             let files: Vec<(&str, &Path)> = names.zip(inputs.iter().copied()).collect();
             let about = ("bake", &files[..], Some(command.output.as_path()));
-            write_document(path, about, &baked.report, &console)?;
+            write_document(path, about, &baked.report, console)?;
         }
         if let Some(path) = &command.report {
-            write_report(path, &pair.high, &baked, &console)?;
+            write_report(path, &pair.high, &baked, console)?;
         }
         console.finish();
-        tell(&console, command.talk, &baked.report, output);
+        tell(console, command.talk, &baked.report, output);
         Ok(ending(&baked.report))
     })?
 }
@@ -189,6 +204,9 @@ fn finish(
     let begin = console.seconds();
     let model = with_normal_y(&baked.model, options.normal_y);
     (_, baked.report.written) = write_model(output, &model, &options.write, console)?;
+    if let Some(page) = console.page() {
+        page.finish(output, console.limits());
+    }
     let report = &mut baked.report;
     report.warnings.splice(0..0, pair.warnings.iter().map(|warning| warning.text.clone()));
     let reading = pair.seconds.map(|seconds| StageTime { stage: Stage::Read, seconds });

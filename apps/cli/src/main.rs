@@ -28,6 +28,7 @@ mod thumbnail;
 mod turntable;
 mod variants;
 mod view;
+mod watch;
 
 use arguments::{Arguments, Command};
 use clap::FromArgMatches;

@@ -4,6 +4,8 @@
 use crate::arguments::{Reading, Talk};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use parbake::{Estimate, Limits, Message, Stage, Watcher};
+use parbake_viewer::Live;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
@@ -39,6 +41,8 @@ pub struct Console {
     state: Mutex<State>,
     /// Whether work ends at the deadline by itself, and is told of nothing but of interrupts.
     keeps_time: bool,
+    /// The page that is told of everything as well.
+    page: Option<Arc<Live>>,
 }
 
 /// What the bar shows.
@@ -64,6 +68,17 @@ impl Console {
     pub fn confined(mut self, reading: Reading) -> Self {
         self.limits.confine = reading.confine;
         self
+    }
+
+    /// The same with a page that is told of everything as well.
+    pub fn with_page(mut self, page: Option<Arc<Live>>) -> Self {
+        self.page = page;
+        self
+    }
+
+    /// The page that follows the run.
+    pub fn page(&self) -> Option<&Live> {
+        self.page.as_deref()
     }
 
     /// What models may ask for.
@@ -151,7 +166,13 @@ impl Console {
             bar,
             state: Mutex::default(),
             keeps_time: false,
+            page: None,
         }
+    }
+
+    /// A line that was asked for, also of a quiet command.
+    pub fn announce(&self, text: &str) {
+        self.bar.suspend(|| eprintln!("{text}"));
     }
 
     /// A line for people, unless they asked for quiet.
@@ -189,6 +210,12 @@ fn minutes(seconds: f64) -> String {
 
 impl Watcher for Console {
     fn message(&self, message: Message) {
+        if let Some(page) = &self.page {
+            if let Message::Snapshot(_) = message {
+                return page.message(message);
+            }
+            page.message(message.clone());
+        }
         let Ok(mut state) = self.state.lock() else { return };
         let State { stage: current, part, estimate } = &mut *state;
         estimate.note(&message);
@@ -199,6 +226,8 @@ impl Watcher for Console {
                 self.bar.set_message(name.clone());
                 *part = Some(name);
             }
+            // They are for the page.
+            Message::Loss { .. } | Message::Snapshot(_) => {}
             Message::Warning(text) => self.say(&format!("warning: {text}")),
             Message::Progress { stage, done, total } => {
                 // Of the whole run where its stages are known, else of this stage.
@@ -226,6 +255,10 @@ impl Watcher for Console {
                 self.bar.set_prefix(left);
             }
         }
+    }
+
+    fn wants_snapshot(&self) -> bool {
+        self.page.as_ref().is_some_and(|page| page.wants_snapshot())
     }
 
     fn stopped(&self) -> bool {

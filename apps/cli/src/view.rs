@@ -18,6 +18,7 @@ pub fn run(command: &ViewCommand) -> Result<Ending, Failure> {
     let view = View {
         levels: command.models.clone(),
         compare: command.compare.clone(),
+        live: None,
         port: command.port,
         limits: *console.limits(),
     };

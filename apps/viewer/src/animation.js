@@ -1,10 +1,8 @@
 // Animations of the models: one clip at a time, all models in step.
 import { byId, options } from './dom.js';
 
-export function wireAnimation(models, redraw) {
-  const animated = models.filter((model) => model.clips.length);
-  const names = [...new Set(animated.flatMap((model) => model.clips.map((clip, i) => clip.name || `Clip ${i + 1}`)))];
-  let playing = false, last = 0, time = 0, length = 0;
+export function wireAnimation(redraw) {
+  let animated = [], playing = false, last = 0, time = 0, length = 0;
 
   const pose = () => {
     for (const model of animated) model.mixer.setTime(Math.min(time, length));
@@ -42,17 +40,24 @@ export function wireAnimation(models, redraw) {
     redraw();
   };
 
-  byId('animation-section').hidden = animated.length === 0;
-  if (animated.length) {
-    options(byId('clip'), names.map((name) => [name, name]));
-    byId('clip').addEventListener('change', (event) => choose(event.target.value));
-    byId('play').addEventListener('click', () => play(!playing));
-    byId('time').addEventListener('input', (event) => {
-      play(false);
-      if (!length) choose(byId('clip').value);
-      time = event.target.value * length;
-      pose();
-    });
-  }
-  return { isPlaying: () => playing, toggle: () => play(!playing) };
+  byId('clip').addEventListener('change', (event) => choose(event.target.value));
+  byId('play').addEventListener('click', () => play(!playing));
+  byId('time').addEventListener('input', (event) => {
+    play(false);
+    if (!length) choose(byId('clip').value);
+    time = event.target.value * length;
+    pose();
+  });
+  return {
+    isPlaying: () => playing,
+    toggle: () => play(!playing),
+    /** From now on it is these models that move. */
+    setModels(models) {
+      animated = models.filter((model) => model.clips.length);
+      [playing, time, length] = [false, 0, 0];
+      const names = new Set(animated.flatMap((model) => model.clips.map((clip, i) => clip.name || `Clip ${i + 1}`)));
+      options(byId('clip'), [...names].map((name) => [name, name]));
+      byId('animation-section').hidden = animated.length === 0;
+    },
+  };
 }

@@ -111,6 +111,18 @@ export class Model {
   /** Shows parallax maps and their cutouts, or the plain materials. */
   setParallax(isOn) { setParallax(this.root, isOn); }
 
+  /** Gives back what it takes of the graphics processor; it is shown no more. */
+  dispose() {
+    this.root.traverse((object) => {
+      object.geometry?.dispose();
+      for (const material of materialsOf(object)) {
+        const own = TEXTURE_SLOTS.map(([slot]) => material[slot]);
+        for (const texture of [...own, ...(material.parallax?.textures ?? [])]) texture?.dispose();
+        material.dispose();
+      }
+    });
+  }
+
   /** Whether maps are shown. */
   get showsMaps() { return this.parallax.some((material) => material.parallax.enabled); }
 

@@ -8,6 +8,7 @@ import { Levels } from './levels.js';
 import { showLoupe } from './loupe.js';
 import { listenToGestures } from './gestures.js';
 import { MODES, needsCompare, showFigures, showNotes, wirePanel } from './panel.js';
+import { SLOW_PICTURE, deferred, follow, showRun } from './run.js';
 import { Stage, rgb } from './stage.js';
 import { byId, check, count, options, radios } from './dom.js';
 import { wireAnimation } from './animation.js';
@@ -25,8 +26,12 @@ const store = createStore({
   mode: 'model', channel: 'lit', wireframe: false, parallax: true, light: 'studio', turn: 0, exposure: 0, tone: 'none',
   background: 'page', split: 0.5, level: 'auto', turntable: false, uvLines: true, theme: 'light', isReady: false, hasCompare: false,
 });
+/** When the models are on the stage and all is wired. */
+const ready = deferred();
 const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-let stage, animation, levels = null, compare = null, drawing = 0, resting = 0, measuring = 0, measured = 0, textures = [];
+let stage, animation, levels = null, compare = null, drawing = 0, resting = 0, measuring = 0, measured = 0, textures = [], isListed = false, runNotes = [], isSlow = false;
+/** Models that are shown no more. */
+const retired = [];
 
 /** All that a picture depends on besides the camera. */
 function drawOptions() {
@@ -49,6 +54,8 @@ function draw() {
   const wanted = level === 'auto' ? levels.forSize(pixels, stage.width, stage.height) : level;
   if (wanted !== levels.shown) levels.show(wanted);
   stage.draw(drawOptions());
+  // Only now, since the models that took their places have their shaders in common with them.
+  retired.splice(0).forEach((model) => model.dispose());
   showLoupe(byId('canvas'), pixels, ['model', 'high', 'split', 'difference'].includes(store.get().mode));
   showSize(pixels, shorter);
   showTags();
@@ -64,7 +71,7 @@ async function rest() {
   const waits = stage.timer.poll();
   showAllFigures();
   const { mode, hasCompare } = store.get();
-  if (hasCompare && mode !== 'uv') {
+  if (hasCompare && mode !== 'uv' && !isSlow) {
     const decibels = await stage.measure(drawOptions());
     if (run !== measuring) return;
     byId('psnr').textContent = Number.isFinite(decibels) ? `${decibels.toFixed(2)} dB` : 'the same picture';
@@ -83,6 +90,22 @@ async function settled() {
 function redraw() {
   measuring++;
   if (!drawing) drawing = requestAnimationFrame(draw);
+}
+
+/** Whether pictures take so long that they are drawn coarsely, and not measured. */
+function setSlow(value) {
+  if (value === isSlow) return;
+  isSlow = value;
+  stage.sharpness = isSlow ? 0.5 : 1;
+  redraw();
+}
+
+/** Draws, waits for it, and tells how many milliseconds that took. */
+function drawNow() {
+  const began = performance.now();
+  draw();
+  stage.finish();
+  return performance.now() - began;
 }
 
 function showSize(pixels, shorter) {
@@ -120,13 +143,16 @@ function listTextures() {
     const found = model.textures();
     for (const entry of found) {
       const { width, height } = entry.texture.image;
-      list.push({ model, entry, label: `${entry.label}, ${width} × ${height} (${[owner, entry.material].filter(Boolean).join(', ')})` });
+      list.push({ model, owner, entry, label: `${entry.label}, ${width} × ${height} (${[owner, entry.material].filter(Boolean).join(', ')})` });
     }
-    if (!found.length) list.push({ model, entry: null, label: `No texture (${owner})` });
+    if (!found.length) list.push({ model, owner, entry: null, label: `No texture (${owner})` });
   }
-  textures = list;
+  const same = (a, b) => a.entry?.label === b?.entry?.label && a.owner === b?.owner, before = textures[byId('texture').value];
+  [textures, isListed] = [list, true];
   options(byId('texture'), list.map((item, index) => [index, item.label]));
-  showTexture(0);
+  const index = Math.max(0, list.findIndex((item) => same(item, before)));
+  byId('texture').value = index;
+  showTexture(index);
 }
 
 function showTexture(index) {
@@ -261,7 +287,7 @@ function wireLevels() {
   fieldset.hidden = levels.count < 2;
   const entries = levels.figures.map((figures, level) => [level, `${level}: ${count(figures.triangles)}`]);
   radios(fieldset, 'level', [['auto', 'By size'], ...entries], (level) => store.set({ level }));
-  store.on(['level'], ({ level }) => check(fieldset, level));
+  check(fieldset, store.get().level);
 }
 
 /** What is being viewed; fills in the names as soon as they are known. */
@@ -271,16 +297,19 @@ async function readSession() {
   });
   const files = session.models.filter((model) => model.role === 'level');
   const other = session.models.find((model) => model.role === 'compare');
+  const { name } = session.live ?? files[0];
   byId('version').textContent = `Parbake ${session.version}.`;
-  byId('title').textContent = files[0].name;
+  byId('title').textContent = name;
   byId('subtitle').textContent = other ? `compared with ${other.name}` : '';
-  document.title = `${files[0].name} – Parbake`;
-  byId('message-text').textContent = `Reading ${files.map((file) => file.name).join(', ')}`;
-  return { files, other };
+  document.title = `${name} – Parbake`;
+  // What turns is drawn anew all the time, which takes the bake's time where there is no graphics processor.
+  byId('spinner').hidden = Boolean(session.live);
+  byId('message-text').textContent = session.live ? 'The bake begins' : `Reading ${files.map((file) => file.name).join(', ')}`;
+  return { files, other, run: session.live ?? null };
 }
 
-/** Loads everything onto the stage. Gives the models' notes, and why the second one is missing, if it is. */
-async function loadModels({ files, other }) {
+/** Loads everything onto the stage, of a run its first snapshot. Gives why the second model is missing, if it is. */
+async function loadModels({ files, other, run }) {
   // While they are on their way, WebGL is started.
   const coming = files.map(fetchModel), otherComing = other && fetchModel(other);
   for (const model of [...coming, otherComing]) model?.catch(() => {});
@@ -291,36 +320,91 @@ async function loadModels({ files, other }) {
   }
   const load = createLoader(stage.renderer);
   const second = otherComing ? otherComing.then(load).catch((error) => error) : null;
-  const firsts = await Promise.all(coming.map((model) => model.then(load)));
+  const firsts = run ? [await firstSnapshot(run, load)] : await Promise.all(coming.map((model) => model.then(load)));
   const found = await second, problem = found instanceof Error ? found.message : null;
   compare = problem ? null : found;
   levels = new Levels(firsts);
   if (compare) compare.known = compare.figures();
   stage.setModels(levels, compare);
-  return { models: [...firsts, compare].filter(Boolean), problem };
+  return problem;
+}
+
+/** Follows a run from now on; gives its first snapshot. */
+function firstSnapshot(run, load) {
+  const first = deferred();
+  let isFirst = true, before = Infinity;
+  const tell = (state) => {
+    showRun(run.name, state);
+    runNotes = state.warnings ?? [];
+    if (state.failure) store.get().isReady ? warn(state.failure) : first.reject(new Error(state.failure));
+    if (store.get().isReady) tellNotes();
+    else byId('message-text').textContent = byId('run-text').textContent;
+  };
+  const show = async (bytes, { bytes: size = null, isFinished }) => {
+    const began = performance.now();
+    const model = await load({ entry: run, bytes, size, notes: [] }), loaded = performance.now() - began;
+    if (isFirst) first.resolve(model);
+    isFirst = false;
+    await ready.promise;
+    if (levels.model() !== model) replace(model, isFinished);
+    const drawn = drawNow();
+    // The first picture compiles shaders.
+    setSlow(!isFinished && Math.min(drawn, before) > SLOW_PICTURE);
+    before = drawn;
+    return { took: loaded + drawn, isSlow };
+  };
+  setSlow(true);
+  follow({ tell, show }).catch(first.reject);
+  return first.promise;
+}
+
+/** Shows another model in the place of the one before. */
+function replace(model, isLast) {
+  const before = levels;
+  levels = new Levels([model]);
+  stage.setLevels(levels);
+  model.setParallax(store.get().parallax);
+  byId('parallax-switch').hidden = !shownModels().some((shown) => shown.parallax.length);
+  if (store.get().mode === 'uv') listTextures();
+  else isListed = false;
+  retired.push(...before.models);
+  if (isLast) {
+    animation.setModels(shownModels());
+    wireLevels();
+  }
+  tellNotes();
+  redraw();
+}
+
+const shownModels = () => [...levels.models, compare].filter(Boolean);
+
+function tellNotes() {
+  showNotes([...new Set([...shownModels().flatMap((model) => model.notes), ...runNotes])]);
 }
 
 /** Wires what depends on the models. */
-function wireModels(models) {
-  animation = wireAnimation(models, redraw);
+function wireModels() {
+  animation = wireAnimation(redraw);
+  animation.setModels(shownModels());
   const modes = MODES.filter(([key]) => compare || !needsCompare(key));
   radios(byId('modes'), 'mode', modes, (mode) => store.set({ mode }));
   byId('modes').disabled = false;
   wireSplitter(store);
   wireLevels();
+  store.on(['level'], ({ level }) => check(byId('levels'), level));
   wireView();
   wireTurntable();
   wireShortcuts(modes.map(([key]) => key));
-  byId('parallax-switch').hidden = !models.some((model) => model.parallax.length);
-  store.on(['parallax'], ({ parallax }) => { for (const model of models) model.setParallax(parallax); });
+  byId('parallax-switch').hidden = !shownModels().some((model) => model.parallax.length);
+  store.on(['parallax'], ({ parallax }) => { for (const model of shownModels()) model.setParallax(parallax); });
   store.set({ isReady: true, hasCompare: compare !== null, mode: compare ? 'split' : 'model' });
   store.on(['mode', 'hasCompare'], ({ mode, hasCompare }) => {
     byId('legend').hidden = mode !== 'difference';
-    if (!hasCompare || mode === 'uv') byId('reading').hidden = true;
-    if (mode === 'uv' && !textures.length) listTextures();
+    if (mode === 'uv' && !isListed) listTextures();
     check(byId('modes'), mode);
   });
   store.on(DRAWN, redraw);
+  ready.resolve();
 }
 
 async function start() {
@@ -333,18 +417,18 @@ async function start() {
     fail(new Error('The graphics processor has dropped this page, most likely for want of memory. Reload the page.'));
   });
   const slow = setTimeout(() => { byId('message-text').textContent += '. Large models take a while.'; }, SLOW);
-  const { models, problem } = await loadModels(await readSession());
+  const problem = await loadModels(await readSession());
   clearTimeout(slow);
-  wireModels(models);
-  const notes = () => showNotes([...new Set([...models.flatMap((model) => model.notes), ...(problem ? [problem] : [])])]);
+  wireModels();
   if (problem) warn(`The model is shown by itself: ${problem}`);
-  notes();
+  if (problem) runNotes = [...runNotes, problem];
+  tellNotes();
   draw();
   byId('message').hidden = true;
   // The studio has no extensions, but is there at once; the room takes a moment.
-  if (models.some((model) => model.hasExtensions)) requestAnimationFrame(() => setTimeout(() => store.set({ light: 'room' })));
+  if (shownModels().some((model) => model.hasExtensions)) requestAnimationFrame(() => setTimeout(() => store.set({ light: 'room' })));
   // Textures that cannot be decoded are told late.
-  setTimeout(notes, 1000);
+  setTimeout(tellNotes, 1000);
   // For tests and for the console.
   window.parbake = { store, stage, redraw, settled, snapshot: () => { draw(); return byId('canvas').toDataURL(); } };
 }

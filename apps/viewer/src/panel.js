@@ -52,7 +52,7 @@ export function showFigures(first, second, gpu) {
   const rows = [
     ['Triangles', (f) => count(f.triangles)], ['Vertices', (f) => count(f.vertices)],
     ['Draw calls', (f) => (f.drawCalls ? count(f.drawCalls) : '–')], ['Materials', (f) => count(f.materials)],
-    ['Textures', (f) => count(f.textures)], ['Texels', (f) => count(f.texels)], ['File', (f) => bytes(f.bytes)],
+    ['Textures', (f) => count(f.textures)], ['Texels', (f) => count(f.texels)], ['File', (f) => (f.bytes === null ? '–' : bytes(f.bytes))],
   ];
   const body = byId('figures').tBodies[0];
   for (const head of byId('figures').querySelectorAll('.second')) head.hidden = !second;

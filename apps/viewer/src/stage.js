@@ -45,32 +45,43 @@ export class Stage {
     this.compare = null;
     this.drawCalls = [0, 0];
     this.milliseconds = null;
+    /** Share of the screen's pixels along a side that are drawn. */
+    this.sharpness = 1;
   }
 
   /** The models: `Levels`, and a `Model` or null. Both stand in the frame of the second, if there is one. */
   setModels(levels, compare) {
-    for (const [scene, roots] of [[this.scenes[0], levels?.models ?? []], [this.scenes[1], compare ? [compare] : []]])
-      for (const model of roots) scene.add(model.root);
-    this.levels = levels;
     this.compare = compare;
     const box = (compare ?? levels.models[0]).box();
-    const size = box.getSize(new Vector3()), center = box.getCenter(new Vector3());
+    const size = box.getSize(new Vector3());
     const longest = Math.max(size.x, size.y, size.z);
     if (!(longest > 0) || !Number.isFinite(longest)) throw new Error('The model has no size: all its vertices lie at one point.');
-    const scale = 2 / longest;
-    for (const model of [...levels.models, compare].filter(Boolean)) {
-      model.root.scale.setScalar(scale);
-      model.root.position.copy(center).multiplyScalar(-scale);
-      model.root.updateMatrixWorld(true);
-    }
-    this.view.radius = (scale * size.length()) / 2;
+    this.frame = { center: box.getCenter(new Vector3()), scale: 2 / longest };
+    this.setLevels(levels);
+    if (compare) this.place(compare, 1);
+    this.view.radius = (this.frame.scale * size.length()) / 2;
     this.view.fit();
+  }
+
+  /** Shows other levels in the place of those before, in the same frame. */
+  setLevels(levels) {
+    for (const model of this.levels?.models ?? []) this.scenes[0].remove(model.root);
+    this.levels = levels;
+    for (const model of levels.models) this.place(model, 0);
+  }
+
+  place(model, which) {
+    const { center, scale } = this.frame;
+    model.root.scale.setScalar(scale);
+    model.root.position.copy(center).multiplyScalar(-scale);
+    model.root.updateMatrixWorld(true);
+    this.scenes[which].add(model.root);
   }
 
   /** Fits the picture to the element; whether anything changed. */
   resize() {
     const { clientWidth: w, clientHeight: h } = this.canvas;
-    const ratio = Math.min(window.devicePixelRatio || 1, Math.sqrt(MOST_PIXELS / Math.max(1, w * h)));
+    const ratio = this.sharpness * Math.min(window.devicePixelRatio || 1, Math.sqrt(MOST_PIXELS / Math.max(1, w * h)));
     const width = Math.max(1, Math.round(w * ratio)), height = Math.max(1, Math.round(h * ratio));
     if (this.width === width && this.height === height) return false;
     Object.assign(this, { width, height, ratio });
@@ -156,6 +167,12 @@ export class Stage {
       tone: options.tone, split: options.split, exposure: options.exposure, background: options.background,
     });
     this.milliseconds = performance.now() - began;
+  }
+
+  /** Waits for what was drawn; a picture takes the graphics processor longer than it takes to ask for it. */
+  finish() {
+    const gl = this.renderer.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
   drawUv({ background, uvLines }) {

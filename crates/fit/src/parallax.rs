@@ -19,9 +19,10 @@ use crate::texels::{BAND, Texels, gather};
 use crate::view_gradient::Sums;
 use parbake_image::MapSet;
 use parbake_image::display_table::DisplayTable;
+use parbake_image::reduced::all_at_most;
 use parbake_model::Basis;
 use parbake_model::glam::Vec4;
-use parbake_progress::{Stage, Watcher};
+use parbake_progress::{MOST_TEXELS, Message, PackedParallax, Snapshot, Stage, Watcher};
 use parbake_render::parallax::ParallaxCoefficients;
 use parbake_render::parallax_variants::shift_map::ShiftMap;
 use parbake_render::shade::Brdf;
@@ -191,7 +192,9 @@ fn descend<B: Brdf, M: ShiftMap, K: Backend, const N: usize>(
             views.iter().for_each(|pixels| backend.view_gradient(pixels, map, &texels, brdf, display, sums));
         });
         let count: usize = chosen.iter().map(|pixels| pixels.len()).sum();
-        losses.push(sums.iter().map(|s| s.loss).sum::<f64>() / (3 * count.max(1)) as f64);
+        let value = sums.iter().map(|s| s.loss).sum::<f64>() / (3 * count.max(1)) as f64;
+        watcher.message(Message::Loss { stage: Stage::Parallax, value, is_first: losses.is_empty() });
+        losses.push(value);
         let share = rate_at(step, options.steps);
         // Texels' sums are left as zeros for the next step.
         if let [first, others @ ..] = sums.as_mut_slice() {
@@ -213,6 +216,11 @@ fn descend<B: Brdf, M: ShiftMap, K: Backend, const N: usize>(
         map.set_parameters(&moved);
         // Those that were held in their range must not wander on beyond it.
         moving = in_strides(map.parameters());
+        if let Some(coefficients) = map.coefficients().filter(|_| watcher.wants_snapshot()) {
+            texels.write(maps);
+            let parallax = Some(PackedParallax::new(|images| coefficients.pack(images)));
+            watcher.snapshot(Snapshot::Maps { maps: all_at_most(maps, MOST_TEXELS), parallax });
+        }
     }
     texels.write(maps);
     watcher.progress(Stage::Parallax, options.steps, options.steps);

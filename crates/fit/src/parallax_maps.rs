@@ -25,7 +25,7 @@ use parbake_image::display_table::DisplayTable;
 use parbake_image::quantise::from_image;
 use parbake_mesh::charts;
 use parbake_model::{Image, Model, ParallaxMap};
-use parbake_progress::Watcher;
+use parbake_progress::{PackedParallax, Portion, Showing, Snapshot, Stage, Watcher};
 use parbake_render::cutout::CutoutCoefficients;
 use parbake_render::parallax::ParallaxCoefficients;
 use parbake_render::shade::Lambert;
@@ -144,6 +144,9 @@ const BEGIN_VIEWS: usize = 160;
 /// texture's blur (lemon, LOD-1), one that shows depth is worth 1.4 dB and more.
 const WORTH_KEEPING: f64 = 0.89;
 
+/// Share of a pass's time that the solve for its textures takes.
+const BEGINNING: f64 = 0.25;
+
 /// One view in so many tells what a map is worth, and what rounding costs.
 const JUDGED: usize = 12;
 
@@ -173,6 +176,10 @@ pub fn fit_parallax_maps(
         map.as_stored()
     });
     let sampler = sampler.clone().with_cutout(cutout.as_ref());
+    let is_cut = |mut shift: PackedParallax| {
+        shift.map.cutout = cutout.as_ref().map(|cutout| cutout.pack(&mut shift.images));
+        shift
+    };
 
     let Conventions { display, .. } = high.conventions;
     let comparison = Comparison { backend: &Cpu, brdf: &Lambert, display, srgb: high.conventions.srgb() };
@@ -183,7 +190,15 @@ pub fn fit_parallax_maps(
     let mut textures = None;
     let mut coarser = None;
     let judged: Vec<_> = views.iter().step_by(JUDGED).cloned().collect();
+    let all_steps: usize = plan.passes.iter().map(|pass| pass.steps).sum();
+    let mut steps_before = 0;
     for pass in plan.passes.iter().filter(|pass| pass.steps > 0) {
+        let share = |steps: f64| (steps_before as f64 + steps) / all_steps as f64;
+        let own_steps = pass.steps as f64;
+        let begun = share(BEGINNING * own_steps);
+        let beginning = Portion::new(watcher, share(0.0)..begun).of_stage(Stage::Parallax);
+        let moving = Portion::new(watcher, begun..share(own_steps));
+        steps_before += pass.steps;
         // Later passes only better what the first one found.
         if coarser.is_some() && watcher.stopped() {
             break;
@@ -198,6 +213,13 @@ pub fn fit_parallax_maps(
             (&made.0, &made.1)
         };
         let solved_with = |map: ParallaxCoefficients| {
+            let watcher = &Showing::new(&beginning, |snapshot| match snapshot {
+                Snapshot::Maps { maps, .. } => {
+                    let parallax = Some(is_cut(PackedParallax::new(|images| map.pack(images))));
+                    Some(Snapshot::Maps { maps, parallax })
+                }
+                other => Some(other),
+            });
             let some = &views[..views.len().min(BEGIN_VIEWS)];
             let samples = shifted_samples(some, pass.texture_size, &map, watcher);
             let schedule = Schedule { rounds: ROUNDS, final_steps: 0, ..Schedule::default() };
@@ -220,7 +242,13 @@ pub fn fit_parallax_maps(
             }
         }
         let options = ParallaxOptions { steps: pass.steps, rate: pass.rate, ..plan.parallax };
-        losses.push(fit_parallax(&Cpu, &views, &mut state, &Lambert, &display, &options, watcher));
+        let showing = Showing::new(&moving, |snapshot| match snapshot {
+            Snapshot::Maps { maps, parallax } => {
+                Some(Snapshot::Maps { maps, parallax: parallax.map(is_cut) })
+            }
+            other => Some(other),
+        });
+        losses.push(fit_parallax(&Cpu, &views, &mut state, &Lambert, &display, &options, &showing));
         coarser = Some(pass.texture_size);
         map = state.map;
         textures = Some(state.maps);

@@ -14,10 +14,11 @@ use crate::step::{StepOptions, Workspace, fit_step};
 use parbake_image::display::Display;
 use parbake_image::display_table::DisplayTable;
 use parbake_image::quantise::{from_image, to_image};
+use parbake_image::reduced::all_at_most;
 use parbake_image::{Domain, FloatImage, MapKind, MapSet};
 use parbake_model::Image;
 use parbake_model::glam::Vec4;
-use parbake_progress::{Stage, Watcher};
+use parbake_progress::{MOST_TEXELS, Message, Snapshot, Stage, Watcher};
 use parbake_render::shade::Brdf;
 use parbake_solve::conjugate_gradient::Effort;
 use parbake_solve::grid::block;
@@ -176,6 +177,16 @@ impl<W: Watcher, K: Backend> Descent<'_, W, K> {
         !self.stopped
     }
 
+    /// Tells the loss of the state before a step, and shows the one after it.
+    fn tell(&self, loss: Loss) {
+        let (value, is_first) = (loss.minimised / self.log.terms, self.log.losses.is_empty());
+        self.watcher.message(Message::Loss { stage: Stage::Solve, value, is_first });
+        if self.watcher.wants_snapshot() {
+            let maps = all_at_most(&self.maps, MOST_TEXELS);
+            self.watcher.snapshot(Snapshot::Maps { maps, parallax: None });
+        }
+    }
+
     /// Takes this many steps of one map.
     fn take<P: Problem>(
         &mut self,
@@ -196,6 +207,7 @@ impl<W: Watcher, K: Backend> Descent<'_, W, K> {
             let options = schedule.options(kind, effort, self.damping);
             let (maps, workspace) = (&mut self.maps, &mut self.workspace);
             let (loss, _) = fit_step(self.backend, kind, problem, &options, maps, start, workspace);
+            self.tell(loss);
             self.log.note(self.last, loss, &before);
             self.last = Move::Map(kind);
             if !is_damped {

@@ -28,7 +28,7 @@ use parbake_atlas::check_mesh;
 use parbake_image::quantise::to_image;
 use parbake_image::{MapKind, MapSet};
 use parbake_model::{Image, Model};
-use parbake_progress::{Clock, Message, ProgressScope, Stage, Watcher};
+use parbake_progress::{Clock, Message, ProgressScope, Snapshot, Stage, Watcher};
 use parbake_render::camera::Projection;
 use parbake_uv::moves::UvMoves;
 use parbake_views::alpha_layers::layer_kinds;
@@ -197,6 +197,9 @@ fn run(
     let size = options.texture_size;
     let scope = ProgressScope::new(watcher, begin, options.time_budget).keeping_back(at_the_end(size));
     watcher.message(Message::Plan(stage_weights(options)));
+    if watcher.wants_snapshot() {
+        watcher.snapshot(Snapshot::Model(low.clone()));
+    }
     let mut clock = Clock::new(begin);
     let mut warnings = Warnings::new(watcher);
     warnings.tell((work == Work::Bake).then(|| swapped(high, low)).flatten());
@@ -222,7 +225,8 @@ fn run(
     clock.lap(Stage::Start);
 
     let kinds = layer_kinds(&prepared.placed, delivered, high);
-    let subject = Subject { model: low, prepared: &prepared, projected: &projected, kinds: &kinds };
+    let subject =
+        Subject { model: low, prepared: &prepared, projected: &projected, kinds: &kinds, is_seen: true };
     let order = Order { high, plan: &plan, options, work };
     let references = training_views(&order, &scope);
     clock.lap(Stage::Reference);

@@ -87,10 +87,15 @@ pub(crate) fn stage_weights(options: &BakeOptions) -> Vec<(Stage, f64)> {
         stages.extend([(Stage::Cutout, 6.0), (Stage::Parallax, 0.03 * steps as f64)]);
     }
     stages.push((Stage::Sampling, 0.02 * pixels));
-    let fits = if options.has_fallback() { 1.5 } else { 1.0 };
+    let fits = 1.0 / solving_share(options);
     stages.push((Stage::Solve, fits * plan.schedule.rounds as f64 * (0.5 * million + 0.03 * pixels)));
     stages.push((Stage::Evaluate, 2.0));
     stages
+}
+
+/// Share of the time for solving that the maps themselves take; textures of viewers without parallax maps take the rest.
+pub(crate) fn solving_share(options: &BakeOptions) -> f64 {
+    if options.has_fallback() { 0.5 } else { 1.0 }
 }
 
 /// The shares of stages in the time that a budget leaves them: textures are worth most, and

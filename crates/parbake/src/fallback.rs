@@ -9,6 +9,7 @@
 //! Contract: pictures are judged on black under a headlight, from training views.
 
 use crate::bake::Order;
+use crate::budget::solving_share;
 use crate::error::BakeError;
 use crate::look::add_fallback;
 use crate::options::{BakeOptions, Parallax};
@@ -17,7 +18,7 @@ use crate::textures::{Subject, fit_views};
 use parbake_image::MapKind;
 use parbake_image::display::Display;
 use parbake_model::{Image, Model};
-use parbake_progress::{Clock, ProgressScope, Stage, Watcher};
+use parbake_progress::{Clock, Portion, ProgressScope, Stage, Watcher};
 use parbake_render::interpretation::Interpretation;
 use parbake_render::shade::Lambert;
 use parbake_views::alpha_layers::LayerKind;
@@ -28,6 +29,7 @@ use parbake_views::projection::project;
 use parbake_views::reference::{Reference, render_references};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Decibels that a doubling of the side has to gain, and those from which on the next one is tried.
 const WORTH_DOUBLING: f64 = 0.06;
@@ -85,11 +87,15 @@ pub(crate) fn fit_fallback<W: Watcher>(
     let psnr = |maps: &[(MapKind, Image)]| psnr(order, with_maps, maps, judged, scope);
     let mut report = FallbackReport::default();
     let mut best: Option<Tried> = None;
-    for side in sides(order.options) {
+    let (sides, before) = (sides(order.options), solving_share(order.options));
+    for (place, &side) in sides.iter().enumerate() {
         if scope.stopped() {
             break;
         }
-        let maps = fit(order, low, kinds, side, references.clone(), scope, clock)?;
+        let share = |tried: usize| before + (1.0 - before) * tried as f64 / sides.len() as f64;
+        let own = Portion::new(scope, share(place)..share(place + 1)).of_stage(Stage::Solve);
+        let own = ProgressScope::new(&own, Instant::now(), None);
+        let maps = fit(order, low, kinds, side, references.clone(), &own, clock)?;
         let found = psnr(&maps);
         clock.lap(Stage::Solve);
         report.tried.push((side, found));
@@ -141,7 +147,7 @@ fn fit<W: Watcher>(
     let plan = &Plan { schedule, views, ..*plan };
     let prepared = &LowPoly::new(low, &high.frame, side)?;
     let projected = &project(prepared, high);
-    let subject = Subject { model: low, prepared, projected, kinds };
+    let subject = Subject { model: low, prepared, projected, kinds, is_seen: false };
     let order = Order { high, plan, options: &options, work };
     let mut images = fit_views(&order, subject, Some(references), None, scope, clock)?.fitted.images;
     images.retain(|(kind, _)| matches!(kind, MapKind::BaseColor | MapKind::Normal));

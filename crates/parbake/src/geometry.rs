@@ -13,13 +13,17 @@ use crate::error::BakeError;
 use crate::importance::importances_of;
 use crate::options::{BakeOptions, UvMode};
 use crate::report::Work;
+use crate::snapshots::of_surface;
 use parbake_model::Model;
-use parbake_progress::{Clock, ProgressScope, Stage, Watcher};
+use parbake_progress::{Clock, Portion, ProgressScope, Showing, Stage, Watcher};
 use parbake_render::parallax::ParallaxCoefficients;
 use parbake_shape::paper_joint_fit::paper_joint_fit;
 use parbake_shape::stage::{ShapeReport, grow_for_cutout, shape, smooth_references};
 use parbake_uv::surface::{Source, UvStageResult, optimise_uvs, repair_uvs_with_room};
 use parbake_views::high_poly::HighPoly;
+
+/// Share of the time for vertices that pictures of the high-poly take.
+const LOOKING: f64 = 0.2;
 
 /// What moved.
 #[derive(Default)]
@@ -62,12 +66,18 @@ pub fn move_geometry<W: Watcher>(
     let mut uv_options = options.uv_stage_for(work);
     let mut low = repair_uvs_with_room(low, &mut uv_options)?;
     clock.lap(Stage::Prepare);
+    let name = low.name.clone();
+    let shown = |snapshot| Some(of_surface(&name, high, snapshot));
     let share = scope.share(shares::SHAPE);
-    let mut references = shape_plan
-        .as_ref()
-        .map(|plan| smooth_references(high, plan.views, plan.view_size, plan.samples, options.seed, &share));
+    let share = &Showing::new(&share, shown);
+    let (looking, moving) = (0.0..LOOKING, LOOKING..1.0);
+    let looking = Portion::new(share, looking).of_stage(Stage::Shape);
+    let mut references = shape_plan.as_ref().map(|plan| {
+        smooth_references(high, plan.views, plan.view_size, plan.samples, options.seed, &looking)
+    });
     if let (Some(plan), Some(references)) = (&shape_plan, &references) {
-        geometry.shape = Some(shape(&low.name, &mut low.mesh, high, references, plan, &share)?);
+        let share = &Portion::new(share, moving);
+        geometry.shape = Some(shape(&low.name, &mut low.mesh, high, references, plan, share)?);
         clock.lap(Stage::Shape);
     }
     let growth_plan = options.growth_plan(geometry.shape.as_ref()).filter(|_| !same);
@@ -87,11 +97,15 @@ pub fn move_geometry<W: Watcher>(
         normals: true,
         pixel: Source::PIXEL,
     };
-    let mut uv_stage = optimise_uvs(low, &high.frame, &source, &uv_options, &scope.share(shares::UV));
+    let share = scope.share(shares::UV);
+    let share = &Showing::new(&share, shown);
+    let mut uv_stage = optimise_uvs(low, &high.frame, &source, &uv_options, share);
     clock.lap(Stage::Uv);
     if let (Some(plan), Some(references)) = (growth_plan, &references) {
-        let (Model { name, mesh, .. }, share) = (&mut uv_stage.model, scope.share(shares::GROWTH));
-        geometry.growth = Some(grow_for_cutout(name, mesh, high, references, &plan, &share)?);
+        let share = scope.share(shares::GROWTH);
+        let share = &Showing::new(&share, shown);
+        let mesh = &mut uv_stage.model.mesh;
+        geometry.growth = Some(grow_for_cutout(&name, mesh, high, references, &plan, share)?);
         clock.lap(Stage::Shape);
     }
     if let Some(plan) = &paper_joint_plan {

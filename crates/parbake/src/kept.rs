@@ -127,6 +127,10 @@ impl Watcher for Quiet<'_> {
         }
     }
 
+    fn wants_snapshot(&self) -> bool {
+        self.0.wants_snapshot()
+    }
+
     fn stopped(&self) -> bool {
         self.0.stopped()
     }

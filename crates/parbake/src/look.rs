@@ -8,7 +8,7 @@ use parbake_fit::parallax_maps::ParallaxMaps;
 use parbake_image::MapKind;
 use parbake_image::display::decode_srgb;
 use parbake_image::material_maps::set_texture;
-use parbake_model::{AlphaMode, Image, Material, Mesh, Model, TextureSlot, Wrap};
+use parbake_model::{AlphaMode, Image, Material, Mesh, Model, ParallaxMap, TextureSlot, Wrap};
 use parbake_views::alpha_layers::LayerKind;
 use parbake_views::extension_maps::{ExtensionMaps, LayerLook, extension_maps};
 use parbake_views::high_poly::HighPoly;
@@ -35,9 +35,14 @@ impl Look {
             true => extension_maps(low, &kinds, high),
             false => ExtensionMaps::default(),
         };
+        Self { extensions, ..Self::without_extensions(high, kinds) }
+    }
+
+    /// The same without the high-poly's material extensions.
+    pub fn without_extensions(high: &HighPoly, kinds: Vec<LayerKind>) -> Self {
         Self {
             kinds,
-            extensions,
+            extensions: ExtensionMaps::default(),
             is_whole: high.is_whole_material,
             emissive_strength: high.emissive_strength,
             is_unlit: high.is_whole_material && high.scene.is_unlit(),
@@ -52,23 +57,28 @@ impl Look {
         maps: Vec<(MapKind, Image)>,
         parallax: Option<&ParallaxMaps>,
     ) -> Model {
+        self.dressed(low, mesh, maps, Vec::new(), |images| parallax.map(|maps| maps.pack(images)))
+    }
+
+    /// The same with a parallax map that `parallax` gives, which may add its images to those of the maps; `images` are
+    /// there before these.
+    pub fn dressed(
+        &self,
+        low: &Model,
+        mesh: &Mesh,
+        maps: Vec<(MapKind, Image)>,
+        mut images: Vec<Image>,
+        parallax: impl FnOnce(&mut Vec<Image>) -> Option<ParallaxMap>,
+    ) -> Model {
         let mut mesh = mesh.clone();
         mesh.colors.clear();
         mesh.uvs1.clear();
-        if parallax.is_none() {
+        let mut material = Material { name: low.name.clone(), ..Material::default() };
+        self.add_maps(&mut material, &mut images, maps);
+        material.parallax = parallax(&mut images);
+        if material.parallax.is_none() {
             mesh.parallax_offsets.clear();
         }
-        let mut material = Material { name: low.name.clone(), ..Material::default() };
-        let mut images = Vec::new();
-        if self.is_whole {
-            self.add_whole(&mut material, &mut images, maps);
-        } else {
-            for (kind, image) in maps {
-                set_texture(&mut material, kind, slot(images.len()));
-                images.push(image);
-            }
-        }
-        material.parallax = parallax.map(|maps| maps.pack(&mut images));
         let mut kinds: Vec<LayerKind> = Vec::new();
         for (own, kind) in mesh.triangle_materials.iter_mut().zip(&self.kinds) {
             let index = kinds.iter().position(|k| k == kind).unwrap_or_else(|| {
@@ -81,6 +91,17 @@ impl Look {
         images.extend(self.extensions.images.iter().cloned());
         let materials = kinds.iter().map(|&kind| self.of_layer(&material, kind, first));
         Model { name: low.name.clone(), mesh, materials: materials.collect(), images, ..Model::default() }
+    }
+
+    /// Gives a material these maps, whose images are added to the model's.
+    pub fn add_maps(&self, material: &mut Material, images: &mut Vec<Image>, maps: Vec<(MapKind, Image)>) {
+        if self.is_whole {
+            return self.add_whole(material, images, maps);
+        }
+        for (kind, image) in maps {
+            set_texture(material, kind, slot(images.len()));
+            images.push(image);
+        }
     }
 
     /// The material of a layer; the images of extensions begin at `first`.

@@ -4,8 +4,9 @@ use crate::error::BakeError;
 use crate::options::Preset;
 use crate::parts::{kept_parts_of, parts_of_materials};
 use crate::rigs::transferred;
+use crate::snapshots::of_surface;
 use parbake_model::{AlphaMode, Material, MaterialExtensions, Model};
-use parbake_progress::Watcher;
+use parbake_progress::{Showing, Watcher};
 use parbake_simplify::polish::PolishOptions;
 use parbake_simplify::{ChooseOptions, LayerReport, choose_triangles, least_triangles};
 use parbake_views::high_poly::HighPoly;
@@ -58,7 +59,8 @@ pub fn low_poly(
         options.least = LEAST_OF_PART;
     }
     let parts = parts_of_materials(model);
-    let chosen = choose_triangles(high, before.as_ref(), &parts, &options, &watcher);
+    let watcher = &Showing::new(&watcher, |snapshot| Some(of_surface(&model.name, high, snapshot)));
+    let chosen = choose_triangles(high, before.as_ref(), &parts, &options, watcher);
     let mut mesh = chosen.mesh;
     for point in &mut mesh.positions {
         *point = *point / high.frame.scale + high.frame.centre;

@@ -6,9 +6,11 @@
 //! alone are grainy under others.
 
 use crate::bake::Order;
-use crate::budget::shares;
+use crate::budget::{shares, solving_share};
 use crate::error::BakeError;
+use crate::look::Look;
 use crate::report::Work;
+use crate::snapshots::OfMaps;
 use parbake_fit::backend::{Backend, Cpu};
 use parbake_fit::parallax_maps::{FittedMaps, ParallaxMaps, ParallaxPlan, ParallaxReport, fit_parallax_maps};
 use parbake_fit::schedule::{Comparison, Fitted, fit_textures};
@@ -17,7 +19,7 @@ use parbake_image::MapKind;
 use parbake_image::quantise::from_image;
 use parbake_model::Model;
 use parbake_model::glam::{Vec2, Vec3};
-use parbake_progress::{Clock, ProgressScope, Stage, Watcher};
+use parbake_progress::{Clock, Portion, ProgressScope, Showing, Stage, Watcher};
 use parbake_render::directions::{VertexFrame, sight};
 use parbake_render::parallax::ParallaxCoefficients;
 use parbake_render::shade::Lambert;
@@ -48,6 +50,8 @@ pub(crate) struct Subject<'a> {
     pub projected: &'a ProjectedMaps,
     /// The layer of each triangle.
     pub kinds: &'a [LayerKind],
+    /// Whether snapshots show it.
+    pub is_seen: bool,
 }
 
 /// The training views of an order.
@@ -83,12 +87,17 @@ pub(crate) fn fit_views<W: Watcher>(
     clock: &mut Clock,
 ) -> Result<FittedTextures, BakeError> {
     let &Order { high, plan, options, .. } = order;
-    let Subject { model: low, prepared, projected, kinds } = subject;
+    let Subject { model: low, prepared, projected, kinds, is_seen } = subject;
     let (size, placed) = (options.texture_size, &prepared.placed);
     let Conventions { display, .. } = high.conventions;
     let set = view_set(order);
     let parallax_plan = parallax_plan(order);
     let whole = high.is_whole_material;
+
+    let look = Look::without_extensions(high, kinds.to_vec());
+    let srgb = high.conventions.srgb();
+    let solving = Portion::new(scope, 0.0..solving_share(options));
+    let seen = OfMaps::new(&look, low, &prepared.written, &projected.maps, srgb, is_seen);
 
     let mut sampler = ViewSampler::new(placed, plan.reference.size, &display, options.beyond());
     if let Some(plan) = &parallax_plan {
@@ -97,6 +106,7 @@ pub(crate) fn fit_views<W: Watcher>(
     let parallax = match (parallax_plan, &references) {
         (Some(plan), Some(references)) => {
             let share = scope.share(shares::PARALLAX);
+            let share = Showing::new(&share, |snapshot| seen.complete(snapshot, None)).only_if(is_seen);
             let own = (prepared, projected);
             let fitted = fit_parallax_maps(low, own, high, references, &sampler, &plan, &share)?;
             clock.lap(Stage::Parallax);
@@ -105,7 +115,7 @@ pub(crate) fn fit_views<W: Watcher>(
         _ => given.map(FittedMaps::given),
     };
     let unseen = || BakeError::OutOfView { low: low.name.clone(), high: high.name.clone() };
-    let (atlas, start, srgb) = (&prepared.atlas, &projected.maps, high.conventions.srgb());
+    let (atlas, start) = (&prepared.atlas, &projected.maps);
     let sampled = |maps: Option<&ParallaxMaps>| {
         let shift = maps.map(shift_of);
         let shift = shift.as_ref().map(|shift| shift as _);
@@ -120,7 +130,10 @@ pub(crate) fn fit_views<W: Watcher>(
             return Err(unseen());
         }
         clock.lap(Stage::Sampling);
-        let fitted = fit_separate_maps(&samples, atlas, start, &Cpu, srgb, &plan.material_schedule(), scope);
+        let showing =
+            Showing::new(&solving, |snapshot| seen.complete(snapshot, maps.as_ref())).only_if(is_seen);
+        let schedule = plan.material_schedule();
+        let fitted = fit_separate_maps(&samples, atlas, start, &Cpu, srgb, &schedule, &showing);
         let (samples, parallax_report) = (samples.len(), parallax_report.flatten());
         return Ok(FittedTextures { fitted, views, samples, parallax: maps, parallax_report });
     }
@@ -146,17 +159,18 @@ pub(crate) fn fit_views<W: Watcher>(
     }
     clock.lap(Stage::Sampling);
     let comparison = Comparison { backend: &Cpu, brdf: &Lambert, display, srgb };
+    let showing = Showing::new(&solving, |snapshot| seen.complete(snapshot, maps.as_ref())).only_if(is_seen);
     let (mut start, mut schedule) = (start.clone(), plan.schedule);
     if schedule.normal_steps > 0 && !options.fits_normals_to_headlight() {
         let (samples, _) = sampled(maps.as_ref());
         let (normals, schedule_of_normals) = (start.only(MapKind::Normal), plan.material_schedule());
-        let fitted = fit_separate_maps(&samples, atlas, &normals, &Cpu, srgb, &schedule_of_normals, scope);
+        let fitted = fit_separate_maps(&samples, atlas, &normals, &Cpu, srgb, &schedule_of_normals, &showing);
         for (kind, image) in fitted.images {
             start.insert(kind, from_image(kind, &image, srgb));
         }
         schedule.normal_steps = 0;
     }
-    let fitted = fit_textures(&samples, atlas, &start, &comparison, &schedule, scope);
+    let fitted = fit_textures(&samples, atlas, &start, &comparison, &schedule, &showing);
     Ok(FittedTextures { fitted, views, samples: samples.len(), parallax: maps, parallax_report })
 }
 

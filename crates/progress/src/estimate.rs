@@ -38,7 +38,7 @@ impl Estimate {
                     (self.current, self.share) = (place, share);
                 }
             }
-            Message::Warning(_) => {}
+            Message::Warning(_) | Message::Loss { .. } | Message::Snapshot(_) => {}
         }
     }
 

@@ -2,13 +2,15 @@
 //!
 //! A stage reports through a [`Watcher`] and asks it whether to stop. A [`ProgressScope`] is a
 //! watcher that adds a time budget; its shares are the budgets of single stages. Front ends draw, and
-//! read off an [`Estimate`] how long the whole run will still take.
+//! read off an [`Estimate`] how long the whole run will still take. To those who want to see it, a run shows
+//! [`Snapshot`]s of what it has.
 
 mod clock;
 mod estimate;
 mod message;
 mod portion;
 mod scope;
+mod snapshot;
 mod stage;
 
 pub use clock::{Clock, StageTime};
@@ -16,4 +18,5 @@ pub use estimate::Estimate;
 pub use message::{Message, Watcher};
 pub use portion::Portion;
 pub use scope::ProgressScope;
+pub use snapshot::{MOST_TEXELS, PackedParallax, Showing, Snapshot};
 pub use stage::Stage;

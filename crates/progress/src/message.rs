@@ -1,6 +1,7 @@
 //! Messages of a run for whoever draws them, and the question whether to stop. The library
 //! never prints.
 
+use crate::snapshot::Snapshot;
 use crate::stage::Stage;
 
 /// One message.
@@ -28,6 +29,17 @@ pub enum Message {
     },
     /// Something that the user should know and that stops nothing.
     Warning(String),
+    /// What a stage minimises, after one of its steps.
+    Loss {
+        /// Which stage.
+        stage: Stage,
+        /// In a unit of the stage's own, above 0: only those of one descent can be compared.
+        value: f64,
+        /// Whether a descent begins with it.
+        is_first: bool,
+    },
+    /// What there is to see of the run; sent only where it was [wanted](Watcher::wants_snapshot).
+    Snapshot(Box<Snapshot>),
 }
 
 /// Receives messages and may stop a run; called from several threads at once.
@@ -40,6 +52,16 @@ pub trait Watcher: Sync {
     /// Reports that `done` of `total` steps of a stage are finished.
     fn progress(&self, stage: Stage, done: usize, total: usize) {
         self.message(Message::Progress { stage, done, total });
+    }
+
+    /// Shows the state of a stage; after [`Watcher::wants_snapshot`] said so.
+    fn snapshot(&self, snapshot: Snapshot) {
+        self.message(Message::Snapshot(Box::new(snapshot)));
+    }
+
+    /// Whether someone wants to see the state of the run now. To be asked before each snapshot, since that takes time.
+    fn wants_snapshot(&self) -> bool {
+        false
     }
 
     /// True once the run shall end with the best state so far.
@@ -65,6 +87,14 @@ impl<W: Watcher + ?Sized> Watcher for &W {
 
     fn progress(&self, stage: Stage, done: usize, total: usize) {
         (**self).progress(stage, done, total);
+    }
+
+    fn snapshot(&self, snapshot: Snapshot) {
+        (**self).snapshot(snapshot);
+    }
+
+    fn wants_snapshot(&self) -> bool {
+        (**self).wants_snapshot()
     }
 
     fn stopped(&self) -> bool {

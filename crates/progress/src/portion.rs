@@ -3,6 +3,7 @@
 //! Contract: passes all else on.
 
 use crate::message::{Message, Watcher};
+use crate::stage::Stage;
 use std::ops::Range;
 
 /// Steps that a stage has when its parts report.
@@ -12,12 +13,19 @@ const STEPS: f64 = 1000.0;
 pub struct Portion<'a, W: ?Sized> {
     watcher: &'a W,
     range: Range<f64>,
+    /// The stage that it is a part of; none where its messages say so.
+    stage: Option<Stage>,
 }
 
 impl<'a, W: Watcher + ?Sized> Portion<'a, W> {
     /// For the part from `range.start` to `range.end` of the stage, 0 to 1.
     pub fn new(watcher: &'a W, range: Range<f64>) -> Self {
-        Self { watcher, range }
+        Self { watcher, range, stage: None }
+    }
+
+    /// The same for a part that by itself would be another stage.
+    pub fn of_stage(self, stage: Stage) -> Self {
+        Self { stage: Some(stage), ..self }
     }
 }
 
@@ -27,10 +35,15 @@ impl<W: Watcher + ?Sized> Watcher for Portion<'_, W> {
             Message::Progress { stage, done, total } => {
                 let share = (done as f64 / total.max(1) as f64).clamp(0.0, 1.0);
                 let share = self.range.start + (self.range.end - self.range.start) * share;
+                let stage = self.stage.unwrap_or(stage);
                 Message::Progress { stage, done: (STEPS * share).round() as usize, total: STEPS as usize }
             }
             other => other,
         });
+    }
+
+    fn wants_snapshot(&self) -> bool {
+        self.watcher.wants_snapshot()
     }
 
     fn stopped(&self) -> bool {
@@ -46,7 +59,6 @@ impl<W: Watcher + ?Sized> Watcher for Portion<'_, W> {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::Stage;
     use std::sync::Mutex;
 
     struct Notes(Mutex<Vec<Message>>);
@@ -64,7 +76,10 @@ mod tests {
         let half = Portion::new(&notes, 0.5..1.0);
         half.progress(Stage::Simplify, 0, 7);
         half.progress(Stage::Simplify, 7, 7);
-        let at = |done| Message::Progress { stage: Stage::Simplify, done, total: 1000 };
-        assert_eq!(*notes.0.lock().unwrap(), [at(500), at(1000)]);
+        let of_shape = Portion::new(&notes, 0.0..0.5).of_stage(Stage::Shape);
+        of_shape.progress(Stage::Reference, 1, 1);
+        let at = |stage, done| Message::Progress { stage, done, total: 1000 };
+        let all = [at(Stage::Simplify, 500), at(Stage::Simplify, 1000), at(Stage::Shape, 500)];
+        assert_eq!(*notes.0.lock().unwrap(), all);
     }
 }

@@ -54,6 +54,10 @@ impl<W: Watcher> Watcher for ProgressScope<'_, W> {
         self.watcher.message(message);
     }
 
+    fn wants_snapshot(&self) -> bool {
+        self.watcher.wants_snapshot()
+    }
+
     fn stopped(&self) -> bool {
         let stop = self.watcher.stopped() || self.until.is_some_and(|until| Instant::now() >= until);
         if stop {

@@ -29,7 +29,7 @@ use crate::views::{Judgement, Outline, Views};
 use glam::{Vec3, Vec4};
 use parbake_image::display::Display;
 use parbake_model::Mesh;
-use parbake_progress::{Stage, Watcher};
+use parbake_progress::{Message, Snapshot, Stage, Watcher};
 use parbake_render::background::Background;
 use parbake_render::camera::{Camera, Projection};
 use parbake_render::edges::EdgeAdjacency;
@@ -142,6 +142,11 @@ impl Fit<'_> {
         let [color, normal] = texture.pyramids();
         self.views.look(&surface, &Textures::new(&color, Some(&normal)), views)
     }
+
+    fn snapshot(&self, at: &[Vec3], texture: &Provisional) -> Snapshot {
+        let mesh = Mesh { positions: self.points.vertices(at), ..self.mesh.clone() };
+        Snapshot::Surface { mesh, color: Some(texture.color.clone()) }
+    }
 }
 
 /// Side in pixels of a view of half the size at least: smaller ones show no outlines.
@@ -209,6 +214,8 @@ pub fn fit_shape(
             .collect();
         fit.views = if step < coarse_until { coarse } else { fine };
         let Judgement { loss, gradients, .. } = fit.look(moving.at(), &provisional.texture, &views);
+        let is_first = step == 0 || step == coarse_until;
+        watcher.message(Message::Loss { stage: Stage::Shape, value: loss.image, is_first });
         losses.push(loss);
         let share = rate_at(step, steps);
         // Gradients are sums over the step's views.
@@ -219,6 +226,9 @@ pub fn fit_shape(
         };
         moving.step(&gradients.positions, &smoothing, held * summed, share);
         provisional.step(&gradients, share);
+        if watcher.wants_snapshot() {
+            watcher.snapshot(fit.snapshot(moving.at(), &provisional.texture));
+        }
     }
     watcher.progress(Stage::Shape, steps, steps);
     fit.views = fine;

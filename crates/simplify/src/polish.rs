@@ -16,7 +16,7 @@ use crate::pictures::{Pictures, Scratch};
 use crate::surface::Surface;
 use crate::target::Target;
 use glam::Vec3;
-use parbake_progress::{Message, Stage, Watcher};
+use parbake_progress::{Message, Snapshot, Stage, Watcher};
 use parbake_render::interpolate::interpolate;
 use parbake_views::high_poly::HighPoly;
 use rayon::prelude::*;
@@ -56,6 +56,9 @@ pub fn polish<'a>(
     let mut without = 0;
     for round in 0..options.rounds {
         watcher.progress(Stage::Simplify, round + 1, options.rounds + 2);
+        if watcher.wants_snapshot() {
+            watcher.snapshot(Snapshot::Surface { mesh: pictures.surface.to_mesh(), color: None });
+        }
         if is_over(watcher) || without == PATIENCE {
             break;
         }

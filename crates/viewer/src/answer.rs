@@ -3,8 +3,9 @@
 //! Contract: nothing is answered but GET requests of this machine's own page. Every answer forbids the browser to
 //! guess its type, to keep it, and to hand the address on; the page may load nothing from anywhere else.
 
+use crate::live::Live;
 use crate::models::Entry;
-use crate::routes::{Route, route};
+use crate::routes::{Route, RunRoute, route};
 use bytes::Bytes;
 use http_body_util::Full;
 use hyper::header::{
@@ -13,6 +14,7 @@ use hyper::header::{
 };
 use hyper::{HeaderMap, Method, Response, StatusCode};
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 /// Scripts and styles are the page's own files. Decoders of meshes and textures are WebAssembly, run in workers made
 /// from text, one of which holds its own bytes as data; textures inside models become blobs.
@@ -31,6 +33,8 @@ pub(crate) struct Shown {
     /// The only host that may be asked: an address with the port.
     pub host: String,
     pub models: Vec<Entry>,
+    /// A run that is followed.
+    pub live: Option<Arc<Live>>,
 }
 
 pub(crate) type Answer = Response<Full<Bytes>>;
@@ -48,10 +52,10 @@ pub(crate) async fn answer(shown: &Shown, method: &Method, path: &str, headers: 
         answer.headers_mut().insert(ALLOW, HeaderValue::from_static("GET"));
         return answer;
     }
-    let Some(route) = route(path, &shown.token, shown.models.len()) else {
+    let Some(route) = route(path, &shown.token, shown.models.len(), shown.live.is_some()) else {
         return refused(
             StatusCode::NOT_FOUND,
-            "There is nothing here. Use the whole address that parbake view printed.",
+            "There is nothing here. Use the whole address that parbake printed.",
         );
     };
     match route {
@@ -73,6 +77,25 @@ pub(crate) async fn answer(shown: &Shown, method: &Method, path: &str, headers: 
             }
             Err(reason) => document(StatusCode::UNPROCESSABLE_ENTITY, &json!({ "error": reason })),
         },
+        Route::Run(asked) => match &shown.live {
+            Some(live) => of_run(live, asked).await,
+            None => refused(StatusCode::NOT_FOUND, "No run is followed here."),
+        },
+    }
+}
+
+async fn of_run(live: &Live, asked: RunRoute) -> Answer {
+    match asked {
+        RunRoute::News(version) => document(StatusCode::OK, &live.news(version, false).await),
+        RunRoute::NewsAndSnapshot(version) => document(StatusCode::OK, &live.news(version, true).await),
+        RunRoute::Snapshot => match live.glb().await {
+            Some(glb) => reply(StatusCode::OK, "model/gltf-binary", glb),
+            None => refused(StatusCode::NOT_FOUND, "There is nothing to see of this run yet."),
+        },
+        RunRoute::Shown => {
+            live.take_over();
+            document(StatusCode::OK, &Value::Null)
+        }
     }
 }
 
@@ -82,7 +105,8 @@ fn session(shown: &Shown) -> Value {
         json!({ "name": entry.name(), "role": entry.role.name(), "url": url, "notes": notes })
     };
     let models: Vec<Value> = shown.models.iter().enumerate().map(of).collect();
-    json!({ "version": env!("CARGO_PKG_VERSION"), "models": models })
+    let live = shown.live.as_ref().map(|live| json!({ "name": live.name() }));
+    json!({ "version": env!("CARGO_PKG_VERSION"), "models": models, "live": live })
 }
 
 fn document(status: StatusCode, value: &Value) -> Answer {

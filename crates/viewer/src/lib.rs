@@ -2,10 +2,11 @@
 //!
 //! ```text
 //! files ─ models ─┐
+//! run ─── live ───┤
 //! page ───────────┴ routes ─ server ─ browser
 //! ```
 //!
-//! `page.rs` is the built page, whose sources are in `apps/viewer`; `models.rs` makes one GLB file of each model;
+//! `page.rs` is the built page, whose sources are in `apps/viewer`; `models.rs` makes one GLB file of each model; `live.rs` follows a running bake;
 //! `routes.rs` says what may be asked for, `answer.rs` what comes back, and `server.rs` listens.
 //!
 //! Contract: the server listens on 127.0.0.1 alone. Every address begins with a token that is drawn anew for each
@@ -14,10 +15,12 @@
 
 mod answer;
 mod error;
+mod live;
 mod models;
 mod page;
 mod routes;
 mod server;
 
 pub use error::ViewError;
+pub use live::Live;
 pub use server::{Server, View, open_browser};

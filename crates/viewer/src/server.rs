@@ -1,8 +1,8 @@
 //! Listens on this machine and hands requests on.
 
-use crate::ViewError;
 use crate::answer::{Shown, answer};
 use crate::models::{Entry, Role};
+use crate::{Live, ViewError};
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
@@ -22,8 +22,10 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// What is to be viewed.
 #[derive(Clone, Debug, Default)]
 pub struct View {
-    /// The model; several files are its levels of detail, the finest first.
+    /// The model; several files are its levels of detail, the finest first. None where a run is followed.
     pub levels: Vec<PathBuf>,
+    /// A run whose result is shown while it is made. Default: none.
+    pub live: Option<Arc<Live>>,
     /// What it is compared with. Default: nothing.
     pub compare: Option<PathBuf>,
     /// Port to listen on; 0, the default, takes any that is free.
@@ -51,7 +53,8 @@ impl Server {
         let levels = view.levels.iter().map(|path| Entry::new(path, Role::Level, view.limits));
         let compare = view.compare.iter().map(|path| Entry::new(path, Role::Compare, view.limits));
         let models = levels.chain(compare).collect();
-        Ok(Self { listener, shown: Arc::new(Shown { token: token()?, host, models }) })
+        let live = view.live.clone();
+        Ok(Self { listener, shown: Arc::new(Shown { token: token()?, host, models, live }) })
     }
 
     /// The page's address. Who knows it can read the models.
@@ -81,7 +84,9 @@ impl Server {
 async fn serve(listener: TcpListener, shown: Arc<Shown>) -> Result<Infallible, ViewError> {
     listener.set_nonblocking(true).map_err(ViewError::Start)?;
     let listener = tokio::net::TcpListener::from_std(listener).map_err(ViewError::Start)?;
-    for index in 0..shown.models.len() {
+    // Beside a run nothing is read before a page asks.
+    let at_once = if shown.live.is_some() { 0 } else { shown.models.len() };
+    for index in 0..at_once {
         let shown = shown.clone();
         tokio::spawn(async move {
             shown.models[index].ready().await;

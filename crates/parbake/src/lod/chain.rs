@@ -118,6 +118,10 @@ impl Watcher for LevelWatcher<'_> {
         }
     }
 
+    fn wants_snapshot(&self) -> bool {
+        self.watcher.wants_snapshot()
+    }
+
     fn stopped(&self) -> bool {
         self.watcher.stopped()
     }

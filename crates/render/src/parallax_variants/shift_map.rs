@@ -38,6 +38,11 @@ pub trait ShiftMap: Clone + Send + Sync {
     /// Adds the gradients of the parameters to `into`, which has this map's shape.
     fn adjoint_of_maps(&self, uv: Vec2, from: &TangentView, to_shift: Vec2, into: &mut Self);
 
+    /// The coefficients that a file can hold; none where this map is only studied.
+    fn coefficients(&self) -> Option<&ParallaxCoefficients> {
+        None
+    }
+
     /// Zeros in this map's shape.
     fn zeros_like(&self) -> Self;
 
@@ -102,6 +107,10 @@ impl ShiftMap for ParallaxCoefficients {
     #[inline]
     fn adjoint_of_maps(&self, uv: Vec2, from: &TangentView, to_shift: Vec2, into: &mut Self) {
         ParallaxCoefficients::adjoint_of_maps(self, uv, &from.sight, to_shift, into);
+    }
+
+    fn coefficients(&self) -> Option<&ParallaxCoefficients> {
+        Some(self)
     }
 
     fn zeros_like(&self) -> Self {

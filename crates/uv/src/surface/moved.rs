@@ -68,7 +68,7 @@ pub fn moved(
     let (left, mut layout) = packed.unwrap_or_else(|| (unmoved, start.clone()));
     let mut frames = vec![as_f32(&start.points), as_f32(&layout.points)];
     let most = options.refine_steps + FLAT.len() * options.shape_steps;
-    let steps = &mut Steps::new(most, watcher);
+    let steps = &mut Steps::new(most, mesh, start, watcher);
     frames.extend(shaped(score, &mut layout, left, tensors, options, steps));
     let more_triangles = if own { asked.more_triangles } else { 0 };
     let (moved, relative) = refined(score, layout, options, more_triangles, frames, steps)?;
@@ -103,7 +103,8 @@ fn shaped<W: Watcher>(
     for flat in FLAT {
         let (mut guess, mut way) = (before.clone(), Vec::new());
         let own = UvOptions { flat, ..*options };
-        shape(score.problem, &mut guess, tensors, &own, |points, _| steps.step(&mut way, points));
+        steps.begin();
+        shape(score.problem, &mut guess, tensors, &own, |points, loss| steps.step(&mut way, points, loss));
         let left = score.total(&guess);
         if left < least && score.is_sound(&guess) {
             (*layout, least, shaped) = (guess, left, way);

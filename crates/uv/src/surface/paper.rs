@@ -26,7 +26,7 @@ use crate::triangle_batches::TriangleBatches;
 use parbake_atlas::Layout;
 use parbake_model::Mesh;
 use parbake_model::glam::DVec2;
-use parbake_progress::{Message, Stage, Watcher};
+use parbake_progress::{Message, Snapshot, Stage, Watcher};
 
 /// Rounds between two frames of an animation.
 const FRAME_ROUNDS: usize = 10;
@@ -90,6 +90,11 @@ pub fn moved(
             score(progress.points);
         }
         watcher.message(Message::Progress { stage: Stage::Uv, done: progress.round, total });
+        if watcher.wants_snapshot() {
+            let layout = Layout { points: progress.points.to_vec(), ..start.clone() };
+            let mesh = Mesh { uvs: layout.uvs(), ..mesh.clone() };
+            watcher.snapshot(Snapshot::Surface { mesh, color: None });
+        }
         !watcher.stopped()
     });
     score(&found.points);

@@ -79,7 +79,8 @@ pub fn refined<W: Watcher>(
         }
         let problem = &finer.as_ref().map_or(*coarse, |finer| finer.problem(coarse));
         let way = if finer.is_some() { &mut fine_frames } else { &mut frames };
-        let step = |points: &[DVec2], _| steps.step(way, points);
+        steps.begin();
+        let step = |points: &[DVec2], loss| steps.step(way, points, loss);
         texture = refine(problem, &balance, &mut layout, texture, &turn, step).texture;
         let errors = score.relative(problem, &layout);
         // By what the texture that will be solved for leaves.
