@@ -65,7 +65,7 @@ export function showRun(name, state) {
   byId('run-progress').value = progress;
   byId('run-progress').hidden = Boolean(failure);
   const share = isFinished || failure || done === null || done === undefined ? '' : percent(done) + left;
-  byId('run-left').textContent = share;
+  byId('run-left').textContent = share && left.slice(2);
   byId('run-reading').hidden = false;
   byId('run-reading').classList.toggle('failed', Boolean(failure));
   byId('run-text').textContent = [sentence, share].filter(Boolean).join(', ');

@@ -1,11 +1,12 @@
 //! `parbake view` as scripts and people meet it, and its page in a real browser beside the CPU renderer.
 
-use crate::common::{demo_files, parbake, text};
+use crate::common::{demo_files, parbake, run, text};
 use parbake::{EvaluateOptions, Limits, Shading, Studio, read_model, write_glb};
 use parbake_model::TextureSlot;
 use parbake_model::glam::Vec3;
-use serde_json::json;
-use std::io::{BufRead, BufReader};
+use serde_json::{Value, json};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
@@ -36,6 +37,60 @@ impl Drop for Viewer {
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
+}
+
+/// What the address answers, and the status.
+fn get(url: &str) -> (u16, Vec<u8>) {
+    let (host, path) = url.strip_prefix("http://").unwrap().split_once('/').unwrap();
+    let mut stream = TcpStream::connect(host).unwrap();
+    write!(stream, "GET /{path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();
+    let mut all = Vec::new();
+    stream.read_to_end(&mut all).unwrap();
+    let head = all.windows(4).position(|four| four == b"\r\n\r\n").unwrap() + 4;
+    (text(&all[9..12]).parse().unwrap(), all.split_off(head))
+}
+
+/// Protects a bake that is watched: its page has the model before the bake ends, the file has the same bytes as unwatched,
+/// the last thing shown is that file, and the command ends as soon as the page has it.
+#[test]
+fn a_watched_bake_shows_itself_and_writes_the_same_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_files(folder, &["demo_high.glb", "demo_low.glb"]);
+    let files = ["bake", "demo_high.glb", "demo_low.glb", "--texture-size", "128", "--preset", "fast", "-q"];
+    run(folder, &[&files[..], &["-o", "alone.glb"]].concat());
+    let mut command = parbake(folder);
+    command.args(files).args(["-o", "watched.glb", "--watch", "--no-open"]).stderr(Stdio::piped());
+    let mut process = command.spawn().unwrap();
+    let mut line = String::new();
+    BufReader::new(process.stderr.take().unwrap()).read_line(&mut line).unwrap();
+    let url = line.trim().split(' ').next_back().unwrap();
+    let ask = |version: u64| -> Value {
+        serde_json::from_slice(&get(&format!("{url}run/look/{version}")).1).unwrap()
+    };
+    let (mut state, mut shown, mut models) = (ask(0), 0, Vec::new());
+    while state["isFinished"] == false && state["failure"].is_null() {
+        let snapshot = state["snapshot"].as_u64().unwrap();
+        if snapshot > shown {
+            shown = snapshot;
+            models.push(get(&format!("{url}run/snapshot")).1);
+        }
+        state = ask(state["version"].as_u64().unwrap());
+    }
+    assert!(state["failure"].is_null(), "{state}");
+    let last = get(&format!("{url}run/snapshot")).1;
+    assert!(!models.is_empty(), "{state}");
+    for (k, model) in models.iter().enumerate() {
+        let name = folder.join(format!("snapshot{k}.glb"));
+        std::fs::write(&name, model).unwrap();
+        assert!(!read_model(&name, &Limits::default()).unwrap().model.mesh.triangles.is_empty());
+    }
+    assert!(state["curves"].as_array().unwrap().len() > 1, "{state}");
+    assert_eq!(get(&format!("{url}run/shown")).0, 200);
+    assert!(process.wait().unwrap().success());
+    let written = std::fs::read(folder.join("watched.glb")).unwrap();
+    assert_eq!(last, written);
+    assert!(written == std::fs::read(folder.join("alone.glb")).unwrap(), "watched, it wrote something else");
 }
 
 /// Protects scripts: the address alone on standard output, on this machine alone; and one sentence for mistakes.
