@@ -7,6 +7,8 @@ const COLOR: Purpose = Purpose { of: Use::Color, content: Content::Color, cutoff
 const NORMAL: Purpose = Purpose { of: Use::Data, content: Content::Normal, cutoff: None };
 const EXACT: Purpose = Purpose { of: Use::Exact, content: Content::Values, cutoff: None };
 
+const FALLBACK: Purpose = Purpose { of: Use::Fallback, content: Content::Normal, cutoff: None };
+
 fn write(image: &Image, purpose: Purpose, (texture_format, texture_quality): (TextureFormat, u8)) -> Encoded {
     let options = WriteOptions { texture_format, texture_quality, mesh_compression: MeshCompression::None };
     encode_texture(image, purpose, &options).unwrap()
@@ -95,4 +97,20 @@ fn sides_that_ktx2_cannot_have_stay_png() {
     let out = write(&image, COLOR, (TextureFormat::Ktx2, 92));
     assert_eq!(out.format, TextureFormat::Png);
     assert!(out.reason.unwrap().contains("this one has 64 × 63"));
+}
+
+/// Protects the size of files with parallax maps, and pictures of viewers that do not know them: what those see alone is
+/// JPEG where other textures are lossless, but not where it has alpha.
+#[test]
+fn fallbacks_are_small() {
+    let mut image = picture();
+    for format in [TextureFormat::Png, TextureFormat::WebpLossless, TextureFormat::Webp] {
+        let written = write(&image, FALLBACK, (format, 92));
+        assert_eq!((written.format, written.reason), (TextureFormat::Jpeg, None), "{format:?}");
+        assert!(written.psnr.unwrap() > 32.0);
+    }
+    assert_eq!(write(&image, FALLBACK, (TextureFormat::Ktx2Etc1s, 92)).format, TextureFormat::Ktx2);
+    image.pixels[0][3] = 9;
+    let stays = write(&image, FALLBACK, (TextureFormat::Png, 92));
+    assert_eq!((stays.format, stays.psnr, stays.reason), (TextureFormat::Png, None, None));
 }

@@ -87,7 +87,8 @@ pub const LEAST_DATA_QUALITY: u8 = 95;
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default)]
 pub struct WriteOptions {
-    /// Image format of the textures in a GLB file; parbake's parallax maps stay lossless
+    /// Image format of the textures in a GLB file; parbake's parallax maps stay lossless, what viewers without them show
+    /// is JPEG unless the format is KTX2
     #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "FORMAT", default_value_t = TextureFormat::Png, help_heading = HEADING))]
     pub texture_format: TextureFormat,
 

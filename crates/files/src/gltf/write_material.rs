@@ -206,10 +206,25 @@ pub(super) fn purpose_of(model: &Model, image: usize) -> Purpose {
     };
     let is_color = materials().any(|m| base_color(m) || is(&m.emissive_texture))
         || extensions().any(|(_, is_color)| is_color);
+    // What a parallax map has textures of its own for is seen by viewers alone that do not know it.
+    let stands_in = |m: &Material| {
+        let of_maps = m.parallax.as_ref().map(|map| [map.base_color_texture, map.normal_texture]);
+        let own = [m.base_color_texture, m.normal_texture];
+        own.iter().zip(of_maps.into_iter().flatten()).any(|(own, of_map)| is(own) && of_map.is_some())
+    };
+    let is_shown = |m: &Material| {
+        let of_maps = m.parallax.iter().flat_map(|map| [map.base_color_texture, map.normal_texture]);
+        let own = [m.metallic_roughness_texture, m.occlusion_texture, m.emissive_texture];
+        of_maps.chain(own).any(|slot| is(&slot))
+            || (m.parallax.is_none() && m.texture_slots().any(|s| s.image == image))
+    };
+    let is_fallback =
+        materials().any(stands_in) && !materials().any(is_shown) && extensions().next().is_none();
     let masked = |m: &&Material| m.alpha_mode == AlphaMode::Mask && base_color(m) && m.base_color[3] > 0.0;
     Purpose {
         of: match () {
             () if maps().any(is_exact) => Use::Exact,
+            () if is_fallback => Use::Fallback,
             () if is_data => Use::Data,
             () => Use::Color,
         },

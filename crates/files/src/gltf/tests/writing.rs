@@ -91,7 +91,7 @@ fn purposes_follow_from_slots() {
     use super::super::write_material::purpose_of;
     use crate::ktx2_out::Content;
     use crate::texture_out::{Purpose, Use};
-    use parbake_model::{AlphaMode, Sheen};
+    use parbake_model::{AlphaMode, ParallaxMap, Sheen};
     let slot = |image| Some(TextureSlot { image, ..TextureSlot::default() });
     let mut material = Material {
         base_color_texture: slot(0),
@@ -118,4 +118,10 @@ fn purposes_follow_from_slots() {
     assert_eq!([0, 1, 2, 3, 4].map(|image| purpose_of(&model, image)), expected);
     model.materials[0].alpha_mode = AlphaMode::Blend;
     assert_eq!(purpose_of(&model, 0).cutoff, None);
+    // Without the extension only base colour 0 and the normals 1 are seen, with it 5 in the place of the colours.
+    model.materials[0].parallax = Some(ParallaxMap { base_color_texture: slot(5), ..ParallaxMap::default() });
+    let uses = |model: &Model| [0, 1, 3, 5].map(|image| purpose_of(model, image).of);
+    assert_eq!(uses(&model), [Use::Fallback, Use::Data, Use::Color, Use::Color]);
+    model.materials.push(Material { base_color_texture: slot(0), ..Material::default() });
+    assert_eq!(uses(&model)[0], Use::Color, "another material shows it");
 }
