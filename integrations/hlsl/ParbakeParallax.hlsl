@@ -61,7 +61,7 @@ float ParbakeFaded(float opacity, float fade)
 // of a triangle it is any number.
 float ParbakeCoverage(float opacity, float width)
 {
-    return saturate(0.5 + opacity / clamp(width, 1e-6, 1.0));
+    return saturate(0.5 + opacity / clamp(width, 1e-6, 10.0));
 }
 
 // Where a layer of an image has the coordinate t: layers lie one below the other, each of so many rows. Half a row is

@@ -204,14 +204,14 @@ fn finish(
     let begin = console.seconds();
     let model = with_normal_y(&baked.model, options.normal_y);
     (_, baked.report.written) = write_model(output, &model, &options.write, console)?;
-    if let Some(page) = console.page() {
-        page.finish(output, console.limits());
-    }
     let report = &mut baked.report;
     report.warnings.splice(0..0, pair.warnings.iter().map(|warning| warning.text.clone()));
     let reading = pair.seconds.map(|seconds| StageTime { stage: Stage::Read, seconds });
     report.stages.splice(0..0, reading);
     report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
+    if let Some(page) = console.page() {
+        page.finish(output, console.limits());
+    }
     for stage in &report.stages {
         console.detail(&format!("{:24} {:7.3} s", stage.stage.label(), stage.seconds));
     }

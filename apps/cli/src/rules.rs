@@ -100,7 +100,10 @@ pub fn check(
             refuse(&["uv_steps"], "does nothing without --uv optimize; choose that or leave it out")?;
         }
     }
-    if matches!(options.write.texture_format, TextureFormat::Png | TextureFormat::WebpLossless) {
+    let is_lossless =
+        matches!(options.write.texture_format, TextureFormat::Png | TextureFormat::WebpLossless);
+    // Textures for viewers without parallax maps are JPEG in either case.
+    if is_lossless && !options.has_fallback() {
         refuse(
             &["texture_quality"],
             "does nothing with a lossless --texture-format; choose another or leave it out",

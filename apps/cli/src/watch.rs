@@ -30,9 +30,11 @@ pub fn open(
     let is_large = std::fs::metadata(high).is_ok_and(|found| found.len() > LARGEST);
     if is_large {
         live.warn(&format!(
-            "{}: not shown beside the bake, since it is larger than {} MB; use parbake view {name} --compare afterwards",
-            high.display(),
-            LARGEST >> 20
+            "{high}: not shown beside the bake, since it is larger than {} MB; afterwards \
+             parbake view {output} --compare {high} shows both",
+            LARGEST >> 20,
+            high = high.display(),
+            output = output.display()
         ));
     }
     let view = View {

@@ -4358,7 +4358,7 @@ vec4 parallaxTexture( sampler2D map, vec2 uv ) {
       parallaxSight ) - 1.0 );
     #ifdef ALPHA_TO_COVERAGE
       // The width is taken before anything is discarded. It is bounded, for past the edge of a triangle it is any number.
-      float parallaxWidth = clamp( fwidth( parallaxThere ), 1e-6, 1.0 );
+      float parallaxWidth = clamp( fwidth( parallaxThere ), 1e-6, 10.0 );
       parallaxCoverage = parallaxIsMultisampled ? clamp( 0.5 + parallaxThere / parallaxWidth, 0.0, 1.0 ) : step( 0.0, parallaxThere );
       if ( parallaxCoverage <= 0.0 ) discard;
     #else

@@ -53,8 +53,11 @@ export function wireAnimation(redraw) {
     toggle: () => play(!playing),
     /** From now on it is these models that move. */
     setModels(models) {
+      for (const model of animated) model.mixer.stopAllAction();
       animated = models.filter((model) => model.clips.length);
-      [playing, time, length] = [false, 0, 0];
+      [time, length] = [0, 0];
+      play(false);
+      pose();
       const names = new Set(animated.flatMap((model) => model.clips.map((clip, i) => clip.name || `Clip ${i + 1}`)));
       options(byId('clip'), [...names].map((name) => [name, name]));
       byId('animation-section').hidden = animated.length === 0;

@@ -2,7 +2,7 @@
 import { AnimationMixer, Box3, DRACOLoader, GLTFLoader, Group, LoadingManager, MeshoptDecoder } from './vendor.js';
 import { guard } from './guard.js';
 import { Ktx2 } from './ktx2.js';
-import { TEXTURE_SLOTS, teach } from './materials.js';
+import { TEXTURE_SLOTS, forget, teach } from './materials.js';
 import { ParallaxPlugin, parallaxMaterials, setParallax } from '../../../integrations/three/src/index.js';
 
 /** Maps of the first version, which are not shown. */
@@ -117,7 +117,12 @@ export class Model {
       object.geometry?.dispose();
       for (const material of materialsOf(object)) {
         const own = TEXTURE_SLOTS.map(([slot]) => material[slot]);
-        for (const texture of [...own, ...(material.parallax?.textures ?? [])]) texture?.dispose();
+        for (const texture of [...own, ...(material.parallax?.textures ?? [])]) {
+          texture?.dispose();
+          // Pictures that were decoded for the graphics processor are not given back with their textures.
+          texture?.source.data?.close?.();
+        }
+        forget(material);
         material.dispose();
       }
     });

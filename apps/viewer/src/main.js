@@ -29,7 +29,7 @@ const store = createStore({
 /** When the models are on the stage and all is wired. */
 const ready = deferred();
 const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-let stage, animation, levels = null, compare = null, drawing = 0, resting = 0, measuring = 0, measured = 0, textures = [], isListed = false, runNotes = [], isSlow = false;
+let stage, animation, levels = null, compare = null, drawing = 0, resting = 0, measuring = 0, measured = 0, textures = [], isListed = false, runNotes = [], isSlow = false, isRun = false, toldNotes = null;
 /** Models that are shown no more. */
 const retired = [];
 
@@ -149,7 +149,9 @@ function listTextures() {
   }
   const same = (a, b) => a.entry?.label === b?.entry?.label && a.owner === b?.owner, before = textures[byId('texture').value];
   [textures, isListed] = [list, true];
-  options(byId('texture'), list.map((item, index) => [index, item.label]));
+  const labels = list.map((item) => item.label);
+  if (labels.join('\n') !== [...byId('texture').options].map((option) => option.text).join('\n'))
+    options(byId('texture'), labels.map((label, index) => [index, label]));
   const index = Math.max(0, list.findIndex((item) => same(item, before)));
   byId('texture').value = index;
   showTexture(index);
@@ -165,6 +167,8 @@ function fail(error) {
   byId('message').hidden = true;
   byId('failure').hidden = false;
   byId('failure-text').textContent = error.message ?? String(error);
+  if (isRun) byId('failure-title').textContent = 'The bake has failed';
+  byId('failure-hint').hidden = isRun;
   // There is nothing to set.
   document.body.classList.add('failed');
   byId('panel-toggle').hidden = true;
@@ -298,6 +302,7 @@ async function readSession() {
   const files = session.models.filter((model) => model.role === 'level');
   const other = session.models.find((model) => model.role === 'compare');
   const { name } = session.live ?? files[0];
+  isRun = Boolean(session.live);
   byId('version').textContent = `Parbake ${session.version}.`;
   byId('title').textContent = name;
   byId('subtitle').textContent = other ? `compared with ${other.name}` : '';
@@ -335,14 +340,23 @@ function firstSnapshot(run, load) {
   let isFirst = true, before = Infinity;
   const tell = (state) => {
     showRun(run.name, state);
-    runNotes = state.warnings ?? [];
+    runNotes = state.warnings ?? runNotes;
+    if (state.failure) setSlow(false);
     if (state.failure) store.get().isReady ? warn(state.failure) : first.reject(new Error(state.failure));
     if (store.get().isReady) tellNotes();
-    else byId('message-text').textContent = byId('run-text').textContent;
+    else write(byId('message-text'), byId('run-stage').textContent);
   };
   const show = async (bytes, { bytes: size = null, isFinished }) => {
     const began = performance.now();
-    const model = await load({ entry: run, bytes, size, notes: [] }), loaded = performance.now() - began;
+    const model = await load({ entry: run, bytes, size, notes: [] }).catch((error) => {
+      if (isFirst) first.reject(error);
+      else warn(error.message);
+    });
+    if (!model) {
+      setSlow(!isFinished && isSlow);
+      return { took: performance.now() - began, isSlow };
+    }
+    const loaded = performance.now() - began;
     if (isFirst) first.resolve(model);
     isFirst = false;
     await ready.promise;
@@ -354,7 +368,8 @@ function firstSnapshot(run, load) {
     return { took: loaded + drawn, isSlow };
   };
   setSlow(true);
-  follow({ tell, show }).catch(first.reject);
+  // A second snapshot waits until the first one stands there, beside the high-poly.
+  follow({ tell, canShow: () => isFirst || store.get().isReady, show }).catch(first.reject);
   return first.promise;
 }
 
@@ -376,10 +391,18 @@ function replace(model, isLast) {
   redraw();
 }
 
+/** Sets a text where it is another: what is told anew is read out anew. */
+function write(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
 const shownModels = () => [...levels.models, compare].filter(Boolean);
 
 function tellNotes() {
-  showNotes([...new Set([...shownModels().flatMap((model) => model.notes), ...runNotes])]);
+  const notes = [...new Set([...shownModels().flatMap((model) => model.notes), ...runNotes])];
+  if (notes.join('\n') === toldNotes) return;
+  toldNotes = notes.join('\n');
+  showNotes(notes);
 }
 
 /** Wires what depends on the models. */

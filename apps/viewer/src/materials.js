@@ -112,6 +112,9 @@ export function teach(material) {
   material.customProgramCacheKey = function () { return `parbake ${shown} ${customProgramCacheKey.call(this)}`; };
 }
 
+/** Forgets a material that is shown no more. */
+export function forget(material) { taught.delete(material); }
+
 /** Each texture of a material with the channel that it is for. */
 export const TEXTURE_SLOTS = [
   ['map', 'Base colour'], ['normalMap', 'Normal'], ['roughnessMap', 'Roughness, metallic'],

@@ -10,26 +10,39 @@ export const SLOW_PICTURE = 60;
 const SLOW_NEWS = 2500;
 const GONE = 'The bake was ended before it was finished.';
 
+/** A request that fails may be this machine waking up: so many times it is tried again, a second later. */
+const RETRIES = 5;
+/** While the last model is put on the stage, the command is told so often that this page is still there. */
+const PING = 2000;
+
 /**
- * Follows the run until it ends. `tell(state)` is called with all that is known of it; `show(bytes, state)` puts a
- * snapshot on the stage and gives the milliseconds that this took, and whether that was slow: `{ took, isSlow }`.
+ * Follows the run until it ends. `tell(state)` is called with all that is known of it; `canShow()` says whether the stage
+ * could take a snapshot; `show(bytes, state)` puts one there and gives the milliseconds that this took, and whether that
+ * was slow: `{ took, isSlow }`.
  */
-export async function follow({ tell, show }) {
-  let version = 0, shown = 0, next = 0, isSlow = true;
+export async function follow({ tell, canShow, show }) {
+  let state = { version: 0 }, shown = 0, next = 0, isSlow = true, failed = 0;
   for (;;) {
-    const asked = performance.now() >= next ? 'look' : 'news';
-    const state = await fetch(`run/${asked}/${version}`).then((r) => r.json()).catch(() => ({ failure: GONE }));
-    version = state.version ?? version;
+    const asked = canShow() && performance.now() >= next ? 'look' : 'news';
+    const told = await fetch(`run/${asked}/${state.version}`).then((r) => r.json()).catch(() => null);
+    failed = told ? 0 : failed + 1;
+    if (failed && failed <= RETRIES) {
+      await new Promise((wait) => setTimeout(wait, 1000));
+      continue;
+    }
+    state = told ?? { ...state, failure: GONE };
     tell(state);
     const isOver = state.isFinished || state.failure;
-    if (state.snapshot > shown) {
-      shown = state.snapshot;
+    if (state.snapshot > shown && (asked === 'look' || isOver)) {
+      const ping = isOver && setInterval(() => fetch(`run/news/${state.version}`).catch(() => {}), PING);
       const bytes = await fetch('run/snapshot').then((r) => (r.ok ? r.arrayBuffer() : null)).catch(() => null);
       if (bytes) {
+        shown = state.snapshot;
         const { took, ...rest } = await show(bytes, state);
         next = performance.now() + Math.min(LONGEST_REST, REST * took);
         isSlow = rest.isSlow;
       }
+      clearInterval(ping);
     }
     if (!isOver) {
       // What is told is drawn as well.
@@ -73,14 +86,16 @@ export function showRun(name, state) {
   showErrors(curves);
 }
 
-let drawn = '';
+let drawn = '', last = [];
+new ResizeObserver(() => { drawn = ''; showErrors(last); }).observe(byId('run-figure'));
 
 /** What stages minimise, over time; drawn anew where there is more of it. */
 function showErrors(curves) {
-  const errors = curves.map(error).filter((curve) => curve.points.length > 1), last = errors.at(-1);
-  byId('run-figure').hidden = !last;
-  const key = JSON.stringify([errors.length, last?.points, document.documentElement.dataset.theme]);
-  if (!last || key === drawn) return;
+  last = curves;
+  const errors = curves.map(error).filter((curve) => curve.points.length > 1);
+  byId('run-figure').hidden = errors.length === 0;
+  const key = JSON.stringify([errors.length, errors.at(-1)?.points, document.documentElement.dataset.theme]);
+  if (!errors.length || key === drawn || !byId('run-chart').clientWidth) return;
   drawn = key;
   drawCurves(byId('run-chart'), errors);
 }
@@ -99,7 +114,6 @@ function error({ stage, points }) {
 
 /** Errors over time, on a logarithmic scale whose top is where each began. */
 function drawCurves(canvas, errors) {
-  if (!errors.length || !canvas.clientWidth) return;
   const ratio = window.devicePixelRatio || 1, [width, height] = [canvas.clientWidth, canvas.clientHeight];
   Object.assign(canvas, { width: Math.round(width * ratio), height: Math.round(height * ratio) });
   const context = canvas.getContext('2d'), style = getComputedStyle(canvas);

@@ -64,15 +64,18 @@ pub(crate) fn encode_texture(
     options: &WriteOptions,
 ) -> Result<Encoded, FileError> {
     let raw = Raw::new(image)?;
+    let is_normal = purpose.content != Content::Color;
+    let of_fallback = purpose.of == Use::Fallback && raw.opaque;
     let format = match options.texture_format {
-        // WebP would halve the chroma of normals.
-        TextureFormat::Png | TextureFormat::Webp | TextureFormat::WebpLossless
-            if purpose.of == Use::Fallback && raw.opaque =>
-        {
-            TextureFormat::Jpeg
-        }
+        TextureFormat::Png | TextureFormat::WebpLossless if of_fallback => TextureFormat::Jpeg,
+        // It would halve the chroma of normals.
+        TextureFormat::Webp if of_fallback && is_normal => TextureFormat::Jpeg,
         format => format,
     };
+    let reason = (format != options.texture_format).then(|| {
+        "viewers that know no parallax maps are the only ones to see it, and JPEG is a third of its size"
+            .into()
+    });
     if let Some(reason) = misfit(image, &raw, purpose.of, format) {
         return Ok(Encoded { reason: Some(reason), ..png(image)? });
     }
@@ -89,7 +92,7 @@ pub(crate) fn encode_texture(
         TextureFormat::Webp => webp(image, &raw, Some(quality))?,
         TextureFormat::WebpLossless => webp(image, &raw, None)?,
         TextureFormat::Ktx2 => ktx2(image, purpose, uastc(options))?,
-        TextureFormat::Ktx2Etc1s if purpose.of == Use::Data || purpose.content != Content::Color => {
+        TextureFormat::Ktx2Etc1s if purpose.of == Use::Data || is_normal => {
             // One hue a block is too little for normals: 12 dB less.
             return encode_texture(image, purpose, &with(TextureFormat::Ktx2));
         }
@@ -100,7 +103,7 @@ pub(crate) fn encode_texture(
         }
     };
     let shown = decode_image(&image.name, &bytes, &Limits::default())?;
-    Ok(Encoded { bytes, format, psnr: psnr(image, &shown), reason: None })
+    Ok(Encoded { bytes, format, psnr: psnr(image, &shown), reason })
 }
 
 /// Why a picture cannot be in a format.

@@ -92,7 +92,8 @@ pub struct WriteOptions {
     #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "FORMAT", default_value_t = TextureFormat::Png, help_heading = HEADING))]
     pub texture_format: TextureFormat,
 
-    /// Quality of JPEG, WebP and ETC1S, 1 to 100; in JPEG, normal maps and data maps have at least 95. UASTC always
+    /// Quality of JPEG, WebP and ETC1S, 1 to 100; in JPEG, normal maps and data maps have at least 95, but
+    /// for those that only viewers without parallax maps see. UASTC always
     /// has the same size; from 96 on it is encoded with more care
     #[cfg_attr(feature = "clap", arg(long, value_name = "QUALITY", default_value_t = DEFAULT_TEXTURE_QUALITY, value_parser = clap::value_parser!(u8).range(1..=100), help_heading = HEADING))]
     pub texture_quality: u8,

@@ -196,7 +196,7 @@ pub fn fit_parallax_maps(
         let share = |steps: f64| (steps_before as f64 + steps) / all_steps as f64;
         let own_steps = pass.steps as f64;
         let begun = share(BEGINNING * own_steps);
-        let beginning = Portion::new(watcher, share(0.0)..begun).of_stage(Stage::Parallax);
+        let beginning = Portion::new(watcher, share(0.0)..begun).of_stage(Stage::Solve, Stage::Parallax);
         let moving = Portion::new(watcher, begun..share(own_steps));
         steps_before += pass.steps;
         // Later passes only better what the first one found.

@@ -22,13 +22,14 @@ use crate::parts::{with_kept_parts, with_parted_materials, with_parts};
 use crate::plan::Plan;
 use crate::report::{BakeReport, Work, layout_warning};
 use crate::rigs::{carried, rigged};
+use crate::snapshots::show;
 use crate::textures::{FittedTextures, Subject, fit_views, training_views};
 use crate::warnings::{Warnings, swapped, unseen};
 use parbake_atlas::check_mesh;
 use parbake_image::quantise::to_image;
 use parbake_image::{MapKind, MapSet};
 use parbake_model::{Image, Model};
-use parbake_progress::{Clock, Message, ProgressScope, Snapshot, Stage, Watcher};
+use parbake_progress::{Clock, Message, ProgressScope, Stage, Watcher};
 use parbake_render::camera::Projection;
 use parbake_uv::moves::UvMoves;
 use parbake_views::alpha_layers::layer_kinds;
@@ -197,9 +198,7 @@ fn run(
     let size = options.texture_size;
     let scope = ProgressScope::new(watcher, begin, options.time_budget).keeping_back(at_the_end(size));
     watcher.message(Message::Plan(stage_weights(options)));
-    if watcher.wants_snapshot() {
-        watcher.snapshot(Snapshot::Model(low.clone()));
-    }
+    show(low, high, watcher);
     let mut clock = Clock::new(begin);
     let mut warnings = Warnings::new(watcher);
     warnings.tell((work == Work::Bake).then(|| swapped(high, low)).flatten());
@@ -228,6 +227,7 @@ fn run(
     let subject =
         Subject { model: low, prepared: &prepared, projected: &projected, kinds: &kinds, is_seen: true };
     let order = Order { high, plan: &plan, options, work };
+    show(low, high, watcher);
     let references = training_views(&order, &scope);
     clock.lap(Stage::Reference);
     let for_fallback = references.clone().filter(|_| options.has_fallback());

@@ -86,7 +86,9 @@ pub(crate) fn fit_fallback<W: Watcher>(
     clock: &mut Clock,
 ) -> Result<Fallback, BakeError> {
     let judged = &references[..references.len().min(JUDGING)];
-    let psnr = |maps: &[(MapKind, Image)]| psnr(order, with_maps, maps, judged, scope);
+    // To judge is no stage of its own.
+    let quiet = &Portion::new(scope, 0.0..0.0).of_stage(Stage::Solve, Stage::Solve);
+    let psnr = |maps: &[(MapKind, Image)]| psnr(order, with_maps, maps, judged, quiet);
     let mut report = FallbackReport::default();
     let mut best: Option<Tried> = None;
     let (sides, before) = (sides(order.options), solving_share(order.options));
@@ -95,7 +97,7 @@ pub(crate) fn fit_fallback<W: Watcher>(
             break;
         }
         let share = |tried: usize| before + (1.0 - before) * tried as f64 / sides.len() as f64;
-        let own = Portion::new(scope, share(place)..share(place + 1)).of_stage(Stage::Solve);
+        let own = Portion::new(scope, share(place)..share(place + 1)).of_stage(Stage::Solve, Stage::Solve);
         let own = ProgressScope::new(&own, Instant::now(), None);
         let maps = fit(order, low, kinds, side, references.clone(), &own, clock)?;
         let found = psnr(&maps);
@@ -167,7 +169,7 @@ fn psnr<W: Watcher>(
     with_maps: &Model,
     maps: &[(MapKind, Image)],
     judged: &[Reference],
-    scope: &ProgressScope<W>,
+    watcher: &W,
 ) -> f64 {
     let high = order.high;
     let mut model = with_maps.clone();
@@ -175,7 +177,7 @@ fn psnr<W: Watcher>(
     let interpretation = Interpretation { parallax: false, ..high.conventions.interpretation };
     let scene = scene(&model, &high.frame, interpretation);
     let views: Vec<View> = judged.iter().map(|reference| reference.view).collect();
-    let shown = render_references(&scene, &Lambert, &views, &order.plan.reference, views.len(), scope);
+    let shown = render_references(&scene, &Lambert, &views, &order.plan.reference, views.len(), watcher);
     let display = &high.conventions.display;
     let squares: f64 = judged.iter().zip(&shown).map(|(wanted, shown)| square(wanted, shown, display)).sum();
     let values: usize = judged.iter().map(|reference| 3 * reference.pixels.len()).sum();

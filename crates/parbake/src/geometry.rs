@@ -71,7 +71,7 @@ pub fn move_geometry<W: Watcher>(
     let share = scope.share(shares::SHAPE);
     let share = &Showing::new(&share, shown);
     let (looking, moving) = (0.0..LOOKING, LOOKING..1.0);
-    let looking = Portion::new(share, looking).of_stage(Stage::Shape);
+    let looking = Portion::new(share, looking).of_stage(Stage::Reference, Stage::Shape);
     let mut references = shape_plan.as_ref().map(|plan| {
         smooth_references(high, plan.views, plan.view_size, plan.samples, options.seed, &looking)
     });

@@ -163,7 +163,7 @@ impl BakeOptions {
     }
 
     /// Whether there are textures for viewers that do not know parallax maps.
-    pub(crate) fn has_fallback(&self) -> bool {
+    pub fn has_fallback(&self) -> bool {
         self.parallax != Parallax::None && self.method == Method::Fit && self.fallback_size != Some(0)
     }
 

@@ -97,7 +97,7 @@ pub(crate) fn fit_views<W: Watcher>(
     let look = Look::without_extensions(high, kinds.to_vec());
     let srgb = high.conventions.srgb();
     let solving = Portion::new(scope, 0.0..solving_share(options));
-    let seen = OfMaps::new(&look, low, &prepared.written, &projected.maps, srgb, is_seen);
+    let seen = OfMaps::new(&look, low, &prepared.written, &projected.maps, srgb);
 
     let mut sampler = ViewSampler::new(placed, plan.reference.size, &display, options.beyond());
     if let Some(plan) = &parallax_plan {

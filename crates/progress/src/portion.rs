@@ -13,19 +13,19 @@ const STEPS: f64 = 1000.0;
 pub struct Portion<'a, W: ?Sized> {
     watcher: &'a W,
     range: Range<f64>,
-    /// The stage that it is a part of; none where its messages say so.
-    stage: Option<Stage>,
+    /// The only stage whose progress counts, and the one that it is a part of; none where its messages say so.
+    stages: Option<[Stage; 2]>,
 }
 
 impl<'a, W: Watcher + ?Sized> Portion<'a, W> {
     /// For the part from `range.start` to `range.end` of the stage, 0 to 1.
     pub fn new(watcher: &'a W, range: Range<f64>) -> Self {
-        Self { watcher, range, stage: None }
+        Self { watcher, range, stages: None }
     }
 
-    /// The same for a part that by itself would be another stage.
-    pub fn of_stage(self, stage: Stage) -> Self {
-        Self { stage: Some(stage), ..self }
+    /// The same for a part whose progress is that of the stage `inner`, as a part of `outer`; other stages' is not told.
+    pub fn of_stage(self, inner: Stage, outer: Stage) -> Self {
+        Self { stages: Some([inner, outer]), ..self }
     }
 }
 
@@ -33,10 +33,14 @@ impl<W: Watcher + ?Sized> Watcher for Portion<'_, W> {
     fn message(&self, message: Message) {
         self.watcher.message(match message {
             Message::Progress { stage, done, total } => {
+                let [inner, outer] = self.stages.unwrap_or([stage; 2]);
+                if stage != inner {
+                    return;
+                }
                 let share = (done as f64 / total.max(1) as f64).clamp(0.0, 1.0);
                 let share = self.range.start + (self.range.end - self.range.start) * share;
-                let stage = self.stage.unwrap_or(stage);
-                Message::Progress { stage, done: (STEPS * share).round() as usize, total: STEPS as usize }
+                let done = (STEPS * share).round() as usize;
+                Message::Progress { stage: outer, done, total: STEPS as usize }
             }
             other => other,
         });
@@ -76,7 +80,8 @@ mod tests {
         let half = Portion::new(&notes, 0.5..1.0);
         half.progress(Stage::Simplify, 0, 7);
         half.progress(Stage::Simplify, 7, 7);
-        let of_shape = Portion::new(&notes, 0.0..0.5).of_stage(Stage::Shape);
+        let of_shape = Portion::new(&notes, 0.0..0.5).of_stage(Stage::Reference, Stage::Shape);
+        of_shape.progress(Stage::Sampling, 1, 1);
         of_shape.progress(Stage::Reference, 1, 1);
         let at = |stage, done| Message::Progress { stage, done, total: 1000 };
         let all = [at(Stage::Simplify, 500), at(Stage::Simplify, 1000), at(Stage::Shape, 500)];

@@ -7,7 +7,7 @@
 //! A stage asks [`Watcher::wants_snapshot`] first, since what it hands over takes time to make. It knows a part;
 //! whoever called it makes a whole model of that.
 //!
-//! Contract: nothing that a run computes depends on whether it is watched.
+//! Contract: nothing that a run computes depends on whether it is watched, but on the time that a budget leaves it.
 
 use crate::message::{Message, Watcher};
 use parbake_image::{FloatImage, MapSet};

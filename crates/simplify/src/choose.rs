@@ -23,7 +23,7 @@ use crate::surface::Surface;
 use crate::target::{BACKGROUNDS, Target};
 use parbake_mesh::smooth_normals;
 use parbake_model::Mesh;
-use parbake_progress::{Portion, Stage, Watcher};
+use parbake_progress::{Portion, Showing, Snapshot, Stage, Watcher};
 use parbake_views::alpha_layers::{LayerKind, high_layers};
 use parbake_views::high_poly::HighPoly;
 use parbake_views::pool::{View, view_pool};
@@ -126,9 +126,22 @@ pub fn choose_triangles(
         let starts = [Some((Start::Quadrics, start)), before.map(|mesh| (Start::Level, own(mesh, kind)))];
         let part = |k: usize| k as f64 / layers.len() as f64;
         let own = Portion::new(watcher, part(kind)..part(kind + 1));
-        chosen.add(layer(high, Some(triangles), parts, starts, &options, &own));
+        let own = Showing::new(&own, |snapshot| Some(joined(&chosen.mesh, snapshot)));
+        let found = layer(high, Some(triangles), parts, starts, &options, &own);
+        chosen.add(found);
     }
     chosen
+}
+
+/// A layer that is being chosen beside those that are.
+fn joined(chosen: &Mesh, snapshot: Snapshot) -> Snapshot {
+    let Snapshot::Surface { mut mesh, color } = snapshot else { return snapshot };
+    let first = mesh.positions.len() as u32;
+    mesh.positions.extend(&chosen.positions);
+    mesh.triangles.extend(chosen.triangles.iter().map(|t| t.map(|v| v + first)));
+    mesh.triangle_materials.resize(mesh.triangles.len(), 0);
+    mesh.normals.clear();
+    Snapshot::Surface { mesh, color }
 }
 
 /// How many triangles there have to be where each part keeps `least`, or all that it has, in each layer.

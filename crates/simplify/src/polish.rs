@@ -52,13 +52,12 @@ pub fn polish<'a>(
     let target = pictures.surface.count();
     let mut steps = Steps::default();
     let mut sets = Sets { sets, next: 0 };
+    show(pictures, watcher);
     settle(pictures, &mut sets, &mut steps, 3 * options.sweeps, watcher);
     let mut without = 0;
     for round in 0..options.rounds {
         watcher.progress(Stage::Simplify, round + 1, options.rounds + 2);
-        if watcher.wants_snapshot() {
-            watcher.snapshot(Snapshot::Surface { mesh: pictures.surface.to_mesh(), color: None });
-        }
+        show(pictures, watcher);
         if is_over(watcher) || without == PATIENCE {
             break;
         }
@@ -81,6 +80,12 @@ pub fn polish<'a>(
         }
     }
     settle(pictures, &mut sets, &mut steps, 3 * options.sweeps, watcher);
+}
+
+fn show(pictures: &Pictures, watcher: &impl Watcher) {
+    if watcher.wants_snapshot() {
+        watcher.snapshot(Snapshot::Surface { mesh: pictures.surface.to_mesh(), color: None });
+    }
 }
 
 /// Sets of views that take turns, so that points do not settle on the pixels of one.

@@ -58,6 +58,18 @@ pub(crate) async fn answer(shown: &Shown, method: &Method, path: &str, headers: 
             "There is nothing here. Use the whole address that parbake printed.",
         );
     };
+    if let Some(live) = &shown.live {
+        live.note_page();
+    }
+    let answer = routed(shown, route).await;
+    // What takes long to answer was asked for long ago.
+    if let Some(live) = &shown.live {
+        live.note_page();
+    }
+    answer
+}
+
+async fn routed(shown: &Shown, route: Route) -> Answer {
     match route {
         Route::Page(file) => {
             let mut answer = reply(StatusCode::OK, file.media_type, Bytes::from_static(file.bytes));

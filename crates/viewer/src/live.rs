@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Contract: a run is asked for a snapshot only when a page is there that says it could show one, and so rarely that
-//! snapshots take at most one part in [`SHARE`] of its time. Nobody waits for a page but [`Live::hand_over`].
+//! snapshots take about one part in [`SHARE`] of its time at most. Nobody waits for a page but [`Live::hand_over`].
 
 use bytes::Bytes;
 use parbake_files::{Limits, quick_glb_bytes, read_self_contained};
@@ -23,9 +23,9 @@ const SHARE: u32 = 40;
 /// …and there are never more of them than this apart.
 const LEAST_APART: Duration = Duration::from_millis(400);
 /// A page that has not asked for so long is gone.
-const GONE: Duration = Duration::from_secs(4);
+const GONE: Duration = Duration::from_secs(8);
 /// A browser that was opened so long ago would have asked by now.
-const COMING: Duration = Duration::from_secs(4);
+const COMING: Duration = Duration::from_secs(10);
 /// How long a page waits for news at most.
 const NEWS: Duration = Duration::from_millis(500);
 /// Points of a curve, at most.
@@ -176,7 +176,7 @@ impl Live {
         {
             let mut state = self.state();
             state.asked = Some(Instant::now());
-            state.could_show = could_show;
+            state.could_show |= could_show;
         }
         let mut receiver = self.version.subscribe();
         // Whether news came or time is over: there is something to say in either case.
@@ -205,8 +205,16 @@ impl Live {
             tokio::task::spawn_blocking(move || quick_glb_bytes(&model)).await.ok()?.ok().map(Bytes::from);
         let mut state = self.state();
         state.cost += begin.elapsed();
-        state.shown.fetched = number;
+        state.shown.fetched = state.shown.fetched.max(number);
+        if state.shown.number == number {
+            state.shown.glb = glb.clone();
+        }
         glb
+    }
+
+    /// A page has asked for something.
+    pub(crate) fn note_page(&self) {
+        self.state().asked = Some(Instant::now());
     }
 
     /// A page has shown how the run ended.
@@ -289,11 +297,13 @@ impl Watcher for Live {
         let apart = LEAST_APART.max(SHARE * state.cost);
         let is_due = state.wanted.is_none_or(|wanted| wanted.elapsed() >= apart);
         let is_wanted = is_due
+            && state.could_show
             && state.is_watched()
             && state.ending.is_none()
             && state.shown.fetched == state.shown.number;
         if is_wanted {
             state.wanted = Some(Instant::now());
+            state.could_show = false;
         }
         is_wanted
     }

@@ -59,7 +59,7 @@ fn faded_opacity(opacity: f32, fade: f32) -> f32 {
 /// How much of a pixel is covered, for alpha to coverage. The width is that of the opacity's change from pixel to
 /// pixel, bounded since past the edge of a triangle it is any number.
 fn coverage_of(opacity: f32, width: f32) -> f32 {
-    return clamp(0.5 + opacity / clamp(width, 1e-6, 1.0), 0.0, 1.0);
+    return clamp(0.5 + opacity / clamp(width, 1e-6, 10.0), 0.0, 1.0);
 }
 
 /// The shift at t, from a map of two layers.

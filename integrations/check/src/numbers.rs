@@ -284,7 +284,8 @@ fn shaders_have_the_numbers_of_the_worked_example() {
         let [none, all] =
             [0.2, 0.05].map(|along| shader.fade(Vec2::new(along, 0.0), Vec2::ZERO, 1.0, footprint));
         assert_eq!((none, all), (0.0, 1.0), "{:?}", shader.engine);
-        for (opacity, width, want) in [(0.05, 0.2, 0.75), (-0.2, 0.2, 0.0), (0.3, 5.0, 0.8), (0.0, 0.0, 0.5)]
+        for (opacity, width, want) in
+            [(0.05, 0.2, 0.75), (-0.2, 0.2, 0.0), (0.3, 5.0, 0.56), (3.0, 40.0, 0.8), (0.0, 0.0, 0.5)]
         {
             if let Some(have) = shader.coverage(opacity, width) {
                 assert!((have - want).abs() < 1e-6, "{:?}: a coverage of {have}", shader.engine);

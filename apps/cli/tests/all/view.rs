@@ -9,6 +9,7 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
 
 /// The folder of the page's sources, and of its tests in the browser.
 fn page() -> PathBuf {
@@ -87,7 +88,9 @@ fn a_watched_bake_shows_itself_and_writes_the_same_file() {
     }
     assert!(state["curves"].as_array().unwrap().len() > 1, "{state}");
     assert_eq!(get(&format!("{url}run/shown")).0, 200);
+    let told = Instant::now();
     assert!(process.wait().unwrap().success());
+    assert!(told.elapsed() < Duration::from_secs(6), "a page that has what it needs is waited for");
     let written = std::fs::read(folder.join("watched.glb")).unwrap();
     assert_eq!(last, written);
     assert!(written == std::fs::read(folder.join("alone.glb")).unwrap(), "watched, it wrote something else");
