@@ -423,6 +423,7 @@ function wireModels() {
   store.set({ isReady: true, hasCompare: compare !== null, mode: compare ? 'split' : 'model' });
   store.on(['mode', 'hasCompare'], ({ mode, hasCompare }) => {
     byId('legend').hidden = mode !== 'difference';
+    if (!hasCompare || mode === 'uv') byId('reading').hidden = true;
     if (mode === 'uv' && !isListed) listTextures();
     check(byId('modes'), mode);
   });

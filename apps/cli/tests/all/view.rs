@@ -58,10 +58,11 @@ fn a_watched_bake_shows_itself_and_writes_the_same_file() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     demo_files(folder, &["demo_high.glb", "demo_low.glb"]);
-    let files = ["bake", "demo_high.glb", "demo_low.glb", "--texture-size", "128", "--preset", "fast", "-q"];
+    let mut files = vec!["bake", "demo_high.glb", "demo_low.glb", "--preset", "fast", "-q"];
+    files.extend(["--texture-size", "64", "--views", "60", "--view-size", "96"]);
     run(folder, &[&files[..], &["-o", "alone.glb"]].concat());
     let mut command = parbake(folder);
-    command.args(files).args(["-o", "watched.glb", "--watch", "--no-open"]).stderr(Stdio::piped());
+    command.args(&files).args(["-o", "watched.glb", "--watch", "--no-open"]).stderr(Stdio::piped());
     let mut process = command.spawn().unwrap();
     let mut line = String::new();
     BufReader::new(process.stderr.take().unwrap()).read_line(&mut line).unwrap();
