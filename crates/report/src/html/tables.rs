@@ -109,7 +109,7 @@ pub fn written(written: &Written) -> String {
     let mut row = |name: &str, format: &str, size: u64, loss: &str| {
         let _ = write!(
             out,
-            r#"<tr><th scope="row">{}</th><td>{}</td><td>{}</td><td>{loss}</td></tr>"#,
+            r#"<tr><th scope="row">{}</th><td class="words">{}</td><td>{}</td><td>{loss}</td></tr>"#,
             escape(name),
             escape(format),
             count(usize::try_from(size).unwrap_or(usize::MAX))
