@@ -72,10 +72,7 @@ pub(crate) fn encode_texture(
         TextureFormat::Webp if of_fallback && is_normal => TextureFormat::Jpeg,
         format => format,
     };
-    let reason = (format != options.texture_format).then(|| {
-        "viewers that know no parallax maps are the only ones to see it, and JPEG is a third of its size"
-            .into()
-    });
+    let reason = (format != options.texture_format).then(|| "for viewers without parallax maps".into());
     if let Some(reason) = misfit(image, &raw, purpose.of, format) {
         return Ok(Encoded { reason: Some(reason), ..png(image)? });
     }

@@ -94,9 +94,9 @@ fn the_page_is_whole() {
     baked.report.written = Some(written());
     let page = without_view(&html_report(&high, &baked, &Impatient).unwrap());
     for row in [
-        "<td>KTX2 (UASTC)</td><td>123\u{202f}456</td><td>PSNR 41.3 dB</td>",
-        "<th scope=\"row\">&lt;b&gt;</th><td>PNG: sides</td><td>77</td><td>none</td>",
-        "<td>quantized</td><td>99</td><td>positions within 2.00e-5 units</td>",
+        "<td class=\"words\">KTX2 (UASTC)</td><td>123\u{202f}456</td><td>PSNR 41.3 dB</td>",
+        "<th scope=\"row\">&lt;b&gt;</th><td class=\"words\">PNG: sides</td><td>77</td><td>none</td>",
+        "<td class=\"words\">quantized</td><td>99</td><td>positions within 2.00e-5 units</td>",
     ] {
         assert!(page.contains(row), "{row}");
     }
