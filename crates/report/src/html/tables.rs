@@ -103,7 +103,7 @@ pub fn texels(report: &BakeReport) -> String {
 /// What the written file holds, and what its formats lost.
 pub fn written(written: &Written) -> String {
     let mut out = String::from(concat!(
-        r#"<table class="figures"><thead><tr><th scope="col">part</th><th scope="col">format</th>"#,
+        r#"<table class="figures written"><thead><tr><th scope="col">part</th><th scope="col">format</th>"#,
         r#"<th scope="col">bytes</th><th scope="col">loss</th></tr></thead><tbody>"#
     ));
     let mut row = |name: &str, format: &str, size: u64, loss: &str| {
