@@ -126,7 +126,7 @@ pub struct Reading {
 /// Whether and where a running bake is shown.
 #[derive(Args, Debug, Clone, Copy)]
 pub struct Watch {
-    /// Show the running bake in the browser: its look, its UVs, and what each stage still gets wrong
+    /// Show the running bake in the browser: its look, its UVs, the time left and the error of each stage
     #[arg(long)]
     pub watch: bool,
 

@@ -2,6 +2,7 @@
 // requests are watched.
 import { spawn } from 'node:child_process';
 import fs from 'node:fs';
+import { createRequire } from 'node:module';
 import puppeteer from 'puppeteer-core';
 
 /** WebGL on the processor, as Debian's Chromium offers it. */
@@ -55,6 +56,15 @@ export async function watchedPage(browser, { width = 1440, height = 900, scheme 
     if (!['blob:', 'data:'].includes(url.protocol) && url.hostname !== '127.0.0.1') outside.push(request.url());
   });
   return { page, errors, outside };
+}
+
+/** What axe-core finds on the page that keeps someone out, a sentence each. */
+export async function barriers(page) {
+  // The policy of the page lets nothing in; the protocol does.
+  await page.evaluate(fs.readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8'));
+  const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
+  return violations.filter(({ impact }) => ['serious', 'critical'].includes(impact))
+    .map(({ id, impact, nodes }) => `axe-core ${id} (${impact}): ${nodes.map((n) => n.target).join(' ')}`);
 }
 
 /** Waits until the page shows a model or says why not; which of both. */

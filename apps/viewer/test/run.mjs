@@ -8,9 +8,8 @@ import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
 import { createHash } from 'node:crypto';
-import { createRequire } from 'node:module';
 import { parseArgs } from 'node:util';
-import { drawn, findBrowser, launch, settled, view, watchedPage } from './browser.mjs';
+import { barriers, drawn, findBrowser, launch, settled, view, watchedPage } from './browser.mjs';
 
 const { values } = parseArgs({ options: {
   parbake: { type: 'string' }, high: { type: 'string' }, low: { type: 'string' }, out: { type: 'string' },
@@ -25,7 +24,6 @@ if (!findBrowser()) {
 }
 const out = values.out ?? fs.mkdtempSync(path.join(os.tmpdir(), 'parbake-view-'));
 fs.mkdirSync(out, { recursive: true });
-const axe = fs.readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
 let failures = 0;
 const verify = (isTrue, what) => {
@@ -42,13 +40,9 @@ const picture = async (page) => {
   return createHash('sha1').update(await page.evaluate(() => window.parbake.snapshot())).digest('hex');
 };
 
-/** Findings of axe-core that keep someone out. */
 async function accessible(page, what) {
-  // The policy of the page lets nothing in; the protocol does.
-  await page.evaluate(axe);
-  const found = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
-  for (const { id, impact, nodes } of found.violations)
-    verify(!['serious', 'critical'].includes(impact), `${what}: axe-core ${id} (${impact}): ${nodes.map((n) => n.target).join(' ')}`);
+  const found = await barriers(page);
+  verify(found.length === 0, `${what}: ${found.join('; ')}`);
 }
 
 /** Opens a session, runs `steps`, and wants a quiet console and no request elsewhere. */

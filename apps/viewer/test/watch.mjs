@@ -6,11 +6,10 @@
 import { spawn } from 'node:child_process';
 import { createHash } from 'node:crypto';
 import fs from 'node:fs';
-import { createRequire } from 'node:module';
 import os from 'node:os';
 import path from 'node:path';
 import { parseArgs } from 'node:util';
-import { findBrowser, launch, watchedPage } from './browser.mjs';
+import { barriers, findBrowser, launch, watchedPage } from './browser.mjs';
 
 const { values } = parseArgs({ options: {
   parbake: { type: 'string' }, high: { type: 'string' }, low: { type: 'string' }, out: { type: 'string' },
@@ -25,7 +24,6 @@ if (!findBrowser()) {
 }
 const out = values.out ?? fs.mkdtempSync(path.join(os.tmpdir(), 'parbake-watch-'));
 fs.mkdirSync(out, { recursive: true });
-const axe = fs.readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 let failures = 0;
 const verify = (isTrue, what) => {
   if (isTrue) return;
@@ -63,10 +61,8 @@ const layout = (page) => page.evaluate(() => {
 const canvas = async (page) => createHash('sha1').update(await page.evaluate(() => window.parbake.snapshot())).digest('hex');
 
 async function accessible(page, what) {
-  await page.evaluate(axe);
-  const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
-  for (const { id, impact, nodes } of violations)
-    verify(!['serious', 'critical'].includes(impact), `${what}: axe-core ${id} (${impact}): ${nodes.map((n) => n.target).join(' ')}`);
+  const found = await barriers(page);
+  verify(found.length === 0, `${what}: ${found.join('; ')}`);
 }
 
 async function session(what, options, steps) {

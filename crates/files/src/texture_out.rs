@@ -1,6 +1,6 @@
 //! Textures of a GLB file out, in the format that was asked for, with what that lost.
 //!
-//! Textures that only viewers without an extension see are JPEG where others are lossless: a third of PNG's bytes, for
+//! Textures that only viewers without parallax maps see are JPEG where others are lossless: a third of PNG's bytes, for
 //! 0.1 dB at 35 (mask's fallback of 256², quality 90 to 93).
 //!
 //! Contract: what a format cannot hold (alpha in JPEG, sides of 30 texels in KTX2) is written as PNG, and the
@@ -24,7 +24,7 @@ pub(crate) enum Use {
     Data,
     /// Coefficients, of which every bit counts.
     Exact,
-    /// Seen by viewers alone that do not know an extension: coarse, and not worth many bytes.
+    /// Base colour or normals that only viewers without parallax maps see: coarse, and not worth many bytes.
     Fallback,
 }
 
@@ -64,7 +64,7 @@ pub(crate) fn encode_texture(
     options: &WriteOptions,
 ) -> Result<Encoded, FileError> {
     let raw = Raw::new(image)?;
-    let is_normal = purpose.content != Content::Color;
+    let is_normal = purpose.content == Content::Normal;
     let of_fallback = purpose.of == Use::Fallback && raw.opaque;
     let format = match options.texture_format {
         TextureFormat::Png | TextureFormat::WebpLossless if of_fallback => TextureFormat::Jpeg,

@@ -87,14 +87,13 @@ pub const LEAST_DATA_QUALITY: u8 = 95;
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default)]
 pub struct WriteOptions {
-    /// Image format of the textures in a GLB file; parbake's parallax maps stay lossless, what viewers without them show
-    /// is JPEG unless the format is KTX2
+    /// Image format of the textures in a GLB file. Parallax maps stay lossless; textures for viewers without parallax maps
+    /// are JPEG also where others are lossless
     #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "FORMAT", default_value_t = TextureFormat::Png, help_heading = HEADING))]
     pub texture_format: TextureFormat,
 
-    /// Quality of JPEG, WebP and ETC1S, 1 to 100; in JPEG, normal maps and data maps have at least 95, but
-    /// for those that only viewers without parallax maps see. UASTC always
-    /// has the same size; from 96 on it is encoded with more care
+    /// Quality of JPEG, WebP and ETC1S, 1 to 100; in JPEG, normal maps and data maps have at least 95, except those for
+    /// viewers without parallax maps. UASTC always has the same size; from 96 on it is encoded with more care
     #[cfg_attr(feature = "clap", arg(long, value_name = "QUALITY", default_value_t = DEFAULT_TEXTURE_QUALITY, value_parser = clap::value_parser!(u8).range(1..=100), help_heading = HEADING))]
     pub texture_quality: u8,
 

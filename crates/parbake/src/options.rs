@@ -212,10 +212,9 @@ pub struct BakeOptions {
     #[serde(deserialize_with = "texels")]
     pub cutout_size: usize,
 
-    /// Side in texels of base colour for viewers that do not know parallax maps, 16 to 8192; normals have half
-    /// of it, from 32 on. 0:
-    /// the maps' textures serve all viewers. Needs --parallax [default: the smallest of a quarter, half and all of --texture-size
-    /// that is about as good; 0 if the maps' textures are]
+    /// Side in texels of base colour for viewers that do not know parallax maps, 16 to 8192; their normals have half of
+    /// it, from 32 on. With 0 the maps' textures serve all viewers. Needs --parallax [default: the smallest of a quarter,
+    /// half and all of --texture-size that is about as good; 0 if the maps' textures are]
     #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", value_parser = parse_texels, help_heading = heading::PARALLAX))]
     #[serde(deserialize_with = "some_texels")]
     pub fallback_size: Option<usize>,

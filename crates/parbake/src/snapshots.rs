@@ -112,7 +112,7 @@ impl<'a> OfMaps<'a> {
 
 /// A square map with texels repeated to fill `side`².
 fn enlarged(map: &FloatImage<Vec4>, side: usize) -> FloatImage<Vec4> {
-    let at = |i: usize| (i * map.width / side).min(map.width - 1);
+    let at = |i: usize| i * map.width / side;
     let texel = |i: usize| map.texels[at(i / side) * map.width + at(i % side)];
     match map.width == side || map.texels.is_empty() {
         true => map.clone(),

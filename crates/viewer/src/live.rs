@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Contract: a run is asked for a snapshot only when a page is there that says it could show one, and so rarely that
-//! snapshots take about one part in [`SHARE`] of its time at most. Nobody waits for a page but [`Live::hand_over`].
+//! snapshots take about one part in [`SHARE`] of its time at most. Only [`Live::hand_over`] waits for a page.
 
 use bytes::Bytes;
 use parbake_files::{Limits, quick_glb_bytes, read_self_contained};
@@ -173,26 +173,18 @@ impl Live {
     /// What there is to say, as soon as it is more than at `version`; `could_show` tells that the page could show a new
     /// snapshot.
     pub(crate) async fn news(&self, version: u64, could_show: bool) -> Value {
-        {
-            let mut state = self.state();
-            state.asked = Some(Instant::now());
-            state.could_show |= could_show;
-        }
+        self.state().could_show |= could_show;
         let mut receiver = self.version.subscribe();
         // Whether news came or time is over: there is something to say in either case.
         let _ = tokio::time::timeout(NEWS, receiver.wait_for(|now| *now > version)).await;
         let version = *self.version.borrow();
-        let mut state = self.state();
-        state.asked = Some(Instant::now());
-        state.told(version, self.begin.elapsed().as_secs_f64())
+        self.state().told(version, self.begin.elapsed().as_secs_f64())
     }
 
     /// The newest snapshot as a GLB file; none before the first, or where one cannot be written.
     pub(crate) async fn glb(&self) -> Option<Bytes> {
         let (number, model) = {
-            let mut state = self.state();
-            state.asked = Some(Instant::now());
-            let shown = &mut state.shown;
+            let shown = &mut self.state().shown;
             if let Some(glb) = &shown.glb {
                 let glb = glb.clone();
                 shown.fetched = shown.number;
@@ -328,6 +320,8 @@ mod tests {
     fn snapshots_are_wanted_only_by_a_page_that_keeps_up() {
         let live = Live::new("baked.glb");
         assert!(!live.wants_snapshot(), "without a page");
+        live.note_page();
+        assert!(!live.wants_snapshot(), "a page that has not said what it could show");
         let before = block(live.news(0, true));
         assert_eq!((&before["snapshot"], &before["isFinished"]), (&json!(0), &json!(false)));
         assert!(live.wants_snapshot(), "with a page");
@@ -370,6 +364,7 @@ mod tests {
         live.fail("no room");
         let told = block(live.news(told["version"].as_u64().unwrap(), false));
         assert_eq!((&told["failure"], &told["isFinished"]), (&json!("no room"), &json!(false)));
+        live.note_page();
         live.take_over();
         let begin = Instant::now();
         live.hand_over(Duration::from_secs(5));

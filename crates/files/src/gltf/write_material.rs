@@ -206,7 +206,7 @@ pub(super) fn purpose_of(model: &Model, image: usize) -> Purpose {
     };
     let is_color = materials().any(|m| base_color(m) || is(&m.emissive_texture))
         || extensions().any(|(_, is_color)| is_color);
-    // What a parallax map has textures of its own for is seen by viewers alone that do not know it.
+    // Where a parallax map has a texture of its own, only viewers that do not know the map see the material's.
     let stands_in = |m: &Material| {
         let of_maps = m.parallax.as_ref().map(|map| [map.base_color_texture, map.normal_texture]);
         let own = [m.base_color_texture, m.normal_texture];
