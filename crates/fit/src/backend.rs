@@ -39,7 +39,7 @@ pub trait Backend: Sync {
         sampler: &ViewSampler,
         references: &[Reference],
         texture_size: usize,
-        watcher: &impl Watcher,
+        watcher: &dyn Watcher,
     ) -> SampleSet;
 
     /// The same of views that were sampled before, their coordinates shifted by a map. Each view is
@@ -49,7 +49,7 @@ pub trait Backend: Sync {
         views: Vec<Vec<ViewSample>>,
         texture_size: usize,
         map: &M,
-        watcher: &impl Watcher,
+        watcher: &dyn Watcher,
     ) -> SampleSet;
 
     /// The normal equations of one map over all samples, texture size² rows; returns the loss.
@@ -92,7 +92,7 @@ impl Backend for Cpu {
         sampler: &ViewSampler,
         references: &[Reference],
         texture_size: usize,
-        watcher: &impl Watcher,
+        watcher: &dyn Watcher,
     ) -> SampleSet {
         collect_samples(sampler, references, texture_size, watcher)
     }
@@ -102,7 +102,7 @@ impl Backend for Cpu {
         views: Vec<Vec<ViewSample>>,
         texture_size: usize,
         map: &M,
-        watcher: &impl Watcher,
+        watcher: &dyn Watcher,
     ) -> SampleSet {
         shifted_samples(views, texture_size, map, watcher)
     }

@@ -156,7 +156,7 @@ const BAND: usize = 4096;
 pub fn fit_cutout(
     views: &[Vec<Example>],
     options: &CutoutOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> (CutoutCoefficients, [f64; 2]) {
     let mut map = CutoutCoefficients::opaque(options.basis, options.size);
     let before = wrong(views, &map);

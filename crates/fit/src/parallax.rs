@@ -142,7 +142,7 @@ pub fn fit_parallax<B: Brdf, M: ShiftMap, K: Backend>(
     brdf: &B,
     display: &DisplayTable,
     options: &ParallaxOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Vec<f64> {
     for_each_count!(state.maps, descend(backend, views, state, brdf, display, options, watcher))
 }
@@ -154,7 +154,7 @@ fn descend<B: Brdf, M: ShiftMap, K: Backend, const N: usize>(
     brdf: &B,
     display: &DisplayTable,
     options: &ParallaxOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Vec<f64> {
     let State { map, maps } = state;
     let mut texels = Texels::<N>::new(maps);

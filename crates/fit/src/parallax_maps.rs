@@ -165,7 +165,7 @@ pub fn fit_parallax_maps(
     references: &[Reference],
     sampler: &ViewSampler,
     plan: &ParallaxPlan,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<FittedMaps, PrepareError> {
     let sampler = &sampler.clone().in_basis(plan.parallax.basis);
     let references = &references[..references.len().min(plan.views)];

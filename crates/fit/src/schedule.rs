@@ -149,7 +149,7 @@ impl Log {
 }
 
 /// The maps during the solve.
-struct Descent<'a, W, K> {
+struct Descent<'a, K> {
     backend: &'a K,
     maps: MapSet,
     /// The projected maps: texels that nothing says more of stay there.
@@ -160,13 +160,13 @@ struct Descent<'a, W, K> {
     /// What moved last; its loss is known at the next step.
     last: Move,
     log: Log,
-    watcher: &'a W,
+    watcher: &'a dyn Watcher,
     /// Steps that were taken, and all there are.
     steps: [usize; 2],
     stopped: bool,
 }
 
-impl<W: Watcher, K: Backend> Descent<'_, W, K> {
+impl<K: Backend> Descent<'_, K> {
     /// Counts a step; false where it shall not be taken.
     fn advance(&mut self) -> bool {
         if !self.stopped {
@@ -258,7 +258,7 @@ pub fn fit_textures<B: Brdf, K: Backend>(
     start: &MapSet,
     comparison: &Comparison<B, K>,
     schedule: &Schedule,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Fitted {
     let Comparison { backend, brdf, display, srgb } = *comparison;
     let display = &DisplayTable::new(&display);
@@ -275,7 +275,7 @@ pub fn fit_maps<P: Problem, K: Backend>(
     backend: &K,
     srgb: bool,
     schedule: &Schedule,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Fitted {
     let (samples, atlas) = (problem.samples(), problem.atlas());
     let kinds: Vec<MapKind> = start.kinds().filter(|kind| problem.reads(*kind)).collect();

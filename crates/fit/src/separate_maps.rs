@@ -78,7 +78,7 @@ pub fn fit_separate_maps<K: Backend>(
     backend: &K,
     srgb: bool,
     schedule: &SeparateSchedule,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Fitted {
     let kinds: Vec<MapKind> = start.kinds().collect();
     let mut fits = Vec::with_capacity(kinds.len());

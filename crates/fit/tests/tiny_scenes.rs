@@ -101,7 +101,7 @@ impl Scene {
         fit_parallax_maps(&self.low, own, &self.high, &self.references, &self.sampler(), plan, &()).unwrap()
     }
 
-    fn textures(&self, watcher: &impl Watcher) -> Fitted {
+    fn textures(&self, watcher: &dyn Watcher) -> Fitted {
         let samples = collect_samples(&self.sampler(), &self.references, TEXELS, &());
         let comparison = Comparison { backend: &Cpu, brdf: &Lambert, display: DISPLAY, srgb: true };
         let (atlas, start) = (&self.prepared.atlas, &self.projected.maps);

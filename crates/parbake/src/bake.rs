@@ -188,7 +188,6 @@ fn run(
 ) -> Result<Baked, BakeError> {
     check_budget(options)?;
     // Of one type from here on, so that the stages are compiled once and not for each caller's.
-    let watcher = &watcher;
     let mut plan = options.plan();
     let same = work == Work::Compress;
     if same {

@@ -98,7 +98,7 @@ fn plain(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<
     let delivered = repair_uvs(model, &as_it_is)?;
     let slack = 0.5 / options.texture_size as f64;
     let begin = Instant::now();
-    let watcher = &ProgressScope::new(&watcher, begin, options.time_budget);
+    let watcher = &ProgressScope::new(watcher, begin, options.time_budget);
     // Coordinates are all that takes long; a texture is solved for those before and after.
     watcher.message(Message::Plan(vec![(Stage::Uv, 4.0), (Stage::Evaluate, 1.0)]));
     let mut clock = Clock::new(begin);
@@ -240,7 +240,7 @@ impl OwnSurface<'_> {
         &self,
         repaired: RepairedLowPoly,
         options: &UvStageOptions,
-        watcher: &impl Watcher,
+        watcher: &dyn Watcher,
     ) -> UvStageResult {
         optimise_uvs(repaired, self.frame, &self.stored, &UvStageOptions { steps: 0, ..*options }, watcher)
     }
@@ -251,12 +251,7 @@ impl OwnSurface<'_> {
     }
 
     /// What was done, and said to the user where he should know; losses and stages are left to be told.
-    fn report<W: Watcher>(
-        &self,
-        baseline: &Solved,
-        written: &Solved,
-        watcher: &ProgressScope<W>,
-    ) -> BakeReport {
+    fn report(&self, baseline: &Solved, written: &Solved, watcher: &ProgressScope) -> BakeReport {
         let name = &self.model.name;
         let uv = check_mesh(&written.low.model.mesh, self.options.texture_size);
         let repaired = written.low.report.repaired.iter().map(|done| format!("{name}: {done}"));

@@ -77,12 +77,12 @@ struct Tried {
 ///
 /// # Errors
 /// As of [`fit_views`].
-pub(crate) fn fit_fallback<W: Watcher>(
+pub(crate) fn fit_fallback(
     order: &Order,
     (low, kinds): (&Model, &[LayerKind]),
     with_maps: &Model,
     references: Arc<Vec<Reference>>,
-    scope: &ProgressScope<W>,
+    scope: &ProgressScope,
     clock: &mut Clock,
 ) -> Result<Fallback, BakeError> {
     let judged = &references[..references.len().min(JUDGING)];
@@ -134,13 +134,13 @@ fn sides(options: &BakeOptions) -> Vec<usize> {
     }
 }
 
-fn fit<W: Watcher>(
+fn fit(
     order: &Order,
     low: &Model,
     kinds: &[LayerKind],
     side: usize,
     references: Arc<Vec<Reference>>,
-    scope: &ProgressScope<W>,
+    scope: &ProgressScope,
     clock: &mut Clock,
 ) -> Result<Vec<(MapKind, Image)>, BakeError> {
     let &Order { high, plan, options, work } = order;
@@ -164,12 +164,12 @@ fn fit<W: Watcher>(
 }
 
 /// How well viewers without the maps show the high-poly, with these textures of their own.
-fn psnr<W: Watcher>(
+fn psnr(
     order: &Order,
     with_maps: &Model,
     maps: &[(MapKind, Image)],
     judged: &[Reference],
-    watcher: &W,
+    watcher: &dyn Watcher,
 ) -> f64 {
     let high = order.high;
     let mut model = with_maps.clone();

@@ -15,7 +15,7 @@ use crate::options::{BakeOptions, UvMode};
 use crate::report::Work;
 use crate::snapshots::of_surface;
 use parbake_model::Model;
-use parbake_progress::{Clock, Portion, ProgressScope, Showing, Stage, Watcher};
+use parbake_progress::{Clock, Portion, ProgressScope, Showing, Stage};
 use parbake_render::parallax::ParallaxCoefficients;
 use parbake_shape::paper_joint_fit::paper_joint_fit;
 use parbake_shape::stage::{ShapeReport, grow_for_cutout, shape, smooth_references};
@@ -44,12 +44,12 @@ pub struct Geometry {
 ///
 /// # Errors
 /// Where its texture coordinates have no area, or its charts do not fit into the texture.
-pub fn move_geometry<W: Watcher>(
+pub fn move_geometry(
     low: &Model,
     work: Work,
     high: &HighPoly,
     options: &BakeOptions,
-    scope: &ProgressScope<W>,
+    scope: &ProgressScope,
     clock: &mut Clock,
 ) -> Result<Geometry, BakeError> {
     let same = work == Work::Compress;

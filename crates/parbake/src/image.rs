@@ -76,7 +76,6 @@ pub fn bake_image(
     watcher: &dyn Watcher,
 ) -> Result<BakedImage, BakeError> {
     options.check()?;
-    let watcher = &watcher;
     if !image.is_whole() {
         return Err(BakeError::BrokenImage { image: image.name.clone() });
     }

@@ -59,7 +59,7 @@ pub fn low_poly(
         options.least = LEAST_OF_PART;
     }
     let parts = parts_of_materials(model);
-    let watcher = &Showing::new(&watcher, |snapshot| Some(of_surface(&model.name, high, snapshot)));
+    let watcher = &Showing::new(watcher, |snapshot| Some(of_surface(&model.name, high, snapshot)));
     let chosen = choose_triangles(high, before.as_ref(), &parts, &options, watcher);
     let mut mesh = chosen.mesh;
     for point in &mut mesh.positions {

@@ -131,7 +131,6 @@ pub fn raycast(
     watcher: &dyn Watcher,
 ) -> Result<Raycast, BakeError> {
     options.check()?;
-    let watcher = &watcher;
     let mut clock = Clock::new(Instant::now());
     let mut warnings = Warnings::new(watcher);
     let size = options.texture_size;

@@ -61,7 +61,7 @@ fn unplace(mesh: &mut Mesh, frame: &Placement) {
 }
 
 /// Shows a low-poly that no stage moves now, if someone wants to see it.
-pub(crate) fn show(low: &Model, high: &HighPoly, watcher: &impl Watcher) {
+pub(crate) fn show(low: &Model, high: &HighPoly, watcher: &dyn Watcher) {
     if watcher.wants_snapshot() {
         let mut mesh = low.mesh.clone();
         high.frame.apply(&mut mesh);

@@ -19,7 +19,7 @@ use parbake_image::MapKind;
 use parbake_image::quantise::from_image;
 use parbake_model::Model;
 use parbake_model::glam::{Vec2, Vec3};
-use parbake_progress::{Clock, Portion, ProgressScope, Showing, Stage, Watcher};
+use parbake_progress::{Clock, Portion, ProgressScope, Showing, Stage};
 use parbake_render::directions::{VertexFrame, sight};
 use parbake_render::parallax::ParallaxCoefficients;
 use parbake_render::shade::Lambert;
@@ -65,10 +65,7 @@ fn parallax_plan(order: &Order) -> Option<ParallaxPlan> {
 }
 
 /// The pictures that [`fit_views`] needs; none where materials are fitted alone, for what is seen of these needs none.
-pub(crate) fn training_views<W: Watcher>(
-    order: &Order,
-    scope: &ProgressScope<W>,
-) -> Option<Arc<Vec<Reference>>> {
+pub(crate) fn training_views(order: &Order, scope: &ProgressScope) -> Option<Arc<Vec<Reference>>> {
     let is_needed = !order.high.is_whole_material || parallax_plan(order).is_some();
     is_needed.then(|| order.high.references(&view_set(order), &scope.share(shares::REFERENCE)))
 }
@@ -78,12 +75,12 @@ pub(crate) fn training_views<W: Watcher>(
 ///
 /// # Errors
 /// Where no view shows the low-poly before the high-poly.
-pub(crate) fn fit_views<W: Watcher>(
+pub(crate) fn fit_views(
     order: &Order,
     subject: Subject,
     references: Option<Arc<Vec<Reference>>>,
     given: Option<ParallaxCoefficients>,
-    scope: &ProgressScope<W>,
+    scope: &ProgressScope,
     clock: &mut Clock,
 ) -> Result<FittedTextures, BakeError> {
     let &Order { high, plan, options, .. } = order;

@@ -6,15 +6,15 @@ use parbake_progress::{Message, Watcher};
 use parbake_views::high_poly::HighPoly;
 
 /// What the user is told of as it is found, and reads again in the report.
-pub(crate) struct Warnings<'a, W> {
-    watcher: &'a W,
+pub(crate) struct Warnings<'a> {
+    watcher: &'a dyn Watcher,
     /// All so far.
     pub told: Vec<String>,
 }
 
-impl<'a, W: Watcher> Warnings<'a, W> {
+impl<'a> Warnings<'a> {
     /// None yet.
-    pub fn new(watcher: &'a W) -> Self {
+    pub fn new(watcher: &'a dyn Watcher) -> Self {
         Self { watcher, told: Vec::new() }
     }
 

@@ -78,30 +78,3 @@ pub trait Watcher: Sync {
 
 /// Nobody watches.
 impl Watcher for () {}
-
-/// So that a stage which takes any watcher takes one whose type is not known, too.
-impl<W: Watcher + ?Sized> Watcher for &W {
-    fn message(&self, message: Message) {
-        (**self).message(message);
-    }
-
-    fn progress(&self, stage: Stage, done: usize, total: usize) {
-        (**self).progress(stage, done, total);
-    }
-
-    fn snapshot(&self, snapshot: Snapshot) {
-        (**self).snapshot(snapshot);
-    }
-
-    fn wants_snapshot(&self) -> bool {
-        (**self).wants_snapshot()
-    }
-
-    fn stopped(&self) -> bool {
-        (**self).stopped()
-    }
-
-    fn seconds_left(&self) -> Option<f64> {
-        (**self).seconds_left()
-    }
-}

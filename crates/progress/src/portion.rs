@@ -10,16 +10,16 @@ use std::ops::Range;
 const STEPS: f64 = 1000.0;
 
 /// Passes a part's messages on.
-pub struct Portion<'a, W: ?Sized> {
-    watcher: &'a W,
+pub struct Portion<'a> {
+    watcher: &'a dyn Watcher,
     range: Range<f64>,
     /// The only stage whose progress counts, and the one that it is a part of; none where its messages say so.
     stages: Option<[Stage; 2]>,
 }
 
-impl<'a, W: Watcher + ?Sized> Portion<'a, W> {
+impl<'a> Portion<'a> {
     /// For the part from `range.start` to `range.end` of the stage, 0 to 1.
-    pub fn new(watcher: &'a W, range: Range<f64>) -> Self {
+    pub fn new(watcher: &'a dyn Watcher, range: Range<f64>) -> Self {
         Self { watcher, range, stages: None }
     }
 
@@ -29,7 +29,7 @@ impl<'a, W: Watcher + ?Sized> Portion<'a, W> {
     }
 }
 
-impl<W: Watcher + ?Sized> Watcher for Portion<'_, W> {
+impl Watcher for Portion<'_> {
     fn message(&self, message: Message) {
         self.watcher.message(match message {
             Message::Progress { stage, done, total } => {

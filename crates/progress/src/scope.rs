@@ -7,17 +7,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Passes the stages' messages on, and their question whether to stop.
-pub struct ProgressScope<'a, W> {
-    watcher: &'a W,
+pub struct ProgressScope<'a> {
+    watcher: &'a dyn Watcher,
     /// When a budget is spent, besides what the watcher says.
     until: Option<Instant>,
     /// Set once a stage was told to stop; one for all stages.
     told: Arc<AtomicBool>,
 }
 
-impl<'a, W: Watcher> ProgressScope<'a, W> {
+impl<'a> ProgressScope<'a> {
     /// For a run that may take so many seconds from `begin` on.
-    pub fn new(watcher: &'a W, begin: Instant, budget: Option<f64>) -> Self {
+    pub fn new(watcher: &'a dyn Watcher, begin: Instant, budget: Option<f64>) -> Self {
         let until = budget.map(|seconds| begin + Duration::from_secs_f64(seconds.min(1e9)));
         Self { watcher, until, told: Arc::default() }
     }
@@ -49,7 +49,7 @@ impl<'a, W: Watcher> ProgressScope<'a, W> {
     }
 }
 
-impl<W: Watcher> Watcher for ProgressScope<'_, W> {
+impl Watcher for ProgressScope<'_> {
     fn message(&self, message: Message) {
         self.watcher.message(message);
     }

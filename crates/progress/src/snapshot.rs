@@ -56,15 +56,15 @@ impl PackedParallax {
 }
 
 /// Passes all on, and completes a stage's snapshots on their way.
-pub struct Showing<'a, W: ?Sized, F> {
-    watcher: &'a W,
+pub struct Showing<'a, F> {
+    watcher: &'a dyn Watcher,
     complete: F,
     is_seen: bool,
 }
 
-impl<'a, W: Watcher + ?Sized, F: Fn(Snapshot) -> Option<Snapshot> + Sync> Showing<'a, W, F> {
+impl<'a, F: Fn(Snapshot) -> Option<Snapshot> + Sync> Showing<'a, F> {
     /// With what completes a snapshot, or leaves it out.
-    pub fn new(watcher: &'a W, complete: F) -> Self {
+    pub fn new(watcher: &'a dyn Watcher, complete: F) -> Self {
         Self { watcher, complete, is_seen: true }
     }
 
@@ -74,7 +74,7 @@ impl<'a, W: Watcher + ?Sized, F: Fn(Snapshot) -> Option<Snapshot> + Sync> Showin
     }
 }
 
-impl<W: Watcher + ?Sized, F: Fn(Snapshot) -> Option<Snapshot> + Sync> Watcher for Showing<'_, W, F> {
+impl<F: Fn(Snapshot) -> Option<Snapshot> + Sync> Watcher for Showing<'_, F> {
     fn message(&self, message: Message) {
         match message {
             Message::Snapshot(snapshot) => {

@@ -71,7 +71,7 @@ pub fn cast_maps(
     low: &LowPoly,
     high: &HighPoly,
     options: &CastOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Option<CastMaps> {
     let size = low.map.size;
     let samples = options.samples.max(1);

@@ -167,7 +167,7 @@ pub fn fit_shape(
     size: usize,
     display: Display,
     options: &ShapeOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Shaped {
     let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
     let laplacian = Laplacian::new(points.rest.len(), &points.triangles);

@@ -140,7 +140,7 @@ pub fn paper_fit(
     views: &Views,
     seed: u64,
     options: &PaperOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> PaperResult {
     let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
     let edges = EdgeAdjacency::new(&mesh.positions, &mesh.triangles);

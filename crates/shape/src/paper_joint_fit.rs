@@ -48,7 +48,7 @@ pub fn paper_joint_fit(
     high: &HighPoly,
     plan: &PaperJointPlan,
     seed: u64,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<Outcome, PrepareError> {
     let LowPoly { placed, .. } = LowPoly::new(low, &high.frame, plan.fit.texture_size)?;
     let references = smooth_references(high, plan.views, plan.view_size, SAMPLES, seed, watcher);

@@ -71,7 +71,7 @@ pub fn shape(
     high: &HighPoly,
     references: &[Reference],
     plan: &ShapePlan,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<ShapeReport, PrepareError> {
     let (placed, shaped) = fitted(name, mesh, high, references, plan, watcher)?;
     move_vertices(mesh, &placed, &shaped.positions, &high.frame);
@@ -90,7 +90,7 @@ pub fn grow_for_cutout(
     high: &HighPoly,
     references: &[Reference],
     plan: &ShapePlan,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<ShapeReport, PrepareError> {
     let (placed, shaped) = fitted(name, mesh, high, references, plan, watcher)?;
     let ways = shaped.positions.iter().zip(&placed.positions).map(|(after, before)| *after - *before);
@@ -109,7 +109,7 @@ fn fitted(
     high: &HighPoly,
     references: &[Reference],
     plan: &ShapePlan,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Result<(Mesh, Shaped), PrepareError> {
     let model = Model {
         name: name.into(),
@@ -146,7 +146,7 @@ pub fn smooth_references(
     size: usize,
     samples: usize,
     seed: u64,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Arc<Vec<Reference>> {
     let sampling = Sampling { size, filter: 1.0, samples };
     high.references(&ViewSet { count: views, seed, jitter: false, sampling }, watcher)

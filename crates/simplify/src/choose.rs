@@ -99,7 +99,7 @@ pub fn choose_triangles(
     before: Option<&Mesh>,
     parts: &[u32],
     options: &ChooseOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Chosen {
     let mesh = high.scene.mesh();
     let start = quadrics(mesh, parts, options.room * options.triangles);
@@ -208,7 +208,7 @@ fn layer(
     parts: &[u32],
     starts: [Option<(Start, Mesh)>; 2],
     options: &ChooseOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> (Mesh, LayerReport) {
     let target = |view: &View| Target::new(high, triangles, view.camera, options.view_size);
     let set =

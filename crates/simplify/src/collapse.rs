@@ -97,7 +97,7 @@ fn small_part(surface: &Surface, point: u32) -> Option<Vec<u32>> {
 }
 
 /// Collapses until `target` triangles are left, or nothing can go any more, or the watcher says stop.
-pub fn collapse_to(pictures: &mut Pictures, target: usize, watcher: &impl Watcher) {
+pub fn collapse_to(pictures: &mut Pictures, target: usize, watcher: &dyn Watcher) {
     let start = pictures.surface.count();
     if start <= target {
         return;

@@ -47,7 +47,7 @@ pub fn polish<'a>(
     sets: &'a [Vec<Target>],
     high: &HighPoly,
     options: &PolishOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) {
     let target = pictures.surface.count();
     let mut steps = Steps::default();
@@ -82,7 +82,7 @@ pub fn polish<'a>(
     settle(pictures, &mut sets, &mut steps, 3 * options.sweeps, watcher);
 }
 
-fn show(pictures: &Pictures, watcher: &impl Watcher) {
+fn show(pictures: &Pictures, watcher: &dyn Watcher) {
     if watcher.wants_snapshot() {
         watcher.snapshot(Snapshot::Surface { mesh: pictures.surface.to_mesh(), color: None });
     }
@@ -102,14 +102,14 @@ impl<'a> Sets<'a> {
 }
 
 /// Whether to go no further: what there is may be kept at any time, so an end of time that is known ends it too.
-fn is_over(watcher: &impl Watcher) -> bool {
+fn is_over(watcher: &dyn Watcher) -> bool {
     watcher.stopped() || watcher.seconds_left().is_some_and(|left| left <= 0.0)
 }
 
 /// Passes on that a run should stop, and no progress: a round is a part of the whole.
-struct Quietly<'a, W>(&'a W);
+struct Quietly<'a>(&'a dyn Watcher);
 
-impl<W: Watcher> Watcher for Quietly<'_, W> {
+impl Watcher for Quietly<'_> {
     fn message(&self, _: Message) {}
 
     fn stopped(&self) -> bool {
@@ -157,7 +157,7 @@ fn settle<'a>(
     sets: &mut Sets<'a>,
     steps: &mut Steps,
     sweeps: usize,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) {
     for _ in 0..sweeps {
         if is_over(watcher) {

@@ -161,7 +161,7 @@ impl HighPoly {
 
     /// The high-poly from each view of a set. Stops early, with fewer views, when asked to, but never
     /// before the first one is done.
-    pub fn references(&self, set: &ViewSet, watcher: &impl Watcher) -> Arc<Vec<Reference>> {
+    pub fn references(&self, set: &ViewSet, watcher: &dyn Watcher) -> Arc<Vec<Reference>> {
         let kept = || self.kept.as_ref().and_then(|kept| kept.lock().ok());
         let found = kept().and_then(|kept| kept.iter().find(|(own, _)| own == set).map(|(_, r)| r.clone()));
         if let Some(found) = found {

@@ -56,7 +56,7 @@ impl MaterialSampler<'_> {
         &self,
         set: &ViewSet,
         texture_size: usize,
-        watcher: &impl Watcher,
+        watcher: &dyn Watcher,
     ) -> (SampleSet<MaterialSample>, usize) {
         let views = set.views(&self.high.conventions.rig);
         let seen = std::sync::atomic::AtomicUsize::new(0);

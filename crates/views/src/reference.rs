@@ -67,7 +67,7 @@ pub fn render_references(
     pool: &[View],
     sampling: &Sampling,
     at_least: usize,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Vec<Reference> {
     let done = AtomicUsize::new(0);
     // Small groups in order, so that an early stop keeps a well-spread prefix.

@@ -183,7 +183,7 @@ pub fn collect_samples(
     sampler: &ViewSampler,
     references: &[Reference],
     texture_size: usize,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> SampleSet {
     collect(references.par_iter(), texture_size, watcher, |reference, out| {
         sampler.fragments(reference, |seen| {
@@ -198,7 +198,7 @@ pub fn shifted_samples<V: AsRef<[ViewSample]>>(
     views: impl IntoParallelIterator<Item = V, Iter: IndexedParallelIterator>,
     texture_size: usize,
     map: &impl ShiftMap,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> SampleSet {
     collect(views.into_par_iter(), texture_size, watcher, |view, out| {
         out.extend(view.as_ref().iter().map(|seen| {
@@ -212,7 +212,7 @@ pub fn shifted_samples<V: AsRef<[ViewSample]>>(
 pub(crate) fn collect<V, S: Fetched + Copy + Default + Send + Sync>(
     views: impl IndexedParallelIterator<Item = V>,
     texture_size: usize,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
     of_view: impl Fn(V, &mut Vec<S>) + Sync,
 ) -> SampleSet<S> {
     let layout = Layout { size: texture_size, tiles_across: texture_size.div_ceil(TILE) };

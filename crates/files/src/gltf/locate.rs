@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     fn locate(text: &str) -> (String, String) {
-        let error = serde_json::from_str::<Document>(text).unwrap_err();
+        let error = serde_json::from_slice::<Document>(text.as_bytes()).unwrap_err();
         (pointer(text.as_bytes(), &error), reason(&error))
     }
 

@@ -109,14 +109,14 @@ mod tests {
     use serde_json::json;
 
     fn sets(color: usize, normal: usize, occlusion: usize) -> (UvSets, [Option<u8>; 3]) {
-        let material: Material = serde_json::from_value(json!({
+        let text = json!({
             "pbrMetallicRoughness": { "baseColorTexture": { "index": 0, "texCoord": color } },
             "normalTexture": {
                 "index": 0, "extensions": { "KHR_texture_transform": { "texCoord": normal } },
             },
             "occlusionTexture": { "index": 0, "texCoord": occlusion },
-        }))
-        .unwrap();
+        });
+        let material: Material = serde_json::from_slice(text.to_string().as_bytes()).unwrap();
         let sets = UvSets::of(&material);
         (sets, [color, normal, occlusion].map(|set| sets.place(set)))
     }

@@ -67,7 +67,7 @@ impl Subject {
         high: &Model,
         low: &Model,
         options: &VariantsOptions,
-        watcher: &impl Watcher,
+        watcher: &dyn Watcher,
     ) -> Result<Self, BakeError> {
         let convention = options.convention;
         let conventions = Conventions {
@@ -133,7 +133,7 @@ pub struct Ground<'a> {
 
 impl<'a> Ground<'a> {
     /// Collects samples and renders the held-out views.
-    pub fn new(subject: &'a Subject, options: &'a VariantsOptions, watcher: &impl Watcher) -> Self {
+    pub fn new(subject: &'a Subject, options: &'a VariantsOptions, watcher: &dyn Watcher) -> Self {
         let sampler = subject.sampler(options);
         let (low, start) = &subject.small;
         let views = sample_views(&sampler, &subject.references);
@@ -173,7 +173,7 @@ impl<'a> Ground<'a> {
         &self,
         name: &str,
         map: impl FnOnce() -> M,
-        watcher: &impl Watcher,
+        watcher: &dyn Watcher,
     ) -> Option<(VariantFigures, Vec<Rgb>)> {
         let variant = (!watcher.stopped()).then(|| self.variant(name, map(), watcher));
         variant.filter(|_| !watcher.stopped())
@@ -184,7 +184,7 @@ impl<'a> Ground<'a> {
         &self,
         name: &str,
         map: M,
-        watcher: &impl Watcher,
+        watcher: &dyn Watcher,
     ) -> (VariantFigures, Vec<Rgb>) {
         let (since, options) = (Instant::now(), self.options);
         let Subject { low, start, .. } = self.subject;

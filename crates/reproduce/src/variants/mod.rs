@@ -22,7 +22,7 @@ pub use options::VariantsOptions;
 pub use report::{VariantFigures, VariantsReport};
 
 use ground::Ground;
-use parbake::{BakeError, ProgressScope, Watcher};
+use parbake::{BakeError, Watcher};
 use parbake_metric::Rgb;
 use parbake_model::{Basis, Model};
 use parbake_render::parallax::ParallaxCoefficients;
@@ -30,7 +30,6 @@ use parbake_render::parallax_variants::height::{HeightParallax, Variant};
 use parbake_render::parallax_variants::heights::Heights;
 use parbake_render::parallax_variants::neural::NeuralParallax;
 use parbake_render::parallax_variants::shift_map::Unshifted;
-use std::time::Instant;
 
 /// A comparison with its pictures.
 #[derive(Clone, Debug)]
@@ -55,9 +54,8 @@ pub fn compare_variants(
     watcher: &dyn Watcher,
 ) -> Result<ComparedVariants, BakeError> {
     options.check()?;
-    let bridge = ProgressScope::new(&watcher, Instant::now(), None);
-    let subject = ground::Subject::new(high, low, options, &bridge)?;
-    let ground = Ground::new(&subject, options, &bridge);
+    let subject = ground::Subject::new(high, low, options, watcher)?;
+    let ground = Ground::new(&subject, options, watcher);
     let heights = |variant| {
         let flat = HeightParallax::flat(variant, options.height_size, options.height_scale);
         match &subject.heights {
@@ -70,21 +68,21 @@ pub fn compare_variants(
     };
     let harmonics = |order| ParallaxCoefficients::zeros(Basis::Harmonics(order), options.parallax_size);
     let variants = [
-        Some(ground.variant("no parallax", Unshifted, &bridge)),
-        ground.next("parallax", || heights(Variant::Parallax), &bridge),
-        ground.next("offset limiting", || heights(Variant::OffsetLimited), &bridge),
-        ground.next("steep parallax", || heights(Variant::Steep), &bridge),
-        ground.next("parallax occlusion", || heights(Variant::Occlusion), &bridge),
-        ground.next("SH, order 3", || harmonics(3), &bridge),
-        ground.next("SH, order 7", || harmonics(7), &bridge),
-        ground.next("small network", NeuralParallax::default, &bridge),
+        Some(ground.variant("no parallax", Unshifted, watcher)),
+        ground.next("parallax", || heights(Variant::Parallax), watcher),
+        ground.next("offset limiting", || heights(Variant::OffsetLimited), watcher),
+        ground.next("steep parallax", || heights(Variant::Steep), watcher),
+        ground.next("parallax occlusion", || heights(Variant::Occlusion), watcher),
+        ground.next("SH, order 3", || harmonics(3), watcher),
+        ground.next("SH, order 7", || harmonics(7), watcher),
+        ground.next("small network", NeuralParallax::default, watcher),
     ];
     let (variants, pictures) = variants.into_iter().flatten().unzip();
     let report = VariantsReport {
         options: options.clone(),
         variants,
         views: options.held_out,
-        stopped_early: bridge.stopped(),
+        stopped_early: watcher.stopped(),
     };
     Ok(ComparedVariants { report, high: ground.high_sides(), pictures })
 }

@@ -42,7 +42,7 @@ pub fn optimised(
     options: &PictureOptions,
     contact: &ContactOptions,
     moves: &mut Moves,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Option<(Layout, FloatImage<Vec4>, Balance)> {
     let size = options.texture_size;
     let steps = options.steps;

@@ -40,7 +40,7 @@ pub fn moved(
     picture: &Picture,
     options: &PictureOptions,
     moves: &mut Moves,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Layout {
     let own = paper_options(picture, options);
     let mut picture = picture.clone();

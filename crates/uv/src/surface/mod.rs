@@ -121,7 +121,7 @@ pub fn optimise_uvs(
     frame: &Placement,
     source: &Source,
     options: &UvStageOptions,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> UvStageResult {
     let RepairedLowPoly { name, mut mesh, repaired } = low;
     let start = Layout::new(&mesh);

@@ -42,7 +42,7 @@ pub fn moved(
     source: &Source,
     asked: &UvStageOptions,
     report: &mut UvStageReport,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Option<Moved> {
     let start = &Layout::new(mesh);
     let signal_scales = signal(mesh, start, source, asked.texture_size)?;
@@ -91,13 +91,13 @@ fn told_apart(texture_size: usize, samples: usize) -> usize {
 /// Moves the layout, which leaves this error in total, to the better one of the signal-specialised
 /// starts, and returns the way there. The start is a guess: how plain the plain is depends on the
 /// texture's size, and where both guesses are bad, none is better.
-fn shaped<W: Watcher>(
+fn shaped(
     score: &LayoutScore,
     layout: &mut Layout,
     mut least: f64,
     tensors: &[DMat2],
     options: &UvOptions,
-    steps: &mut Steps<W>,
+    steps: &mut Steps,
 ) -> Vec<Vec<Vec2>> {
     let (before, mut shaped) = (layout.clone(), Vec::new());
     for flat in FLAT {

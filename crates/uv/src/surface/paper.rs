@@ -43,7 +43,7 @@ pub fn moved(
     source: &Source,
     asked: &UvStageOptions,
     report: &mut UvStageReport,
-    watcher: &impl Watcher,
+    watcher: &dyn Watcher,
 ) -> Option<Moved> {
     let start = Layout::new(mesh);
     let signal_scales = signal(mesh, &start, source, asked.texture_size)?;

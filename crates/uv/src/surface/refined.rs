@@ -21,7 +21,6 @@ use glam::Vec4;
 use parbake_atlas::Layout;
 use parbake_image::FloatImage;
 use parbake_model::glam::{DVec2, Vec2};
-use parbake_progress::Watcher;
 
 /// Turns; in between showings are weighted anew.
 const TURNS: usize = 3;
@@ -47,13 +46,13 @@ const WORTH_TRIANGLES: f64 = 0.97;
 /// The best of the turns' layouts with the way there, which begins with `frames`, and its errors as shares of
 /// those of the start; None where none is better at each size. A model's own gets at most
 /// `more_triangles`.
-pub fn refined<W: Watcher>(
+pub fn refined(
     score: &LayoutScore,
     mut layout: Layout,
     options: &UvOptions,
     more_triangles: usize,
     mut frames: Vec<Vec<Vec2>>,
-    steps: &mut Steps<W>,
+    steps: &mut Steps,
 ) -> Option<(Moved, Vec<f64>)> {
     let coarse = score.problem;
     let limits = Limits::new(score.own);

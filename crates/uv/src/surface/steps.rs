@@ -7,19 +7,19 @@ use parbake_model::Mesh;
 use parbake_progress::{Message, Snapshot, Stage, Watcher};
 
 /// How far along the way is.
-pub struct Steps<'a, W> {
+pub struct Steps<'a> {
     done: usize,
     most: usize,
     is_first: bool,
     mesh: &'a Mesh,
     start: &'a Layout,
     /// Who is told, and may stop it.
-    pub watcher: &'a W,
+    pub watcher: &'a dyn Watcher,
 }
 
-impl<'a, W: Watcher> Steps<'a, W> {
+impl<'a> Steps<'a> {
     /// None done of this many at most; `start` is the layout of `mesh`, which lies in the common frame.
-    pub fn new(most: usize, mesh: &'a Mesh, start: &'a Layout, watcher: &'a W) -> Self {
+    pub fn new(most: usize, mesh: &'a Mesh, start: &'a Layout, watcher: &'a dyn Watcher) -> Self {
         Self { done: 0, most, is_first: true, mesh, start, watcher }
     }
 
