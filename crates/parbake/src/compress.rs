@@ -352,6 +352,11 @@ mod tests {
         }
     }
 
+    /// Enough for boxes.
+    fn small() -> BakeOptions {
+        BakeOptions { texture_size: 64, views: Some(24), view_size: Some(64), ..BakeOptions::default() }
+    }
+
     /// Protects texels of what is seen: a box within another, which nobody sees, gives most of its
     /// texels to the outer one, though its picture is as detailed.
     #[test]
@@ -360,7 +365,7 @@ mod tests {
         add_box(&mut mesh, 1.0, 0.1);
         add_box(&mut mesh, 0.9, 0.6);
         let model = noisy(mesh);
-        let options = BakeOptions { texture_size: 64, ..BakeOptions::default() };
+        let options = small();
         let baked = compress(&model, &options, &()).expect("boxes can be compressed");
         let mesh = &baked.model.mesh;
         let area = |of: fn(Vec3) -> bool| -> f32 {
@@ -385,13 +390,7 @@ mod tests {
         add_box(&mut mesh, 1.0, 0.1);
         mesh.uvs.iter_mut().enumerate().for_each(|(i, uv)| *uv = Vec2::splat(0.1 + 0.1 * (i / 4) as f32));
         let mut model = noisy(mesh);
-        let options = BakeOptions {
-            texture_size: 64,
-            uv_steps: Some(1),
-            preset: crate::options::Preset::Fast,
-            views: Some(12),
-            ..BakeOptions::default()
-        };
+        let options = BakeOptions { uv_steps: Some(1), preset: crate::options::Preset::Fast, ..small() };
         for metallic in [0.0, 1.0] {
             model.materials[0].metallic = metallic;
             let baked = compress(&model, &options, &()).expect("a palette can be compressed");
@@ -405,7 +404,7 @@ mod tests {
     fn charts_in_other_tiles_are_read_at_home() {
         let mut mesh = Mesh::default();
         add_box(&mut mesh, 1.0, 0.1);
-        let options = BakeOptions { texture_size: 64, uv_steps: Some(2), ..BakeOptions::default() };
+        let options = BakeOptions { uv_steps: Some(2), ..small() };
         let at_home = compress(&noisy(mesh.clone()), &options, &()).expect("a box can be compressed");
         mesh.uvs[..4].iter_mut().for_each(|uv| *uv += vec2(2.0, -1.0));
         let mut away = noisy(mesh);
@@ -427,7 +426,7 @@ mod tests {
         mesh.uvs[..4].iter_mut().for_each(|uv| *uv += vec2(2.0, -1.0));
         let uvs = mesh.uvs.clone();
         let preset = crate::options::Preset::Fast;
-        let options = BakeOptions { texture_size: 64, uv: UvMode::Keep, preset, ..BakeOptions::default() };
+        let options = BakeOptions { uv: UvMode::Keep, preset, ..small() };
         let baked = compress(&noisy(mesh), &options, &()).expect("a box can be compressed");
         assert_eq!(baked.model.mesh.uvs, uvs);
         let slot = baked.model.materials[0].base_color_texture.expect("it has a texture");
@@ -443,7 +442,7 @@ mod tests {
         mesh.uvs.clear();
         mesh.colors = mesh.positions.iter().map(|p| Vec4::splat(if p.x > 0.0 { 1.0 } else { 0.0 })).collect();
         let model = Model { materials: vec![Material::default()], mesh, ..Model::default() };
-        let keep = BakeOptions { texture_size: 64, uv: UvMode::Keep, ..BakeOptions::default() };
+        let keep = BakeOptions { uv: UvMode::Keep, ..small() };
         assert!(matches!(
             compress(&model, &keep, &()),
             Err(BakeError::Prepare(PrepareError::NoTextureCoordinates { .. }))
@@ -486,7 +485,7 @@ mod tests {
             add_box(&mut mesh, 1.0, 0.1);
             mesh.positions[first..].iter_mut().for_each(|p| p.x += 3.0 * i as f32);
         }
-        let options = BakeOptions { texture_size: 128, uv_steps: Some(2), ..BakeOptions::default() };
+        let options = BakeOptions { texture_size: 128, uv_steps: Some(2), ..small() };
         let uvs = mesh.uvs.clone();
         let shared = compress(&noisy(mesh.clone()), &options, &()).expect("boxes can be compressed");
         assert_eq!(shared.model.mesh.uvs, uvs);
@@ -511,7 +510,7 @@ mod tests {
         let mut model = noisy(mesh.clone());
         model.materials[0].base_color_texture.iter_mut().for_each(|slot| slot.wrap = [Wrap::Repeat; 2]);
         let preset = crate::options::Preset::Fast;
-        let options = BakeOptions { texture_size: 64, uv_steps: Some(2), preset, ..BakeOptions::default() };
+        let options = BakeOptions { uv_steps: Some(2), preset, ..small() };
         let baked = compress(&model, &options, &()).expect("a box can be compressed");
         assert_eq!(baked.model.mesh.uvs, mesh.uvs);
         assert!(

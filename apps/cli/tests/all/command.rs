@@ -8,7 +8,10 @@ use std::fs;
 fn demo_makes_bakes_and_reports() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    run(folder, &[&["demo"][..], &SMALL].concat());
+    run(folder, &[&["demo", "--pictures", "pictures"][..], &SMALL].concat());
+    // README's pictures: one file with the four bakes side by side, small enough for a repository.
+    let file = fs::read(folder.join("pictures/demo.webp")).unwrap();
+    assert!(file.len() < 300_000 && file.starts_with(b"RIFF"), "{} bytes", file.len());
     let out = folder.join("out");
     assert_eq!(fs::read(out.join("demo.glb")).unwrap()[..4], *b"glTF");
     assert!(fs::read_to_string(out.join("demo.html")).unwrap().contains("</html>"));
@@ -100,7 +103,7 @@ fn mistakes_are_named() {
         (with(&["--json", "never.glb"]), 2, "two outputs"),
         (with(&["--threads", "99999"]), 2, "0 to 256"),
         (with(&["--max-distance", "-1"]), 2, "0 to 1"),
-        ([&pair("demo_high.glb", "far.obj")[..], &["--views", "8"]].concat(), 1, "outside of every view"),
+        ([&pair("demo_high.glb", "far.obj")[..], &SMALL].concat(), 1, "outside of every view"),
         (vec!["eval", "demo_high.glb", "demo_low.glb", "--background", "1,red,0"], 2, "R,G,B"),
     ];
     for (arguments, code, words) in cases {

@@ -76,9 +76,12 @@ fn triangles_are_added_as_asked() {
     let folder = folder.path();
     demo_pair(folder);
     run(folder, &["simplify", "demo_high.glb", "-o", "few.glb", "--triangles", "300", "-q"]);
-    let compress = ["compress", "few.glb", "-o", "small.glb", "--texture-size", "64", "--more-triangles"];
+    let compress = ["compress", "few.glb", "-o", "small.glb", "--texture-size", "64"];
     let triangles = |more: &str| {
-        let printed = text(&run(folder, &[&compress[..], &[more, "--json", "report.json"]].concat()).stdout);
+        let printed = text(
+            &run(folder, &[&compress[..], &["--more-triangles", more, "--json", "report.json"]].concat())
+                .stdout,
+        );
         let report: serde_json::Value =
             serde_json::from_slice(&fs::read(folder.join("report.json")).unwrap()).unwrap();
         let [given, now] = ["high_triangles", "low_triangles"].map(|name| report[name].as_u64().unwrap());

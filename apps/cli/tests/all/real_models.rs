@@ -43,7 +43,10 @@ fn a_glb_goes_the_whole_way() {
     let high = data.join("pbr/ExplodingBarrel/ExplodingBarrel.glb");
     let name = high.to_str().unwrap();
     run(folder, &["simplify", name, "-o", "low.glb", "--triangles", "800", "-q"]);
-    run(folder, &["bake", name, "low.glb", "-o", "baked.glb", "--preset", "fast", "-q"]);
+    run(
+        folder,
+        &["bake", name, "low.glb", "-o", "baked.glb", "--preset", "fast", "--texture-size", "256", "-q"],
+    );
     let (before, after) =
         (psnr(folder, &high, "low.glb".as_ref()), psnr(folder, &high, "baked.glb".as_ref()));
     eprintln!("{before:.2} dB with the original's textures, {after:.2} dB baked");

@@ -11,7 +11,8 @@ fn data(folder: &Path) {
     std::fs::create_dir_all(pair.join("lod3")).unwrap();
     std::fs::create_dir_all(folder.join("data/images2d")).unwrap();
     demo_pair(folder);
-    std::fs::rename(folder.join("demo_high.glb"), pair.join("high/jar.glb")).unwrap();
+    let high = parbake::simplified(&parbake::demo_pair().0, 1200);
+    parbake::write_glb(&pair.join("high/jar.glb"), &high).unwrap();
     std::fs::rename(folder.join("demo_low.glb"), pair.join("lod3/jar.glb")).unwrap();
     picture(folder, 3);
 }
