@@ -64,7 +64,9 @@ pub struct Step {
 /// What came of a bake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Baking {
-    /// What was baked.
+    /// What was asked for.
+    pub asked: Plan,
+    /// What came of it: it may have fewer triangles.
     pub plan: Plan,
     /// Bytes of all but the maps.
     pub mesh_bytes: u64,
@@ -133,6 +135,13 @@ pub struct Search {
 }
 
 impl Baking {
+    /// Whether this is what would come of a plan: from what was asked for to what came, all gives the same.
+    fn is_of(&self, plan: Plan) -> bool {
+        let [asked, came] = [self.asked, self.plan].map(|own| own.triangles as f64);
+        let same = (1.0 - SAME) * came.min(asked)..=(1.0 + SAME) * came.max(asked);
+        self.plan.texture_size == plan.texture_size && same.contains(&(plan.triangles as f64))
+    }
+
     /// Bytes of the maps and what their reduction adds to the error.
     fn cost(&self, choice: &[usize]) -> (u64, f64) {
         let steps = self.maps.iter().zip(choice).map(|(steps, &step)| steps[step]);
@@ -282,16 +291,10 @@ impl Search {
 
     /// The plan if it is not what was baked already; a little more where that did not reach the target.
     fn fresh(&self, plan: Plan) -> Option<Plan> {
-        let near = |plan: Plan| {
-            self.bakings.iter().position(|baking| {
-                let own = baking.plan;
-                let is_same = own.triangles.abs_diff(plan.triangles) as f64 <= SAME * own.triangles as f64;
-                own.texture_size == plan.texture_size && is_same
-            })
-        };
+        let near = |plan: Plan| self.bakings.iter().position(|baking| baking.is_of(plan));
         let Some(bake) = near(plan) else { return Some(plan) };
         let is_reached = self.outcomes.iter().any(|o| o.bake == bake && o.psnr >= self.target);
-        let own = self.bakings[bake].plan.triangles as f64;
+        let own = self.bakings[bake].asked.triangles as f64;
         let triangles = ((1.0 + 1.5 * SAME) * own).ceil() as usize + 1;
         let more = Plan { triangles: triangles.min(self.most.triangles), ..plan };
         (!is_reached && near(more).is_none()).then_some(more)
@@ -303,7 +306,7 @@ impl Search {
         let sizes = std::iter::successors(Some(largest), |size| Some(2 * size));
         let all = sizes.take_while(|&size| size <= self.most.texture_size);
         let mut plans = all.map(|texture_size| Plan { triangles: self.most.triangles, texture_size });
-        plans.find(|plan| self.bakings.iter().all(|baking| baking.plan != *plan))
+        plans.find(|plan| self.bakings.iter().all(|baking| ![baking.asked, baking.plan].contains(plan)))
     }
 
     /// For each choice of each bake the bytes that it would have with the triangles that it needs.
