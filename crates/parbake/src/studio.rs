@@ -155,14 +155,13 @@ impl Shot {
 /// A picture as a screen shows it; light strengthens the model and not what is behind it.
 pub fn shown(picture: &Picture, display: &Display, background: [f32; 3]) -> Rgb {
     let after = Display { gain: 1.0, ..*display };
-    let pixels = picture
-        .rgba
-        .iter()
-        .map(|p| {
-            std::array::from_fn(|k| {
-                after.encode(p[k] * display.gain + (1.0 - p[3]) * background[k]).clamp(0.0, 1.0)
-            })
+    let pixel = |p: &[f32; 4]| -> [f32; 3] {
+        std::array::from_fn(|k| {
+            after.encode(p[k] * display.gain + (1.0 - p[3]) * background[k]).clamp(0.0, 1.0)
         })
-        .collect();
+    };
+    // Most pixels show nothing, and powers take long.
+    let empty = pixel(&[0.0; 4]);
+    let pixels = picture.rgba.iter().map(|p| if *p == [0.0; 4] { empty } else { pixel(p) }).collect();
     Rgb { width: picture.size, height: picture.size, pixels }
 }
