@@ -6,11 +6,11 @@
 //!
 //! ```text
 //! error(triangles, choice) ≈ error of the bake · (triangles' share falls by a power law) + Σ errors of reduced maps
-//! bytes(triangles, choice) ≈ bytes of the mesh · triangles / own triangles            + Σ bytes of reduced maps
+//! bytes(triangles, choice) ≈ bytes of the mesh (a part for each triangle)              + Σ bytes of reduced maps
 //! ```
 //!
 //! The next bake has the triangles at which the choice with the least bytes is expected to reach the target. What was
-//! measured corrects the power law.
+//! measured corrects the power law, and tells which bytes of the mesh are always there.
 //!
 //! Contract: at most [`MOST_BAKES`] bakes; only what was measured is ever taken. Deterministic.
 
@@ -334,8 +334,7 @@ impl Search {
                 if self.is_hopeless(plan) {
                     continue;
                 }
-                let share = triangles as f64 / baking.plan.triangles as f64;
-                let bytes = bytes as f64 + baking.mesh_bytes as f64 * share;
+                let bytes = bytes as f64 + self.mesh_bytes_at(baking, triangles as f64);
                 plans.push((bytes, plan));
             }
         }
@@ -363,15 +362,31 @@ impl Search {
     /// which the bakes next to there tell.
     fn error_at(&self, baking: &Baking, triangles: f64) -> f64 {
         let own = self.error_of_triangles(baking);
-        let far = |from: f64, other: &Baking| (other.plan.triangles as f64 / from).ln().abs();
         let at = baking.plan.triangles as f64;
-        let others = self.bakings.iter().filter(|other| far(at, other) > APART);
-        let nearest = others.min_by(|a, b| far(triangles, a).total_cmp(&far(triangles, b)));
-        let fall = nearest.map_or(FALL, |other| {
+        let fall = self.beside(baking, triangles).map_or(FALL, |other| {
             let fallen = (self.error_of_triangles(other) / own).ln();
             (-fallen / (other.plan.triangles as f64 / at).ln()).clamp(FALLS[0], FALLS[1])
         });
         baking.error - own + own * (triangles / at).powf(-fall)
+    }
+
+    /// Bytes of all but the maps with so many triangles: a part of them, as skeletons and animations, is always there.
+    fn mesh_bytes_at(&self, baking: &Baking, triangles: f64) -> f64 {
+        let (at, own) = (baking.plan.triangles as f64, baking.mesh_bytes as f64);
+        let of_one = self.beside(baking, triangles).map_or(own / at, |other| {
+            let slope = (own - other.mesh_bytes as f64) / (at - other.plan.triangles as f64);
+            slope.clamp(0.0, own / at)
+        });
+        own + of_one * (triangles - at)
+    }
+
+    /// The bake that tells, with this one, what so many triangles do: the nearest to there of those that are far enough
+    /// from this one.
+    fn beside(&self, baking: &Baking, triangles: f64) -> Option<&Baking> {
+        let far = |from: f64, other: &Baking| (other.plan.triangles as f64 / from).ln().abs();
+        let at = baking.plan.triangles as f64;
+        let others = self.bakings.iter().filter(|other| far(at, other) > APART);
+        others.min_by(|a, b| far(triangles, a).total_cmp(&far(triangles, b)))
     }
 
     /// What of a bake's error its triangles are for: what a bake of as many texels as there were in any would have left.
