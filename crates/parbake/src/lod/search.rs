@@ -377,7 +377,8 @@ impl Search {
             let slope = (own - other.mesh_bytes as f64) / (at - other.plan.triangles as f64);
             slope.clamp(0.0, own / at)
         });
-        own + of_one * (triangles - at)
+        // The less of both guesses: a bake in vain costs seconds, and a file that is never tried is not found.
+        (own + of_one * (triangles - at)).min(own * triangles / at)
     }
 
     /// The bake that tells, with this one, what so many triangles do: the nearest to there of those that are far enough
