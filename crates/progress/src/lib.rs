@@ -4,6 +4,9 @@
 //! watcher that adds a time budget; its shares are the budgets of single stages. Front ends draw, and
 //! read off an [`Estimate`] how long the whole run will still take. To those who want to see it, a run shows
 //! [`Snapshot`]s of what it has.
+//!
+//! Stages take a `&dyn Watcher`, and all that wraps one holds one: a generic stage would be compiled once more for each
+//! wrapper around it, which doubled the time that the crate `parbake` took to compile.
 
 mod clock;
 mod estimate;
