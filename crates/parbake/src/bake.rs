@@ -187,7 +187,6 @@ fn run(
     begin: Instant,
 ) -> Result<Baked, BakeError> {
     check_budget(options)?;
-    // Of one type from here on, so that the stages are compiled once and not for each caller's.
     let mut plan = options.plan();
     let same = work == Work::Compress;
     if same {

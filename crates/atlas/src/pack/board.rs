@@ -9,11 +9,8 @@ use super::mask::{Mask, next_bit, set_range};
 /// Square grid of cells.
 pub(super) struct Board {
     size: usize,
-    /// Words of a row that have cells.
     words: usize,
-    /// Words from row to row: one more, which is zero, so that every word has a next one.
-    stride: usize,
-    /// `levels[k][row * stride ..]`: bit x = any of x .. x + 2^k is taken.
+    /// `levels[k][row * words ..]`: bit x = any of x .. x + 2^k is taken.
     levels: Vec<Vec<u64>>,
     /// The longest free run of each row.
     longest_free: Vec<usize>,
@@ -42,9 +39,8 @@ pub(super) struct Place {
 impl Board {
     pub fn new(size: usize) -> Self {
         let words = size / 64 + 1;
-        let stride = words + 1;
-        let levels = vec![vec![0; stride * size]; size.max(1).ilog2() as usize + 1];
-        Self { size, words, stride, levels, longest_free: vec![size; size] }
+        let levels = vec![vec![0; words * size]; size.max(1).ilog2() as usize + 1];
+        Self { size, words, levels, longest_free: vec![size; size] }
     }
 
     /// The best place for a mask whose cost is below `limit`.
@@ -79,16 +75,12 @@ impl Board {
             && fits(y, mask.height)
             && mask.runs.iter().all(|run| {
                 let level = run.length.ilog2() as usize;
-                let words = self.row(level, y as usize + run.row);
+                let row = (y as usize + run.row) * self.words;
+                let words = &self.levels[level][row..row + self.words];
                 let is_taken = |at: usize| words[at / 64] >> (at % 64) & 1 == 1;
                 let start = x as usize + run.start;
                 !is_taken(start) && !is_taken(start + run.length - (1 << level))
             })
-    }
-
-    /// A row of a level, and the zero behind it.
-    fn row(&self, level: usize, row: usize) -> &[u64] {
-        &self.levels[level][row * self.stride..][..self.stride]
     }
 
     /// The leftmost column at which the mask fits in row `y`.
@@ -98,15 +90,16 @@ impl Board {
             return None;
         }
         free.fill(0);
-        let columns = self.size - mask.width + 1;
-        set_range(free, 0, columns);
-        // Where there are no columns for the mask, its runs would end outside.
-        let (mut first, mut last) = (0, (columns - 1) / 64);
+        set_range(free, 0, self.size - mask.width + 1);
+        let (mut first, mut last) = (0, self.words - 1);
         for run in &mask.runs {
             let level = run.length.ilog2() as usize;
-            let taken = self.row(level, y + run.row);
+            let row = (y + run.row) * self.words;
+            let taken = &self.levels[level][row..row + self.words];
             let (near, far) = (run.start, run.start + run.length - (1 << level));
-            exclude(&mut free[first..=last], [near, far].map(|at| (&taken[first + at / 64..], at % 64)));
+            for (index, word) in free[first..=last].iter_mut().enumerate() {
+                *word &= !(shifted(taken, first + index, near) | shifted(taken, first + index, far));
+            }
             while free[first] == 0 {
                 if first == last {
                     return None;
@@ -130,8 +123,11 @@ impl Board {
             let end = (x + (run.start + run.length) as i32).min(self.size as i32);
             if row >= 0 && (row as usize) < self.size && start < end {
                 let row = row as usize;
-                let words = &mut self.levels[0][row * self.stride..][..self.words];
-                set_range(words, start as usize, end as usize);
+                set_range(
+                    &mut self.levels[0][row * self.words..][..self.words],
+                    start as usize,
+                    end as usize,
+                );
                 (low, high) = (low.min(row), high.max(row + 1));
             }
         }
@@ -142,7 +138,7 @@ impl Board {
 
     /// Brings a row's sparse table and its longest free run up to date.
     fn refresh(&mut self, row: usize) {
-        let range = row * self.stride..row * self.stride + self.words;
+        let range = row * self.words..(row + 1) * self.words;
         for level in 1..self.levels.len() {
             let (below, above) = self.levels.split_at_mut(level);
             let (source, target) = (&below[level - 1][range.clone()], &mut above[0][range.clone()]);
@@ -166,19 +162,6 @@ fn cost(preference: Preference, x: usize, y: usize, mask: &Mask) -> (usize, usiz
         Preference::Bottom => (y + mask.height, x),
         Preference::Corner => ((y + mask.height).max(x + mask.width), y + x),
         Preference::Centre => (2 * y + mask.height, x),
-    }
-}
-
-/// Clears the bits of those places at which one of two rows, each moved down by so many bits, less than 64, is set. No
-/// branches and no bounds inside, so that it is done for several words at a time.
-#[inline]
-fn exclude(free: &mut [u64], rows: [(&[u64], usize); 2]) {
-    let count = free.len();
-    let [(near, near_by), (far, far_by)] = rows;
-    let (near, far) = (&near[..=count], &far[..=count]);
-    let moved = |row: &[u64], i: usize, by: usize| row[i] >> by | row[i + 1] << 1 << (63 - by);
-    for (i, word) in free.iter_mut().enumerate() {
-        *word &= !(moved(near, i, near_by) | moved(far, i, far_by));
     }
 }
 
