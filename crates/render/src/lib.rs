@@ -25,6 +25,7 @@
 
 pub mod antialias;
 pub mod background;
+mod boxes_on_screen;
 pub mod camera;
 mod channels;
 pub mod cutout;

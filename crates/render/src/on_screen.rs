@@ -96,6 +96,19 @@ impl OnScreen<'_> {
             }
         }
     }
+
+    /// What `samples`² samples in each pixel see, which fill it evenly: a picture of as many more samples along a side,
+    /// moved by `jitter` pixels. Only where one walk over the triangles is cheaper than one for each sample of a
+    /// pixel. `size` is that of the screen.
+    pub fn see_finely(&self, size: usize, samples: usize, jitter: [f32; 2]) -> Option<Visibility> {
+        let Self::Clustered(own) = self else { return None };
+        let fine = size * samples;
+        let offset = jitter.map(|shift| shift * samples as f32);
+        let mut seen = (fine <= MOST_CLUSTERED).then(|| Visibility::empty(fine))?;
+        let (camera, offset) = (&own.camera, (offset[0], offset[1]));
+        own.clusters.iter().for_each(|c| c.rasterise(camera, fine, offset, None, &mut seen));
+        Some(seen)
+    }
 }
 
 impl Raster for OnScreen<'_> {

@@ -1,7 +1,10 @@
 //! Rasterisation of meshes whose triangles are far smaller than pixels: what a view costs follows its
 //! pixels, and not the mesh.
 //!
-//! Triangles are sorted along Morton's curve (Morton 1966); runs of them are leaves of a tree of boxes.
+//! A tree of boxes halves the triangles across the widest axis again and again (a k-d order, Bentley 1975); four are
+//! a leaf, and four nodes a larger one. Boxes that follow a curve through space instead overlap so much that twice as many
+//! leaves lie under a sample.
+//!
 //! A view walks the tree from near to far. Subtrees whose box on the screen has no sample in it are left
 //! out, which is nearly all of a fine mesh, and so are those behind what is seen already at all of their
 //! samples (hierarchical visibility, Greene, Kass and Miller 1993). Only triangles of the leaves that
@@ -11,75 +14,46 @@
 //! taken a little too large, and on equal depth the first triangle wins whatever the order. Where the two
 //! differ a needle's depth was rounding. Coordinates are of moderate size, as in the common frame.
 
-use crate::camera::{Camera, Projection};
-use crate::raster::{NEAR, ScreenTriangle, Visibility, draw, triangle_on_screen};
+use crate::boxes_on_screen::{Bounds, Boxes, FAN, Node, Triangles, Window};
+use crate::camera::Camera;
+use crate::raster::{ScreenTriangle, Visibility, draw, triangle_on_screen};
 use parbake_model::glam::Vec3;
 use rayon::prelude::*;
-
-/// Triangles in a leaf.
-const LEAF: usize = 4;
-
-/// Children of a node.
-const FAN: usize = 4;
-
-/// Boxes over more samples than this are not compared with what is seen already.
-const MOST_COMPARED: usize = 64;
-
-/// Steps of Morton's curve along an axis.
-const STEPS: f32 = ((1u32 << 21) - 1) as f32;
-
-/// An axis-aligned box.
-#[derive(Clone, Copy, Debug)]
-struct Bounds {
-    min: Vec3,
-    max: Vec3,
-}
-
-impl Bounds {
-    fn of(all: impl Iterator<Item = Bounds>) -> Self {
-        let none = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
-        all.fold(none, |a, b| Self { min: a.min.min(b.min), max: a.max.max(b.max) })
-    }
-
-    fn of_corners(corners: &[Vec3; 3]) -> Self {
-        let [a, b, c] = *corners;
-        Self { min: a.min(b).min(c), max: a.max(b).max(c) }
-    }
-}
 
 /// Some triangles of a mesh, in a tree of boxes: 48 bytes a triangle.
 #[derive(Clone, Debug)]
 pub struct Clusters {
-    /// The triangles' indices in the mesh, along the curve.
+    /// The triangles' indices in the mesh, leaf by leaf.
     sources: Vec<u32>,
     /// Their corners.
-    corners: Vec<[Vec3; 3]>,
-    /// Boxes of each level, those of leaves first; the last has one.
-    levels: Vec<Vec<Bounds>>,
+    leaves: Vec<Triangles>,
+    /// Boxes of each level, four by four, those of leaves first; the last has one.
+    levels: Vec<Vec<Boxes>>,
 }
 
 impl Clusters {
     /// A tree over these of a mesh's triangles. The same whatever the number of threads.
     pub fn new(positions: &[Vec3], triangles: &[[u32; 3]], which: &[u32]) -> Self {
         let corners_of = |t: u32| triangles[t as usize].map(|v| positions[v as usize]);
-        let all = (which.par_iter().map(|&t| Bounds::of_corners(&corners_of(t))))
-            .reduce(|| Bounds::of(std::iter::empty()), |a, b| Bounds::of([a, b].into_iter()));
-        let scale = STEPS / (all.max - all.min).max_element().max(f32::MIN_POSITIVE);
-        let mut order: Vec<(u64, u32)> = (which.par_iter())
+        let mut placed: Vec<(Vec3, u32)> = (which.par_iter())
             .map(|&t| {
                 let own = Bounds::of_corners(&corners_of(t));
-                (morton(((own.min + own.max) * 0.5 - all.min) * scale), t)
+                (own.min + own.max, t)
             })
             .collect();
-        order.par_sort_unstable();
-        let sources: Vec<u32> = order.into_par_iter().map(|(_, t)| t).collect();
-        let corners: Vec<[Vec3; 3]> = sources.par_iter().map(|&t| corners_of(t)).collect();
-        let leaf = |leaf: &[[Vec3; 3]]| Bounds::of(leaf.iter().map(Bounds::of_corners));
-        let mut levels: Vec<Vec<Bounds>> = vec![corners.par_chunks(LEAF).map(leaf).collect()];
-        while let Some(last) = levels.last().filter(|level| level.len() > 1) {
-            levels.push(last.par_chunks(FAN).map(|few| Bounds::of(few.iter().copied())).collect());
+        arrange(&mut placed);
+        let sources: Vec<u32> = placed.into_par_iter().map(|(_, t)| t).collect();
+        let leaf = |leaf: &[u32]| Triangles::new(leaf.iter().map(|&t| corners_of(t)));
+        let leaves: Vec<Triangles> = sources.par_chunks(FAN).map(leaf).collect();
+        let level = |of: &[Bounds]| of.par_chunks(FAN).map(Boxes::new).collect();
+        let around = |leaf: &[u32]| Bounds::around(leaf.iter().map(|&t| Bounds::of_corners(&corners_of(t))));
+        let mut bounds: Vec<Bounds> = sources.par_chunks(FAN).map(around).collect();
+        let mut levels: Vec<Vec<Boxes>> = vec![level(&bounds)];
+        while bounds.len() > FAN {
+            bounds = bounds.par_chunks(FAN).map(|few| Bounds::around(few.iter().copied())).collect();
+            levels.push(level(&bounds));
         }
-        Self { sources, corners, levels }
+        Self { sources, leaves, levels }
     }
 
     /// Adds what is seen of these triangles at each sample to `seen`, which must be of `size`² samples.
@@ -94,30 +68,56 @@ impl Clusters {
     ) {
         let window = Window::new(camera, size, offset);
         let mut stack: Vec<Node> = Vec::with_capacity(4 * FAN * self.levels.len());
-        let root = self.levels.len() - 1;
-        stack.extend(self.levels[root].first().and_then(|bounds| window.node(root as u32, 0, bounds)));
+        // Leaves are level 0; a node of a level above holds four boxes of the one below.
+        let look_into = |level: usize, index: usize, stack: &mut Vec<Node>| {
+            if let Some(boxes) = self.levels[level - 1].get(index) {
+                window.push(boxes, (level - 1) as u32, index as u32, stack);
+            }
+        };
+        look_into(self.levels.len(), 0, &mut stack);
         while let Some(node) = stack.pop() {
             if node.is_hidden(seen, size) {
                 continue;
             }
-            if node.level == 0 {
-                let first = node.index as usize * LEAF;
-                for slot in first..(first + LEAF).min(self.corners.len()) {
-                    let triangle = triangle_on_screen(&self.corners[slot], camera, size, Some(offset));
-                    if let Some(triangle) = triangle {
-                        draw_any(&triangle, self.sources[slot], size, offset, front, seen);
-                    }
-                }
+            if node.level > 0 {
+                look_into(node.level as usize, node.index as usize, &mut stack);
                 continue;
             }
-            let level = node.level - 1;
-            let first = node.index * FAN as u32;
-            let start = stack.len();
-            let children = (first..).zip(self.levels[level as usize][first as usize..].iter().take(FAN));
-            stack.extend(children.filter_map(|(index, bounds)| window.node(level, index, bounds)));
-            // The nearest comes last, and is looked at first.
-            stack[start..].sort_by(|a, b| a.nearness.total_cmp(&b.nearness));
+            let (leaf, first) = (&self.leaves[node.index as usize], node.index as usize * FAN);
+            let covering = window.may_cover(leaf);
+            let own = self.sources[first..].iter().take(FAN).enumerate();
+            for (lane, &source) in own.filter(|(lane, _)| covering >> lane & 1 == 1) {
+                let triangle = triangle_on_screen(&leaf.corners(lane), camera, size, Some(offset));
+                if let Some(triangle) = triangle {
+                    draw_any(&triangle, source, size, offset, front, seen);
+                }
+            }
         }
+    }
+}
+
+/// Sorts centres so that each run of 4^k is the halves of halves of a larger one, each time across the widest axis.
+fn arrange(placed: &mut [(Vec3, u32)]) {
+    if placed.len() <= FAN {
+        return;
+    }
+    let (min, max) =
+        placed.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(a, b), (p, _)| (a.min(*p), b.max(*p)));
+    let axis = (max - min).max_position();
+    // The largest run below, or half of the runs.
+    let mut run = FAN;
+    while run * FAN < placed.len() {
+        run *= FAN;
+    }
+    let middle = if placed.len() > 2 * run { 2 * run } else { run };
+    let by = |a: &(Vec3, u32), b: &(Vec3, u32)| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1));
+    placed.select_nth_unstable_by(middle, by);
+    let (low, high) = placed.split_at_mut(middle);
+    if low.len() > 4096 {
+        rayon::join(|| arrange(low), || arrange(high));
+    } else {
+        arrange(low);
+        arrange(high);
     }
 }
 
@@ -137,131 +137,10 @@ fn draw_any(
     }
 }
 
-/// Where a point lies on Morton's curve: the bits of its coordinates, each 0 … [`STEPS`], in turn.
-fn morton(p: Vec3) -> u64 {
-    let spread = |x: f32| {
-        let mut x = x.clamp(0.0, STEPS) as u64;
-        x = (x | x << 32) & 0x001f_0000_0000_ffff;
-        x = (x | x << 16) & 0x001f_0000_ff00_00ff;
-        x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
-        x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
-        (x | x << 2) & 0x1249_2492_4924_9249
-    };
-    spread(p.x) | spread(p.y) << 1 | spread(p.z) << 2
-}
-
-/// A box of the tree on the screen.
-struct Node {
-    level: u32,
-    index: u32,
-    /// Samples that it may cover: first and last column, first and last row.
-    samples: [u16; 4],
-    /// Nothing in it is nearer.
-    nearness: f32,
-}
-
-impl Node {
-    /// Whether nearer things are seen at all of its samples.
-    fn is_hidden(&self, seen: &Visibility, size: usize) -> bool {
-        let [column0, column1, row0, row1] = self.samples.map(usize::from);
-        if (column1 - column0 + 1) * (row1 - row0 + 1) > MOST_COMPARED {
-            return false;
-        }
-        let nearest = self.nearness + 1e-5 * self.nearness.abs();
-        (row0..=row1).all(|row| {
-            seen.nearness[row * size + column0..=row * size + column1].iter().all(|&here| nearest < here)
-        })
-    }
-}
-
-/// A camera, made ready for boxes in single precision.
-struct Window {
-    eye: Vec3,
-    /// Right, up and back, and their absolute values.
-    axes: [[Vec3; 2]; 3],
-    is_perspective: bool,
-    half: f32,
-    scale: f32,
-    /// By how much boxes are taken too large, in pixels.
-    margin: f32,
-    /// The first sample's place.
-    start: [f32; 2],
-    last: f32,
-}
-
-impl Window {
-    fn new(camera: &Camera, size: usize, offset: (f32, f32)) -> Self {
-        let half = 0.5 * size as f32;
-        let (is_perspective, half_width) = match camera.projection {
-            Projection::Perspective(width) => (true, width),
-            Projection::Orthographic(width) => (false, width),
-        };
-        Self {
-            eye: camera.eye,
-            axes: [camera.right, camera.up, camera.back].map(|axis| [axis, axis.abs()]),
-            is_perspective,
-            half,
-            scale: half / half_width,
-            margin: 1e-3 + 1e-6 * size as f32,
-            start: [0.5 + offset.0, 0.5 + offset.1],
-            last: size as f32 - 1.0,
-        }
-    }
-
-    /// A box on the screen; none where it covers no sample.
-    #[inline]
-    fn node(&self, level: u32, index: u32, bounds: &Bounds) -> Option<Node> {
-        let centre = (bounds.min + bounds.max) * 0.5 - self.eye;
-        let extent = (bounds.max - bounds.min) * 0.5;
-        // For the rounding of these sums, which that of triangles is far below.
-        let room = 1e-6 * (centre.abs() + extent).element_sum();
-        let [x, y, back] = self.axes.map(|[axis, absolute]| {
-            let (middle, half) = (centre.dot(axis), extent.dot(absolute) + room);
-            [middle - half, middle + half]
-        });
-        let [near, far] = [-back[1], -back[0]];
-        let behind = NEAR as f32;
-        if far < 0.5 * behind {
-            return None;
-        }
-        let last = self.last as u16;
-        if near < 2.0 * behind {
-            return Some(Node { level, index, samples: [0, last, 0, last], nearness: f32::INFINITY });
-        }
-        let (nearness, [closest, farthest]) = match self.is_perspective {
-            true => (1.0 / near, [self.scale / near, self.scale / far]),
-            false => (-near, [self.scale; 2]),
-        };
-        let widest = |[low, high]: [f32; 2]| {
-            let low = low * if low < 0.0 { closest } else { farthest };
-            let high = high * if high > 0.0 { closest } else { farthest };
-            [low, high]
-        };
-        let ([x0, x1], [up0, up1]) = (widest(x), widest(y));
-        let [column0, column1] = self.samples(self.half + x0, self.half + x1, self.start[0])?;
-        let [row0, row1] = self.samples(self.half - up1, self.half - up0, self.start[1])?;
-        Some(Node { level, index, samples: [column0, column1, row0, row1], nearness })
-    }
-
-    /// The first and last sample along an axis from `low` to `high`.
-    #[inline]
-    fn samples(&self, low: f32, high: f32, start: f32) -> Option<[u16; 2]> {
-        let (low, high) = (low - start - self.margin, high - start + self.margin);
-        if high < 0.0 || low > self.last {
-            return None;
-        }
-        // Without `ceil`, which is a call on older processors.
-        let low = low.max(0.0);
-        let first = low as u16;
-        let first = first + u16::from(f32::from(first) < low);
-        let last = high.min(self.last) as u16;
-        (first <= last).then_some([first, last])
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::camera::Projection;
     use crate::raster::{NOTHING, ScreenTriangles, rasterise, rasterise_behind};
 
     /// A bumpy ball of 2 × 60 × 120 triangles with a lid that is seen from its back, and needles through it.
@@ -343,13 +222,5 @@ mod tests {
             clusters.rasterise(&camera, 16, (0.0, 0.0), None, &mut seen);
             assert_eq!(seen.triangle.contains(&0), count == 1);
         }
-    }
-
-    /// Protects the curve: neighbours stay neighbours only if bits are spread rightly.
-    #[test]
-    fn bits_take_turns() {
-        assert_eq!(morton(Vec3::new(3.0, 0.0, 0.0)), 0b001_001);
-        assert_eq!(morton(Vec3::new(0.0, 5.0, 0.0)), 0b010_000_010);
-        assert_eq!(morton(Vec3::splat(STEPS)), (1 << 63) - 1);
     }
 }

@@ -89,28 +89,45 @@ pub fn render_references(
 fn render(high: &Scene, brdf: &impl Brdf, view: &View, sampling: &Sampling) -> Reference {
     let Sampling { size, filter, samples } = *sampling;
     let screen = high.on_screen(&view.camera, size);
-    let mut seen = Visibility::default();
     let mut sum = vec![[0.0f32; 4]; size * size];
     let share = 1.0 / (samples * samples) as f32;
     let footprint = (filter / samples as f32).max(1.0 / 16.0);
-    for sample in 0..samples * samples {
+    let mut add = |pixel: usize, triangle: u32, offset: (f32, f32)| {
+        if triangle == NOTHING {
+            return;
+        }
+        let at = (
+            (pixel % size) as f64 + 0.5 + f64::from(offset.0),
+            (pixel / size) as f64 + 0.5 + f64::from(offset.1),
+        );
+        let light = high.shade(brdf, &view.camera, &screen, triangle as usize, at, footprint);
+        for k in 0..3 {
+            sum[pixel][k] += light[k] * share;
+        }
+        sum[pixel][3] += share;
+    };
+    let offset = |sample: usize| {
         let shift =
             [sample % samples, sample / samples].map(|i| filter * ((i as f32 + 0.5) / samples as f32 - 0.5));
-        let offset = (view.jitter[0] + shift[0], view.jitter[1] + shift[1]);
-        screen.rasterise(size, offset, None, &mut seen);
-        for (index, (&triangle, pixel)) in seen.triangle.iter().zip(&mut sum).enumerate() {
-            if triangle == NOTHING {
-                continue;
+        (view.jitter[0] + shift[0], view.jitter[1] + shift[1])
+    };
+    let fills_pixels = samples > 1 && filter == 1.0;
+    if let Some(seen) = fills_pixels.then(|| screen.see_finely(size, samples, view.jitter)).flatten() {
+        for pixel in 0..size * size {
+            let corner = (pixel / size * samples) * seen.size + pixel % size * samples;
+            for sample in 0..samples * samples {
+                let triangle = seen.triangle[corner + sample / samples * seen.size + sample % samples];
+                add(pixel, triangle, offset(sample));
             }
-            let at = (
-                (index % size) as f64 + 0.5 + f64::from(offset.0),
-                (index / size) as f64 + 0.5 + f64::from(offset.1),
-            );
-            let light = high.shade(brdf, &view.camera, &screen, triangle as usize, at, footprint);
-            for k in 0..3 {
-                pixel[k] += light[k] * share;
-            }
-            pixel[3] += share;
+        }
+    } else {
+        let mut seen = Visibility::default();
+        for sample in 0..samples * samples {
+            screen.rasterise(size, offset(sample), None, &mut seen);
+            seen.triangle
+                .iter()
+                .enumerate()
+                .for_each(|(pixel, &triangle)| add(pixel, triangle, offset(sample)));
         }
     }
     let mut pixels = vec![[f16::ZERO; 4]; sum.len()];
