@@ -128,10 +128,8 @@ impl MaterialSampler<'_> {
             // Where the layer is not there, or only far behind, it has a gap.
             let depth = |of: &ScreenTriangle| 1.0 / of.nearness.dot(DVec3::new(at.0, at.1, 1.0)).max(1e-9);
             let own = depth(&below);
-            let theirs = match over {
-                NOTHING => f64::INFINITY,
-                over => depth(&high.screen.triangle(over as usize)),
-            };
+            let above = (over != NOTHING).then(|| high.screen.triangle(over as usize));
+            let theirs = above.as_ref().map_or(f64::INFINITY, depth);
             if has_gaps && theirs > own + BEHIND {
                 out.push(MaterialSample::new(uv, texture_size, &GAP, [0.0, 1.0]));
                 continue;
@@ -145,8 +143,8 @@ impl MaterialSampler<'_> {
             if !has_gaps && is_of_another_side(self.high, place, seen, behind) {
                 continue;
             }
-            let on_screen = &high.screen.triangle(over as usize);
-            let mut values = scene.material(camera, on_screen, high.triangle(over as usize), at, footprint);
+            let Some(above) = above else { continue };
+            let mut values = scene.material(camera, &above, high.triangle(over as usize), at, footprint);
             if layer.mode == AlphaMode::Mask {
                 values[MapKind::BaseColor].w = 1.0;
             }
