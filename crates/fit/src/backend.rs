@@ -61,11 +61,11 @@ pub trait Backend: Sync {
         rows: &mut Vec<Row<S>>,
     ) -> Loss;
 
-    /// Solves `A x = right` from zero by conjugate gradients; lanes that are not `free` stay.
+    /// Solves `A x = b` from zero by conjugate gradients, b being the matrix's own right-hand side; lanes that are not
+    /// `free` stay.
     fn solve<S: Block>(
         &self,
         matrix: &Stencil<S>,
-        right: &[Vec4],
         free: Option<&[FreeLanes]>,
         effort: &Effort,
     ) -> (Vec<Vec4>, Outcome);
@@ -120,11 +120,10 @@ impl Backend for Cpu {
     fn solve<S: Block>(
         &self,
         matrix: &Stencil<S>,
-        right: &[Vec4],
         free: Option<&[FreeLanes]>,
         effort: &Effort,
     ) -> (Vec<Vec4>, Outcome) {
-        conjugate_gradient::solve(matrix, right, free, effort)
+        conjugate_gradient::solve(matrix, free, effort)
     }
 
     fn view_gradient<B: Brdf, M: ShiftMap, const N: usize>(

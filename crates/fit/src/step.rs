@@ -69,11 +69,11 @@ pub fn fit_step<P: Problem>(
             let loss = backend.assemble(kind, problem, maps, rows);
             let Some(map) = maps.get_mut(kind) else { return (loss, Outcome::default()) };
             add_membrane(rows, problem.atlas(), map, start, &options.membrane);
-            let matrix = Stencil { size, rows: std::mem::take(rows) };
-            let solve = |right: &[Vec4], free: &[FreeLanes]| {
-                backend.solve(&matrix, right, Some(free), &options.effort)
+            let mut matrix = Stencil { size, rows: std::mem::take(rows) };
+            let solve = |matrix: &Stencil<Diagonal>, free: &[FreeLanes]| {
+                backend.solve(matrix, Some(free), &options.effort)
             };
-            let outcome = solve_in_box(&matrix, &mut map.texels, solve);
+            let outcome = solve_in_box(&mut matrix, &mut map.texels, solve);
             *rows = matrix.rows;
             (loss, outcome)
         }
@@ -103,7 +103,7 @@ fn turn<P: Problem, B: SampleBlock>(
     add_membrane(rows, problem.atlas(), map, start, &options.membrane);
     rows.par_iter_mut().filter(|r| r.centre.trace() > 0.0).for_each(|r| r.centre.add(&B::identity(extra)));
     let matrix = Stencil { size: problem.samples().size, rows: std::mem::take(rows) };
-    let (step, outcome) = backend.solve(&matrix, &matrix.right(), None, &options.effort);
+    let (step, outcome) = backend.solve(&matrix, None, &options.effort);
     map.texels.par_iter_mut().zip(&step).for_each(|(m, step)| {
         let limit = (LONGEST / step.length().max(1e-9)).min(1.0);
         *m = Domain::Hemisphere.clamp(*m + *step * limit);

@@ -49,7 +49,10 @@ const MASKS: [Vec4; 16] = {
 };
 
 /// Which lanes may move: not those on a face of the box, or beyond it, that the residual pushes outwards.
-pub fn free_lanes(values: &[Vec4], residual: &[Vec4]) -> Vec<FreeLanes> {
+pub fn free_lanes<R>(values: &[Vec4], residual: R) -> Vec<FreeLanes>
+where
+    R: IntoParallelIterator<Item = Vec4, Iter: IndexedParallelIterator>,
+{
     let is_held = |x: f32, r: f32| x <= 0.0 && r < 0.0 || x >= 1.0 && r > 0.0;
     (values.par_iter().zip(residual))
         .map(|(x, r)| {
@@ -61,18 +64,17 @@ pub fn free_lanes(values: &[Vec4], residual: &[Vec4]) -> Vec<FreeLanes> {
 }
 
 /// Moves `values` towards the solution of `A d = b` for their change d, `b` being the matrix's own
-/// right-hand side; values end within [0, 1]. `solve` solves `A d = r` from zero, for a right-hand side r and
+/// right-hand side, which ends as what is left of it; values end within [0, 1]. `solve` solves `A d = b` from zero, for
 /// the lanes that are free.
 pub fn solve_in_box(
-    matrix: &Stencil<Diagonal>,
+    matrix: &mut Stencil<Diagonal>,
     values: &mut [Vec4],
-    solve: impl Fn(&[Vec4], &[FreeLanes]) -> (Vec<Vec4>, Outcome),
+    solve: impl Fn(&Stencil<Diagonal>, &[FreeLanes]) -> (Vec<Vec4>, Outcome),
 ) -> Outcome {
-    let mut residual = matrix.right();
-    let mut free = free_lanes(values, &residual);
+    let mut free = free_lanes(values, matrix.rows.par_iter().map(|row| row.right));
     let mut total = Outcome { steps: 0, reduction: 1.0 };
     for round in 0..ROUNDS {
-        let (mut step, outcome) = solve(&residual, &free);
+        let (mut step, outcome) = solve(matrix, &free);
         total.steps += outcome.steps;
         total.reduction = outcome.reduction;
         let hits: usize = values
@@ -99,7 +101,7 @@ pub fn solve_in_box(
         let mut answer = vec![Vec4::ZERO; step.len()];
         matrix.product(&step, &mut answer);
         drop(step);
-        residual.par_iter_mut().zip(&answer).for_each(|(r, answer)| *r -= *answer);
+        matrix.rows.par_iter_mut().zip(&answer).for_each(|(row, answer)| row.right -= *answer);
     }
     total
 }

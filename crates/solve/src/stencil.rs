@@ -204,11 +204,6 @@ pub struct Stencil<B> {
 }
 
 impl<B: Block> Stencil<B> {
-    /// The right-hand sides of all rows.
-    pub fn right(&self) -> Vec<Vec4> {
-        self.rows.par_iter().map(|r| r.right).collect()
-    }
-
     /// `y = A x`; `y` has the size of `x`. Returns `xᵀ y`, summed by rows in order.
     pub fn product(&self, x: &[Vec4], y: &mut [Vec4]) -> f64 {
         let size = self.size;

@@ -108,7 +108,7 @@ impl NormalEquations {
             texture.texels.par_iter_mut().for_each(|t| *t = t.clamp(Vec4::ZERO, Vec4::ONE));
             // A lane at the border stays there while the error wants it further out.
             let slope = self.residual(&texture.texels, &mut self.room());
-            let free = free_lanes(&texture.texels, &slope);
+            let free = free_lanes(&texture.texels, slope);
             texture = self.solve(texture, solve, Some(&free));
         }
         texture.texels.par_iter_mut().for_each(|t| *t = t.clamp(Vec4::ZERO, Vec4::ONE));
