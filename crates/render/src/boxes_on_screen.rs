@@ -211,7 +211,7 @@ impl Window {
         }
     }
 
-    /// Which of four triangles may cover a sample: a bit a lane.
+    /// Which of four triangles may cover a sample: a bit a lane, of no meaning where there is no triangle.
     #[inline]
     pub fn may_cover(&self, triangles: &Triangles) -> u32 {
         let none = [Vec4::INFINITY, Vec4::NEG_INFINITY];
@@ -244,5 +244,66 @@ impl Window {
     fn samples(&self, low: Vec4, high: Vec4, start: f32) -> [Vec4; 2] {
         let (low, high) = (low - (start + self.margin), high - (start - self.margin));
         [low.max(Vec4::ZERO).ceil(), high.min(Vec4::splat(self.last)).floor()]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raster::triangle_on_screen;
+
+    /// Numbers from 0 to 1.
+    fn random(state: &mut u32) -> f32 {
+        *state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+        (*state >> 8) as f32 / (1 << 24) as f32
+    }
+
+    fn cameras() -> [Camera; 3] {
+        let direction = Vec3::new(0.3, 0.5, 1.0);
+        [
+            Camera::towards_origin(direction, 3.5, Projection::Perspective(0.4)),
+            Camera::towards_origin(direction, 3.0, Projection::Orthographic(1.2)),
+            // From inside, where much is behind the camera.
+            Camera::towards_origin(direction, 0.3, Projection::Perspective(0.7)),
+        ]
+    }
+
+    /// Protects the contract of boxes and of triangles alike: whatever covers a sample is not left out, and no
+    /// sample or depth of it is beyond what its box says.
+    #[test]
+    fn nothing_that_covers_a_sample_is_left_out() {
+        let (mut state, size, offset) = (3, 64, (0.3, -0.2));
+        let mut counts = [0; 2];
+        for round in 0..3000 {
+            let camera = &cameras()[round % 3];
+            let width = 0.02 + 0.3 * random(&mut state);
+            let near = Vec3::from_array(std::array::from_fn(|_| 2.0 * random(&mut state) - 1.0));
+            let mut corner = || near + Vec3::from_array(std::array::from_fn(|_| width * random(&mut state)));
+            let few: Vec<[Vec3; 3]> = (0..3).map(|_| std::array::from_fn(|_| corner())).collect();
+            let window = Window::new(camera, size, offset);
+            let covering = window.may_cover(&Triangles::new(few.iter().copied()));
+            let bounds: Vec<Bounds> = few.iter().map(Bounds::of_corners).collect();
+            let mut nodes = Vec::new();
+            window.push(&Boxes::new(&bounds), 0, 5, &mut nodes);
+            assert!(nodes.windows(2).all(|pair| pair[0].nearness <= pair[1].nearness));
+            for (lane, triangle) in few.iter().enumerate() {
+                let mut seen = Visibility::empty(size);
+                if let Some(on_screen) = triangle_on_screen(triangle, camera, size, Some(offset)) {
+                    crate::raster::draw::<true>(&on_screen, 7, size, offset, &mut seen, |_, _| true);
+                }
+                let node = nodes.iter().find(|node| node.index == 20 + lane as u32);
+                counts[0] += usize::from(covering >> lane & 1 == 0);
+                for (sample, _) in seen.triangle.iter().enumerate().filter(|(_, t)| **t == 7) {
+                    counts[1] += 1;
+                    assert!(covering >> lane & 1 == 1, "a triangle that covers {sample} is left out");
+                    let node = node.expect("its box is not left out");
+                    let [column0, column1, row0, row1] = node.samples.map(usize::from);
+                    assert!((column0..=column1).contains(&(sample % size)));
+                    assert!((row0..=row1).contains(&(sample / size)));
+                    assert!(seen.nearness[sample] <= node.nearness + 1e-5 * node.nearness.abs());
+                }
+            }
+        }
+        assert!(counts[0] > 1000 && counts[1] > 10_000, "{counts:?}");
     }
 }

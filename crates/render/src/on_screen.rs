@@ -123,3 +123,55 @@ impl Raster for OnScreen<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Projection;
+    use crate::raster::NOTHING;
+    use parbake_model::glam::Vec3;
+
+    /// Waves of 2 × 60 × 60 triangles.
+    fn waves() -> Mesh {
+        let mut mesh = Mesh::default();
+        for (row, column) in (0..=60u32).flat_map(|row| (0..=60u32).map(move |column| (row, column))) {
+            let (x, y) = (row as f32 / 30.0 - 1.0, column as f32 / 30.0 - 1.0);
+            mesh.positions.push(Vec3::new(x, y, 0.3 * (5.0 * x).sin() * (4.0 * y).cos()));
+        }
+        for (row, column) in (0..60).flat_map(|row| (0..60).map(move |column| (row, column))) {
+            let first = row * 61 + column;
+            mesh.triangles.extend([[first, first + 61, first + 62], [first, first + 62, first + 1]]);
+        }
+        mesh
+    }
+
+    /// Protects views that are means of many samples: one walk finds for each sample of each pixel what a walk
+    /// for the samples at its place in their pixels finds.
+    #[test]
+    fn one_walk_sees_what_many_see() {
+        let mesh = waves();
+        let which: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+        let clusters = Clusters::new(&mesh.positions, &mesh.triangles, &which);
+        let camera =
+            Camera::towards_origin(Vec3::new(0.4, 0.8, 1.0), 3.5, Projection::Perspective(1.0 / 3.0));
+        let (size, samples, jitter) = (40, 3, [0.2f32, -0.3]);
+        let clusters = vec![&clusters];
+        let screen = OnScreen::Clustered(ClustersOnScreen { clusters, mesh: &mesh, camera, size });
+        let fine = screen.see_finely(size, samples, jitter).expect("there are clusters");
+        assert_eq!(fine.size, size * samples);
+        let mut seen = Visibility::default();
+        let (mut covered, mut different) = (0, 0);
+        for sample in 0..samples * samples {
+            let within = [sample % samples, sample / samples];
+            let at = |k: usize| jitter[k] + (within[k] as f32 + 0.5) / samples as f32 - 0.5;
+            screen.rasterise(size, (at(0), at(1)), None, &mut seen);
+            for (pixel, &triangle) in seen.triangle.iter().enumerate() {
+                let [column, row] = [pixel % size, pixel / size];
+                let place = (row * samples + within[1]) * fine.size + column * samples + within[0];
+                covered += usize::from(triangle != NOTHING);
+                different += usize::from(fine.triangle[place] != triangle);
+            }
+        }
+        assert!(covered > 1000 && different * 1000 < covered, "{different} of {covered}");
+    }
+}

@@ -3,6 +3,7 @@
 //! ```sh
 //! cargo run --release --features window --example show -- deep.glb
 //! cargo run --release --example show -- deep.glb --picture deep.png --from 1,0.5,2
+//! cargo run --release --example show -- deep.glb --cost --size 2048
 //! ```
 
 use bevy::app::ScheduleRunnerPlugin;
@@ -11,10 +12,12 @@ use bevy::camera::RenderTarget;
 use bevy::camera::primitives::Aabb;
 use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass, MotionVectorPrepass, NormalPrepass};
 use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::diagnostic::DiagnosticsStore;
 use bevy::light::CascadeShadowConfigBuilder;
 use bevy::pbr::DefaultOpaqueRendererMethod;
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
+use bevy::render::diagnostic::RenderDiagnosticsPlugin;
 use bevy::render::render_resource::TextureFormat;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured, save_to_disk};
 use bevy::window::ExitCondition;
@@ -24,7 +27,7 @@ use std::time::Duration;
 
 const USAGE: &str =
     "usage: show FILE.glb [--picture OUT.png] [--size N] [--from X,Y,Z] [--box X,Y,Z,X,Y,Z] [--off] [--hard] [--msaa-off] [--headlight]
-            [--prepass] [--deferred]
+            [--prepass] [--deferred] [--cost]
   --from     where the camera stands, seen from the model's middle
   --box      two corners of the box that it looks at, for the same view of two models; by default the model's
   --off      without the maps, as viewers show the file that do not know them
@@ -32,7 +35,8 @@ const USAGE: &str =
   --msaa-off one sample a pixel
   --headlight camera and light as `parbake turntable` has them, without a floor
   --prepass  depth, normals and motion are drawn before
-  --deferred lit from a G-buffer; implies --msaa-off";
+  --deferred lit from a G-buffer; implies --msaa-off
+  --cost     says how long each render pass takes on the GPU, and draws no picture";
 
 /// Field of view, in radians: that of `parbake turntable`.
 const FOV: f32 = 0.761_013_2;
@@ -53,6 +57,7 @@ struct Options {
     is_headlight: bool,
     is_prepass: bool,
     is_deferred: bool,
+    is_cost: bool,
 }
 
 /// So many numbers, with commas between them.
@@ -75,6 +80,7 @@ impl Options {
             is_headlight: false,
             is_prepass: false,
             is_deferred: false,
+            is_cost: false,
         };
         let mut arguments = std::env::args().skip(1);
         while let Some(argument) = arguments.next() {
@@ -91,6 +97,7 @@ impl Options {
                 "--msaa-off" => options.is_msaa_off = true,
                 "--headlight" => options.is_headlight = true,
                 "--prepass" => options.is_prepass = true,
+                "--cost" => options.is_cost = true,
                 "--deferred" => (options.is_deferred, options.is_msaa_off) = (true, true),
                 file if options.file.as_os_str().is_empty() && !file.starts_with('-') => {
                     options.file = file.into()
@@ -119,7 +126,7 @@ fn main() -> AppExit {
         eprintln!("{USAGE}");
         return AppExit::error();
     };
-    let is_picture = options.picture.is_some() || cfg!(not(feature = "window"));
+    let is_picture = options.picture.is_some() || options.is_cost || cfg!(not(feature = "window"));
     let window = (!is_picture).then(|| Window { title: "Parallax maps".into(), ..default() });
     let exit_condition = if is_picture { ExitCondition::DontExit } else { ExitCondition::OnAllClosed };
     let plugins = DefaultPlugins
@@ -141,6 +148,9 @@ fn main() -> AppExit {
     if !options.is_off {
         app.add_plugins(ParallaxPlugin { smooth_borders: !options.is_hard });
     }
+    if options.is_cost {
+        app.add_plugins(RenderDiagnosticsPlugin).add_systems(Update, measure.after(frame_all));
+    }
     if options.is_deferred {
         app.insert_resource(DefaultOpaqueRendererMethod::deferred());
     }
@@ -158,7 +168,7 @@ fn begin(
     let file = std::path::absolute(&options.file).unwrap_or_else(|_| options.file.clone());
     let model = server.load(GltfAssetLabel::Scene(0).from_asset(file));
     commands.spawn(WorldAssetRoot(model.clone()));
-    let target = options.picture.is_some().then(|| {
+    let target = (options.picture.is_some() || options.is_cost).then(|| {
         let size = options.size;
         images.add(Image::new_target_texture(size, size, TextureFormat::Rgba8UnormSrgb, None))
     });
@@ -260,4 +270,28 @@ fn take_picture(
             exit.write(AppExit::Success);
         },
     );
+}
+
+/// Frames before any are measured: pipelines are compiled and clocks rise.
+const WARM_UP: u32 = 300;
+/// Frames that are measured: as many as Bevy remembers.
+const MEASURED: u32 = 120;
+
+/// How long each pass of the last frames took, by the GPU's own clock.
+fn measure(shown: Res<Shown>, diagnostics: Res<DiagnosticsStore>, mut exit: MessageWriter<AppExit>) {
+    if shown.frames != WARM_UP + MEASURED {
+        return;
+    }
+    for one in diagnostics.iter() {
+        let path = one.path().as_str();
+        let Some(pass) = path.strip_prefix("render/").and_then(|path| path.strip_suffix("/elapsed_gpu")) else {
+            continue;
+        };
+        let mut values: Vec<f64> = one.values().copied().collect();
+        values.sort_by(f64::total_cmp);
+        if let Some(median) = values.get(values.len() / 2) {
+            println!("{pass}: {median:.4} ms (median of {} frames)", values.len());
+        }
+    }
+    exit.write(AppExit::Success);
 }
