@@ -5,7 +5,8 @@
 
 use crate::camera::Camera;
 use crate::raster::{
-    ScreenTriangle, ScreenTriangles, Visibility, rasterise, rasterise_behind, triangle_on_screen,
+    ScreenTriangle, ScreenTriangles, Visibility, rasterise, rasterise_behind, rasterise_some,
+    triangle_on_screen,
 };
 use crate::raster_clusters::Clusters;
 use parbake_model::{AlphaMode, Mesh};
@@ -106,8 +107,21 @@ impl OnScreen<'_> {
         let offset = jitter.map(|shift| shift * samples as f32);
         let mut seen = (fine <= MOST_CLUSTERED).then(|| Visibility::empty(fine))?;
         let (camera, offset) = (&own.camera, (offset[0], offset[1]));
-        own.clusters.iter().for_each(|c| c.rasterise(camera, fine, offset, None, &mut seen));
+        own.clusters.iter().for_each(|c| c.rasterise(camera, fine, offset, None, &|_| true, &mut seen));
         Some(seen)
+    }
+
+    /// Finds the nearest of the triangles that are meant at the middle of each pixel; `size` is that of the screen.
+    pub(crate) fn rasterise_some(&self, size: usize, is_meant: impl Fn(u32) -> bool, seen: &mut Visibility) {
+        match self {
+            Self::All(screen) => rasterise_some(screen, size, is_meant, seen),
+            Self::Clustered(own) => {
+                seen.clear(size);
+                own.clusters
+                    .iter()
+                    .for_each(|c| c.rasterise(&own.camera, size, (0.0, 0.0), None, &is_meant, seen));
+            }
+        }
     }
 }
 
@@ -118,7 +132,8 @@ impl Raster for OnScreen<'_> {
             Self::All(screen) => screen.rasterise(size, offset, front, seen),
             Self::Clustered(own) => {
                 seen.clear(size);
-                own.clusters.iter().for_each(|c| c.rasterise(&own.camera, size, offset, front, seen));
+                let all = |_: u32| true;
+                own.clusters.iter().for_each(|c| c.rasterise(&own.camera, size, offset, front, &all, seen));
             }
         }
     }

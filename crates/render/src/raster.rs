@@ -170,6 +170,19 @@ pub fn rasterise(screen: &ScreenTriangles, size: usize, offset: (f32, f32), seen
     fill(screen, size, offset, seen, |_, _| true);
 }
 
+/// The same of some triangles.
+pub(crate) fn rasterise_some(
+    screen: &ScreenTriangles,
+    size: usize,
+    is_meant: impl Fn(u32) -> bool,
+    seen: &mut Visibility,
+) {
+    seen.clear(size);
+    for (index, triangle) in (0..).zip(&screen.triangles).filter(|(index, _)| is_meant(*index)) {
+        draw::<false>(triangle, index, size, (0.0, 0.0), seen, |_, _| true);
+    }
+}
+
 /// Finds the nearest triangle at each sample among those that lie behind what `front` sees
 /// there: depth peeling (Everitt 2001).
 pub fn rasterise_behind(

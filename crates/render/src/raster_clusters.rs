@@ -56,14 +56,15 @@ impl Clusters {
         Self { sources, leaves, levels }
     }
 
-    /// Adds what is seen of these triangles at each sample to `seen`, which must be of `size`² samples.
-    /// With `front`, only of what lies behind it.
+    /// Adds what is seen of those of these triangles that are meant at each sample to `seen`, which must be of
+    /// `size`² samples. With `front`, only of what lies behind it.
     pub(crate) fn rasterise(
         &self,
         camera: &Camera,
         size: usize,
         offset: (f32, f32),
         front: Option<&Visibility>,
+        is_meant: &impl Fn(u32) -> bool,
         seen: &mut Visibility,
     ) {
         let window = Window::new(camera, size, offset);
@@ -86,7 +87,9 @@ impl Clusters {
             let (leaf, first) = (&self.leaves[node.index as usize], node.index as usize * FAN);
             let covering = window.may_cover(leaf);
             let own = self.sources[first..].iter().take(FAN).enumerate();
-            for (lane, &source) in own.filter(|(lane, _)| covering >> lane & 1 == 1) {
+            for (lane, &source) in
+                own.filter(|(lane, source)| covering >> lane & 1 == 1 && is_meant(**source))
+            {
                 let triangle = triangle_on_screen(&leaf.corners(lane), camera, size, Some(offset));
                 if let Some(triangle) = triangle {
                     draw_any(&triangle, source, size, offset, front, seen);
@@ -201,9 +204,9 @@ mod tests {
                 rasterise(&screen, size, offset, &mut all);
                 rasterise_behind(&screen, size, offset, &all, &mut next);
                 let mut seen = Visibility::empty(size);
-                clusters.rasterise(&camera, size, offset, None, &mut seen);
+                clusters.rasterise(&camera, size, offset, None, &|_| true, &mut seen);
                 let mut behind = Visibility::empty(size);
-                clusters.rasterise(&camera, size, offset, Some(&seen), &mut behind);
+                clusters.rasterise(&camera, size, offset, Some(&seen), &|_| true, &mut behind);
                 assert!(all.triangle.iter().any(|&t| t != NOTHING));
                 assert_eq!(all.triangle, seen.triangle, "{size}");
                 assert_eq!(next.triangle, behind.triangle, "{size}");
@@ -219,7 +222,7 @@ mod tests {
         for count in [0, 1] {
             let clusters = Clusters::new(&positions, &[[0, 1, 2]], &[0][..count]);
             let mut seen = Visibility::empty(16);
-            clusters.rasterise(&camera, 16, (0.0, 0.0), None, &mut seen);
+            clusters.rasterise(&camera, 16, (0.0, 0.0), None, &|_| true, &mut seen);
             assert_eq!(seen.triangle.contains(&0), count == 1);
         }
     }

@@ -77,7 +77,7 @@ pub struct Scene {
     /// Whether textures are read as they are stored; vertex colours, which are linear, are encoded then.
     as_stored: bool,
     /// Where there are many triangles; made when they are first looked at.
-    clusters: OnceLock<Option<AlphaClusters>>,
+    pub(crate) clusters: OnceLock<Option<AlphaClusters>>,
 }
 
 impl Scene {
@@ -112,7 +112,7 @@ impl Scene {
         Self { mesh, surfaces, pyramids, face_normals, as_stored, clusters: OnceLock::new() }
     }
 
-    fn clusters(&self) -> Option<&AlphaClusters> {
+    pub(crate) fn clusters(&self) -> Option<&AlphaClusters> {
         let kind = |triangle| (self.alpha(triangle).0, self.transmits(triangle));
         self.clusters.get_or_init(|| AlphaClusters::of_many(&self.mesh, kind)).as_ref()
     }

@@ -17,9 +17,10 @@
 use crate::camera::Camera;
 use crate::frame::Orientation;
 use crate::interpolate::{barycentrics, interpolate};
-use crate::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility, rasterise};
+use crate::on_screen::OnScreen;
+use crate::raster::{NOTHING, ScreenTriangle, Visibility};
 use crate::scene::{Picture, Scene, Seen};
-use crate::scene_textures::{Map, SeenPoint};
+use crate::scene_textures::{Map, SeenPoint, Surface};
 use crate::shade::Brdf;
 use parbake_image::MapValues;
 use parbake_image::maps::MapKind;
@@ -68,7 +69,7 @@ struct Stage<'a, B> {
     scene: &'a Scene,
     brdf: &'a B,
     camera: &'a Camera,
-    screen: ScreenTriangles,
+    screen: OnScreen<'a>,
     special: Vec<Special>,
     /// Of all that is not special.
     opaque: Visibility,
@@ -88,10 +89,15 @@ impl Scene {
         with_values: bool,
     ) -> MaterialPicture {
         let fine = size * supersample;
-        let mut screen = ScreenTriangles::new(&self.mesh.positions, &self.mesh.triangles, camera, fine);
-        let special = self.take_special(camera, &mut screen);
+        let screen = self.layer_on_screen(|mode, _| mode == AlphaMode::Opaque, camera, fine);
+        let screen = screen.unwrap_or_else(|| self.on_screen(camera, fine));
+        let special = self.special(camera, &screen);
+        let is_plain = |triangle: u32| {
+            let triangle = triangle as usize;
+            !self.surface(triangle).is_special() && !self.shows_its_back(camera, triangle)
+        };
         let mut opaque = Visibility::default();
-        rasterise(&screen, fine, (0.0, 0.0), &mut opaque);
+        screen.rasterise_some(fine, is_plain, &mut opaque);
         let stage = Stage { scene: self, brdf, camera, screen, special, opaque, fine, supersample };
         let mut light = Picture { size, rgba: vec![[0.0; 4]; size * size] };
         let mut values = vec![MapValues::ZERO; if with_values { size * size } else { 0 }];
@@ -105,32 +111,36 @@ impl Scene {
         MaterialPicture { light, values }
     }
 
-    /// Takes all triangles off the screen that are cut out or blended, and those that show only their back.
-    fn take_special(&self, camera: &Camera, screen: &mut ScreenTriangles) -> Vec<Special> {
-        let mut special = Vec::new();
-        for (index, on_screen) in screen.triangles.iter_mut().enumerate() {
-            let surface = &self.surfaces[self.mesh.triangle_materials[index] as usize];
-            if !surface.is_double_sided {
-                let corner = self.mesh.positions[self.mesh.triangles[index][0] as usize];
-                if camera.view_direction(corner).dot(self.face_normals[index]) < 0.0 {
-                    *on_screen = ScreenTriangle::HIDDEN;
-                    continue;
-                }
-            }
-            let is_blended = surface.alpha_mode == AlphaMode::Blend;
-            let is_cut = surface.shifted.as_ref().is_some_and(|shifted| shifted.cutout.is_some());
-            if is_blended || is_cut || surface.alpha_mode == AlphaMode::Mask {
-                let taken = std::mem::replace(on_screen, ScreenTriangle::HIDDEN);
-                special.push(Special { triangle: index as u32, on_screen: taken, is_blended });
-            }
+    /// All triangles that are cut out or blended, but for those that show only their back.
+    fn special(&self, camera: &Camera, screen: &OnScreen) -> Vec<Special> {
+        if !self.surfaces.iter().any(Surface::is_special) {
+            return Vec::new();
         }
-        special
+        let special = |triangle: usize| {
+            let surface = self.surface(triangle);
+            (surface.is_special() && !self.shows_its_back(camera, triangle)).then(|| Special {
+                triangle: triangle as u32,
+                on_screen: screen.triangle(triangle),
+                is_blended: surface.alpha_mode == AlphaMode::Blend,
+            })
+        };
+        (0..self.mesh.triangles.len()).filter_map(special).collect()
+    }
+
+    fn surface(&self, triangle: usize) -> &Surface {
+        &self.surfaces[self.mesh.triangle_materials[triangle] as usize]
+    }
+
+    /// Whether a triangle is single-sided and seen from behind.
+    fn shows_its_back(&self, camera: &Camera, triangle: usize) -> bool {
+        let corner = || self.mesh.positions[self.mesh.triangles[triangle][0] as usize];
+        let is_turned = || camera.view_direction(corner()).dot(self.face_normals[triangle]) < 0.0;
+        !self.surface(triangle).is_double_sided && is_turned()
     }
 
     /// Whether a point of a triangle is there at all: not left out by its cutout, nor below the cutoff of its mask.
     fn is_there(&self, camera: &Camera, triangle: usize, on_screen: &ScreenTriangle, at: (f64, f64)) -> bool {
-        let surface = &self.surfaces[self.mesh.triangle_materials[triangle] as usize];
-        let mesh = &self.mesh;
+        let (surface, mesh) = (self.surface(triangle), &self.mesh);
         let corners = mesh.triangles[triangle].map(|i| i as usize);
         let b = barycentrics(on_screen, at.0, at.1);
         if let Some(shifted) = &surface.shifted {
@@ -193,7 +203,7 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
             match solid {
                 Solid::Nothing => {}
                 Solid::Plain(triangle) => {
-                    add(triangle, &self.screen.triangles[triangle as usize], false, &mut passed);
+                    add(triangle, &self.screen.triangle(triangle as usize), false, &mut passed);
                 }
                 Solid::Special(special) => {
                     let special = &self.special[special];
@@ -206,8 +216,7 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
     /// The light of a triangle at a sample.
     fn shade(&self, triangle: usize, on_screen: &ScreenTriangle, at: (f64, f64)) -> (Seen, Vec3) {
         let seen = self.scene.seen(self.camera, on_screen, triangle, at, 1.0, &|kind| self.brdf.reads(kind));
-        let surface = &self.scene.surfaces[self.scene.mesh.triangle_materials[triangle] as usize];
-        let light = match surface.is_unlit {
+        let light = match self.scene.surface(triangle).is_unlit {
             true => seen.values[MapKind::BaseColor].truncate(),
             false => self.brdf.light(&seen.orientation(), &seen.values),
         };
@@ -223,17 +232,20 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
             let (column, row) = (sample % self.fine, rows.start + sample / self.fine);
             (column as f64 + 0.5, row as f64 + 0.5)
         };
-        let solid = |(sample, &triangle): (usize, &u32)| {
-            if triangle == NOTHING {
-                return (Solid::Nothing, f64::NEG_INFINITY);
-            }
-            let (x, y) = place(sample);
-            (Solid::Plain(triangle), self.screen.triangles[triangle as usize].nearness_at(x, y))
+        let solid = |&triangle: &u32| match triangle {
+            NOTHING => Solid::Nothing,
+            triangle => Solid::Plain(triangle),
         };
         if self.special.is_empty() {
-            return (seen.iter().enumerate().map(|own| solid(own).0).collect(), Vec::new());
+            return (seen.iter().map(solid).collect(), Vec::new());
         }
-        let mut solids: Vec<(Solid, f64)> = seen.iter().enumerate().map(solid).collect();
+        let with_nearness = |(sample, triangle): (usize, &u32)| {
+            let (x, y) = place(sample);
+            let is_seen = *triangle != NOTHING;
+            let nearness = is_seen.then(|| self.screen.triangle(*triangle as usize).nearness_at(x, y));
+            (solid(triangle), nearness.unwrap_or(f64::NEG_INFINITY))
+        };
+        let mut solids: Vec<(Solid, f64)> = seen.iter().enumerate().map(with_nearness).collect();
         let each = |is_blended: bool, found: &mut dyn FnMut(usize, usize, f64)| {
             let all = self.special.iter().enumerate().filter(|(_, s)| s.is_blended == is_blended);
             for (index, special) in all {

@@ -95,3 +95,39 @@ fn unlit_surfaces_show_their_colour() {
     let picture = seen_from(&squares(&[0.0], &[material]), Vec3::Z);
     assert!((Vec4::from(picture.light.rgba[5]) - Vec4::new(0.2, 0.4, 0.6, 1.0)).length() < 1e-6);
 }
+
+/// Protects pictures of large models: a scene that looks for its triangles in a tree of boxes shows the same as if it
+/// drew them all, with backs that are not seen, what is cut out, and what is blended.
+#[test]
+fn large_scenes_look_the_same() {
+    let single = |color| Material { double_sided: false, ..glowing(color, 1.0, AlphaMode::Opaque) };
+    let materials = [
+        single([1.0, 0.0, 0.0]),
+        glowing([0.0, 1.0, 0.0], 1.0, AlphaMode::Opaque),
+        glowing([0.0, 0.0, 1.0], 0.6, AlphaMode::Mask),
+        glowing([1.0, 1.0, 0.0], 0.3, AlphaMode::Blend),
+    ];
+    let scene = || {
+        let mut mesh = Mesh::default();
+        let side = 240u32;
+        for (row, column) in (0..=side).flat_map(|row| (0..=side).map(move |column| (row, column))) {
+            let [x, y] = [row, column].map(|i| 2.0 * i as f32 / side as f32 - 1.0);
+            mesh.positions.push(Vec3::new(x, y, 0.4 * (9.0 * x).sin() * (8.0 * y).cos()));
+            mesh.normals.push(Vec3::Z);
+        }
+        for (row, column) in (0..side).flat_map(|row| (0..side).map(move |column| (row, column))) {
+            let first = row * (side + 1) + column;
+            mesh.triangles
+                .extend([[first, first + side + 1, first + side + 2], [first, first + side + 2, first + 1]]);
+            mesh.triangle_materials.extend([(row / 40 + column / 60) % 4; 2]);
+        }
+        Scene::new(mesh, &materials, &[], Interpretation::default())
+    };
+    let (large, all) = (scene(), scene());
+    assert!(large.clusters().is_some() && all.clusters.set(None).is_ok());
+    for direction in [Vec3::Z, Vec3::new(1.0, 0.4, 0.5), Vec3::new(-0.7, 0.9, -0.6)] {
+        let [large, all] = [&large, &all].map(|scene| seen_from(scene, direction));
+        assert!(all.light.rgba.iter().any(|p| p[2] > 0.1) && all.light.rgba.iter().any(|p| p[0] > 0.1));
+        assert_eq!(large, all, "{direction}");
+    }
+}

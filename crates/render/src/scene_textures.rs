@@ -143,6 +143,13 @@ pub(crate) struct Surface {
     pub shifted: Option<Shifted>,
 }
 
+impl Surface {
+    /// Whether it takes more than a look at depths to say what is seen of it: it is cut out, or blended.
+    pub fn is_special(&self) -> bool {
+        self.alpha_mode != AlphaMode::Opaque || self.shifted.as_ref().is_some_and(|own| own.cutout.is_some())
+    }
+}
+
 /// An image's RGB as the values of a map; `srgb` tells whether colours are decoded.
 pub fn unpack(kind: MapKind, image: &Image, srgb: bool) -> FloatImage<[f32; 3]> {
     let table = decoded(kind, srgb);
