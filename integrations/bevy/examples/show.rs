@@ -284,7 +284,8 @@ fn measure(shown: Res<Shown>, diagnostics: Res<DiagnosticsStore>, mut exit: Mess
     }
     for one in diagnostics.iter() {
         let path = one.path().as_str();
-        let Some(pass) = path.strip_prefix("render/").and_then(|path| path.strip_suffix("/elapsed_gpu")) else {
+        let Some(pass) = path.strip_prefix("render/").and_then(|path| path.strip_suffix("/elapsed_gpu"))
+        else {
             continue;
         };
         let mut values: Vec<f64> = one.values().copied().collect();

@@ -29,7 +29,7 @@ fn parts_are_where_the_header_says() {
             let file = encode(&image, Content::Color, None, codec).unwrap();
             let is_etc1s = codec == CODECS[0];
             let head: Vec<usize> = (0..9).map(|i| word(&file, 12 + 4 * i)).collect();
-            assert_eq!(head, [0, 1, 48, 48, 0, 0, 1, 6, usize::from(is_etc1s)]);
+            assert_eq!(head, [0, 1, 48, 48, 0, 0, 1, 6, if is_etc1s { 1 } else { 2 }]);
             let [descriptor, length, values, values_length] = [48, 52, 56, 60].map(|at| word(&file, at));
             let samples = if is_etc1s { samples } else { 1 };
             assert_eq!(
@@ -50,10 +50,10 @@ fn parts_are_where_the_header_says() {
             // The smallest level comes first, and the largest ends the file.
             for level in (0..6).rev() {
                 let [place, length, whole] = [0, 8, 16].map(|at| long(&file, 80 + 24 * level + at));
-                assert_eq!(place, if is_etc1s { end } else { end.next_multiple_of(16) });
+                assert_eq!(place, end);
                 let blocks = (48usize >> level).div_ceil(4).pow(2);
                 assert_eq!(whole, if is_etc1s { 0 } else { 16 * blocks });
-                assert!(is_etc1s || length == whole);
+                assert!(is_etc1s || level > 0 || length < whole, "{length} {whole}");
                 end = place + length;
             }
             assert_eq!(end, file.len());
