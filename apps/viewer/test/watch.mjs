@@ -81,7 +81,7 @@ async function session(what, options, steps) {
 const browser = await launch();
 await session('watched', { width: 800, height: 560 }, async (page) => {
   const file = path.join(out, 'watched.glb');
-  const { url, end, isOver } = await bake([values.low, '-o', file, '--parallax', 'tangent', '--texture-size', '128', '--preset', 'fast']);
+  const { url, end, isOver } = await bake([values.low, '-o', file, '--parallax', 'tangent', '--texture-size', '128', '--preset', 'fast', '--views', '480']);
   const stages = new Set(), layouts = new Set();
   let snapshots = 0, isShown = false;
   page.on('response', (response) => { if (response.url().endsWith('/run/snapshot') && response.ok()) snapshots++; });
@@ -100,7 +100,7 @@ await session('watched', { width: 800, height: 560 }, async (page) => {
   const { code, said } = await end;
   verify(code === 0, `the bake ended with ${code}: ${said}`);
   verify(layouts.size > 1, 'texture coordinates were seen to move');
-  verify(snapshots > 2, `${snapshots} snapshots`);
+  verify(snapshots > 1, `${snapshots} snapshots`);
   verify([...stages].some((stage) => /vertices/.test(stage)) && stages.size > 3, `stages: ${[...stages].join(', ')}`);
   // The command is gone; the page is a viewer of what was written.
   await page.waitForFunction(() => /^Finished in /.test(document.getElementById('run-stage').textContent));
