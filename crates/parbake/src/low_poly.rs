@@ -8,7 +8,7 @@ use crate::snapshots::of_surface;
 use parbake_model::{AlphaMode, Material, MaterialExtensions, Model};
 use parbake_progress::{Showing, Watcher};
 use parbake_simplify::polish::PolishOptions;
-use parbake_simplify::{ChooseOptions, LayerReport, choose_triangles, least_triangles};
+use parbake_simplify::{ChooseOptions, Coarser, LayerReport, choose_triangles, least_triangles};
 use parbake_views::high_poly::HighPoly;
 
 /// Triangles that a part which stays apart keeps at least, in each layer.
@@ -34,12 +34,18 @@ pub fn check_triangles(high: &HighPoly, model: &Model, triangles: usize) -> Resu
     }
 }
 
+/// What low-polys of a model begin with.
+pub fn coarser(high: &HighPoly, model: &Model) -> Coarser {
+    Coarser::new(high.scene.mesh(), &parts_of_materials(model))
+}
+
 /// A low-poly of at most so many triangles, without texture coordinates, in the high-poly's own space. `model` is
-/// what the high-poly was prepared from; `before` is a finer low-poly that it may start from. Also returns how the
+/// what the high-poly was prepared from, `start` is [`coarser`] of both; `before` is a finer low-poly that it may start from. Also returns how the
 /// triangles of each layer were found. It moves as the model does, and has its parts.
 pub fn low_poly(
     high: &HighPoly,
     model: &Model,
+    start: &Coarser,
     before: Option<&Model>,
     triangles: usize,
     preset: Preset,
@@ -58,16 +64,16 @@ pub fn low_poly(
     if model.parts.is_some() {
         options.least = LEAST_OF_PART;
     }
-    let parts = parts_of_materials(model);
+    let parts = &start.parts;
     let watcher = &Showing::new(watcher, |snapshot| Some(of_surface(&model.name, high, snapshot)));
-    let chosen = choose_triangles(high, before.as_ref(), &parts, &options, watcher);
+    let chosen = choose_triangles(high, before.as_ref(), start, &options, watcher);
     let mut mesh = chosen.mesh;
     for point in &mut mesh.positions {
         *point = *point / high.frame.scale + high.frame.centre;
     }
     let materials = model.materials.iter().map(layer_only).collect();
-    let rig = transferred(model, &mesh, &parts);
-    let parts = kept_parts_of(model, &mesh, &parts);
+    let rig = transferred(model, &mesh, parts);
+    let parts = kept_parts_of(model, &mesh, parts);
     (Model { name: model.name.clone(), mesh, materials, rig, parts, ..Model::default() }, chosen.layers)
 }
 

@@ -18,7 +18,7 @@
 use crate::collapse::collapse_to;
 use crate::pictures::Pictures;
 use crate::polish::{PolishOptions, polish};
-use crate::start::{Start, counts_of_parts, quadrics, with_lost_parts};
+use crate::start::{Coarser, Start, counts_of_parts, with_lost_parts};
 use crate::surface::Surface;
 use crate::target::{BACKGROUNDS, Target};
 use parbake_mesh::smooth_normals;
@@ -91,18 +91,17 @@ const COLLAPSING: f64 = 0.4;
 /// Views that tell one collapse from another well enough.
 const FEW: usize = 24;
 
-/// Chooses the triangles; `before` is the level before in the common frame, if there is one. `parts` has for each of the
-/// high-poly's materials the part that moves by itself to which it belongs; nothing where there is one. No triangle of
-/// the result lies on two.
+/// Chooses the triangles; `before` is the level before in the common frame, if there is one. `coarser` is of the
+/// high-poly's mesh; its parts are those that move by themselves, and no triangle of the result lies on two.
 pub fn choose_triangles(
     high: &HighPoly,
     before: Option<&Mesh>,
-    parts: &[u32],
+    coarser: &Coarser,
     options: &ChooseOptions,
     watcher: &dyn Watcher,
 ) -> Chosen {
-    let mesh = high.scene.mesh();
-    let start = quadrics(mesh, parts, options.room * options.triangles);
+    let (mesh, parts) = (high.scene.mesh(), &coarser.parts[..]);
+    let start = coarser.quadrics(options.room * options.triangles);
     let whole = |start: Mesh, own: &Mesh| with_lost_parts(start, own, parts, options.least);
     let layers = high_layers(high);
     let mut chosen = Chosen { mesh: Mesh::default(), layers: Vec::new() };

@@ -9,6 +9,7 @@ use parbake_model::Mesh;
 use parbake_model::glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Triangles that a part which was lost begins with, for each that it has to keep.
 const LOST_ROOM: usize = 4;
@@ -23,10 +24,88 @@ pub enum Start {
     Level,
 }
 
-/// Edge collapses down to about `target` triangles, in halvings: one shot at a large reduction is worse. `parts` has the
-/// part of each material, as in [`Surface::in_parts`].
-pub fn quadrics(mesh: &Mesh, parts: &[u32], target: usize) -> Mesh {
-    collapsed(&Surface::in_parts(mesh, parts).to_mesh(), target, Flags::Prune | Flags::RegularizeLight)
+/// A model's welded surface, and coarser ones of it: each has half of the triangles of the one before. They are made
+/// when they are first asked for, and kept, since all levels of a model begin with the same ones.
+pub struct Coarser {
+    /// The part of each material, as in [`Surface::in_parts`].
+    pub parts: Vec<u32>,
+    materials: Vec<u32>,
+    flags: Flags,
+    halvings: Mutex<Vec<Arc<Coarse>>>,
+}
+
+/// A surface on its way: vertices that no triangle has stay in their places.
+#[derive(Clone)]
+struct Coarse {
+    positions: Vec<[f32; 3]>,
+    indices: Vec<u32>,
+}
+
+impl Coarser {
+    /// Of a mesh. `parts` has the part of each material, or nothing where there is one.
+    pub fn new(mesh: &Mesh, parts: &[u32]) -> Self {
+        let surface = Surface::in_parts(mesh, parts).to_mesh();
+        Self { parts: parts.to_vec(), ..Self::of(&surface, Flags::Prune | Flags::RegularizeLight) }
+    }
+
+    fn of(surface: &Mesh, flags: Flags) -> Self {
+        let (positions, indices, materials) = by_material(surface);
+        let halvings = Mutex::new(vec![Arc::new(Coarse { positions, indices })]);
+        Self { parts: Vec::new(), materials, flags, halvings }
+    }
+
+    /// Edge collapses down to about `target` triangles, in halvings: one shot at a large reduction is worse.
+    pub fn quadrics(&self, target: usize) -> Mesh {
+        let mut halvings = self.halvings.lock().unwrap_or_else(PoisonError::into_inner);
+        let (mut now, mut place) = (halvings[0].clone(), Some(0));
+        while now.count() > target {
+            let half = now.count() / 2;
+            let next = match place {
+                // The same for every target.
+                Some(last) if half >= target => {
+                    if halvings.len() == last + 1 {
+                        halvings.push(Arc::new(now.collapsed(half, self.flags)));
+                    }
+                    place = Some(last + 1);
+                    halvings[last + 1].clone()
+                }
+                _ => {
+                    place = None;
+                    Arc::new(now.collapsed(half.max(target), self.flags))
+                }
+            };
+            let is_stuck = next.count() >= now.count();
+            now = next;
+            if is_stuck {
+                break;
+            }
+        }
+        assembled(&now.positions, &now.indices, |triangle| self.materials[triangle[0] as usize])
+    }
+}
+
+impl Coarse {
+    fn count(&self) -> usize {
+        self.indices.len() / 3
+    }
+
+    fn collapsed(&self, target: usize, flags: Flags) -> Self {
+        let Self { mut positions, mut indices } = self.clone();
+        let kept = meshopt::simplify_with_update(
+            &mut indices,
+            &mut positions,
+            &mut [],
+            &[],
+            0,
+            None,
+            3 * target,
+            f32::MAX,
+            flags,
+            None,
+        );
+        indices.truncate(kept);
+        Self { positions, indices }
+    }
 }
 
 /// A start in which each part has `least` triangles, or all that it has in `mesh`, and most of its span: parts of which
@@ -50,7 +129,7 @@ pub fn with_lost_parts(start: Mesh, mesh: &Mesh, parts: &[u32], least: usize) ->
     for &(part, _) in &lost {
         let own = Surface::new(&only(mesh, |material| part_of(material) == part)).to_mesh();
         // Nothing of it is pruned.
-        let own = collapsed(&own, LOST_ROOM * least, Flags::RegularizeLight);
+        let own = Coarser::of(&own, Flags::RegularizeLight).quadrics(LOST_ROOM * least);
         let first = out.positions.len() as u32;
         out.positions.extend(own.positions);
         out.triangles.extend(own.triangles.iter().map(|triangle| triangle.map(|vertex| vertex + first)));
@@ -86,34 +165,6 @@ fn only(mesh: &Mesh, is_wanted: impl Fn(u32) -> bool) -> Mesh {
     let triangles = mesh.triangles.iter().zip(&mesh.triangle_materials);
     let (triangles, triangle_materials) = triangles.filter(|(_, material)| is_wanted(**material)).unzip();
     Mesh { positions: mesh.positions.clone(), triangles, triangle_materials, ..Mesh::default() }
-}
-
-/// A welded surface with about `target` triangles.
-fn collapsed(surface: &Mesh, target: usize, flags: Flags) -> Mesh {
-    let (mut positions, mut indices, materials) = by_material(surface);
-    let mut count = indices.len() / 3;
-    while count > target {
-        let next = (count / 2).max(target);
-        let wanted = 3 * next;
-        let kept = meshopt::simplify_with_update(
-            &mut indices,
-            &mut positions,
-            &mut [],
-            &[],
-            0,
-            None,
-            wanted,
-            f32::MAX,
-            flags,
-            None,
-        );
-        indices.truncate(kept);
-        if kept / 3 >= count {
-            break;
-        }
-        count = kept / 3;
-    }
-    assembled(&positions, &indices, |triangle| materials[triangle[0] as usize])
 }
 
 /// How many triangles edge collapses need to stay within a distance, in the mesh's unit.
@@ -184,5 +235,26 @@ mod tests {
             assert!(spans[&part] > KEPT_SPAN * spans_of_parts(&mesh, &parts)[&part]);
         }
         assert_eq!(with_lost_parts(start.clone(), &mesh, &parts, 0), start);
+    }
+
+    /// Protects levels that begin with what others left: a coarser surface is the same whatever was asked for before.
+    #[test]
+    fn surfaces_do_not_depend_on_those_before() {
+        let mut mesh = Mesh::default();
+        for (row, column) in (0..=40u32).flat_map(|row| (0..=40u32).map(move |column| (row, column))) {
+            let (x, y) = (row as f32 / 20.0, column as f32 / 20.0);
+            mesh.positions.push(Vec3::new(x, y, 0.3 * (5.0 * x).sin() * (4.0 * y).cos()));
+        }
+        for (row, column) in (0..40).flat_map(|row| (0..40).map(move |column| (row, column))) {
+            let first = row * 41 + column;
+            mesh.triangles.extend([[first, first + 41, first + 42], [first, first + 42, first + 1]]);
+        }
+        mesh.triangle_materials = vec![0; mesh.triangles.len()];
+        let all = Coarser::new(&mesh, &[]);
+        for target in [3200, 90, 1000, 400, 91, 5000, 1] {
+            let own = Coarser::new(&mesh, &[]).quadrics(target);
+            assert_eq!(all.quadrics(target), own, "{target}");
+            assert!(own.triangles.len() <= target.max(2) || target == 1, "{}", own.triangles.len());
+        }
     }
 }

@@ -25,7 +25,7 @@ mod written;
 
 use crate::bake::{Baked, bake_as, prepare_high_poly};
 use crate::error::BakeError;
-use crate::low_poly::{check_triangles, least_of, low_poly};
+use crate::low_poly::{check_triangles, coarser, least_of, low_poly};
 use crate::options::BakeOptions;
 use crate::parts::{PartReport, draw_calls, part_reports, with_kept_parts, with_parted_materials};
 use crate::report::Work;
@@ -34,9 +34,10 @@ use options::LodOptions;
 use parbake_files::WriteOptions;
 use parbake_model::Model;
 use parbake_progress::Watcher;
-use parbake_simplify::LayerReport;
 use parbake_simplify::start::triangles_within;
+use parbake_simplify::{Coarser, LayerReport};
 use parbake_views::high_poly::HighPoly;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 use switch::{AtSize, Lineup, Subject};
@@ -119,7 +120,7 @@ pub fn make_levels<E: From<BakeError>>(
     let model = &*with_parted_materials(&kept);
     let maker = Maker::new(model, options)?;
     let sizes = (0..options.screen_size.len())
-        .map(|level| (maker.wanted_triangles(level), maker.texture_size(model, options.screen_size[level])));
+        .map(|level| (maker.wanted[level], maker.texture_size(model, options.screen_size[level])));
     let mut chain = Chain::new(watcher, start, options, &sizes.collect::<Vec<_>>());
     let mut before: Option<(Model, Subject)> = None;
     let mut count = 0;
@@ -130,7 +131,7 @@ pub fn make_levels<E: From<BakeError>>(
                 .map(|found| (found.draft, found.write, Some(found.report))),
             None => {
                 let most = finer.map_or(maker.high.triangles, |low| low.mesh.triangles.len());
-                let (wanted, until) = (maker.wanted_triangles(index).min(most), chain.level_until(index));
+                let (wanted, until) = (maker.wanted[index].min(most), chain.level_until(index));
                 let draft = maker.draft(&mut chain, (index, 0), finer, (wanted, None), until)?;
                 draft.map(|draft| (draft, options.write, None))
             }
@@ -179,6 +180,10 @@ pub(crate) struct Maker<'a> {
     pub original: Subject,
     /// The fewest triangles that a level may have.
     pub least: usize,
+    /// Triangles of each level, as its size or an option says.
+    wanted: Vec<usize>,
+    /// What the triangles of all levels begin with.
+    start: Coarser,
 }
 
 /// A baked level without figures.
@@ -205,7 +210,9 @@ impl<'a> Maker<'a> {
         let least = least_of(&high, model);
         let lineup = Lineup::new(model, options.shading);
         let original = lineup.subject(model)?;
-        Ok(Self { model, high, options, lineup, original, least })
+        let wanted = wanted_triangles(&high, options, least);
+        let start = coarser(&high, model);
+        Ok(Self { model, high, options, lineup, original, least, wanted, start })
     }
 
     /// Chooses so many triangles and bakes, to be finished by `until`; the texture's size follows the level's where
@@ -220,7 +227,8 @@ impl<'a> Maker<'a> {
     ) -> Result<Option<Draft>, BakeError> {
         let begin = Instant::now();
         let watcher = chain.bake(level, bake, until);
-        let (low, layers) = low_poly(&self.high, self.model, finer, triangles, self.options.preset, &watcher);
+        let (low, layers) =
+            low_poly(&self.high, self.model, &self.start, finer, triangles, self.options.preset, &watcher);
         if watcher.stopped() {
             // There may be too many triangles still.
             return Ok(None);
@@ -252,19 +260,6 @@ impl<'a> Maker<'a> {
         Ok(Figures { at_screen_size, switch_pixels, against_before })
     }
 
-    fn wanted_triangles(&self, level: usize) -> usize {
-        let (least, high, options) = (self.least, &self.high, self.options);
-        match (options.triangles.get(level), options.ratio.get(level)) {
-            (Some(&count), _) => count,
-            (None, Some(share)) => ((share * high.triangles as f64).round() as usize).max(least),
-            (None, None) => {
-                // The longest side is 2 long in the common frame.
-                let error = 2.0 * options.error / options.screen_size[level];
-                triangles_within(high.scene.mesh(), error as f32).max(least)
-            }
-        }
-    }
-
     /// Texels along a side of a level's texture.
     fn texture_size(&self, low: &Model, screen_size: f64) -> usize {
         self.power_of_two(self.texels_along(low, screen_size))
@@ -292,4 +287,18 @@ impl<'a> Maker<'a> {
         let smaller = sizes.get(level + 1).copied().unwrap_or(0.5 * sizes[level]);
         (share * sizes[level] / smaller).log2().max(0.0)
     }
+}
+
+/// Triangles of each level, of which none has fewer than `least`.
+fn wanted_triangles(high: &HighPoly, options: &LodOptions, least: usize) -> Vec<usize> {
+    let wanted = |level: usize| match (options.triangles.get(level), options.ratio.get(level)) {
+        (Some(&count), _) => count,
+        (None, Some(share)) => ((share * high.triangles as f64).round() as usize).max(least),
+        (None, None) => {
+            // The longest side is 2 long in the common frame.
+            let error = 2.0 * options.error / options.screen_size[level];
+            triangles_within(high.scene.mesh(), error as f32).max(least)
+        }
+    };
+    (0..options.screen_size.len()).into_par_iter().map(wanted).collect()
 }
