@@ -40,7 +40,7 @@ pub fn coarser(high: &HighPoly, model: &Model) -> Coarser {
 }
 
 /// A low-poly of at most so many triangles, without texture coordinates, in the high-poly's own space. `model` is
-/// what the high-poly was prepared from, `start` is [`coarser`] of both; `before` is a finer low-poly that it may start from. Also returns how the
+/// what the high-poly was prepared from, `start` is what `coarser` makes of both; `before` is a finer low-poly that it may start from. Also returns how the
 /// triangles of each layer were found. It moves as the model does, and has its parts.
 pub fn low_poly(
     high: &HighPoly,
