@@ -20,8 +20,8 @@ pub enum TextureFormat {
     Webp,
     /// Lossless, a seventh smaller than PNG; viewers need EXT_texture_webp
     WebpLossless,
-    /// Stays compressed on the GPU, with mip levels: UASTC under Zstandard, high quality, some 1.2 bytes a
-    /// texel; viewers need KHR_texture_basisu
+    /// Stays compressed on the GPU, with mip levels: UASTC under Zstandard, high quality, about 1.2 bytes
+    /// a texel; viewers need KHR_texture_basisu
     Ktx2,
     /// As ktx2, but colours in ETC1S: small files, visible loss; normal maps and data maps stay UASTC
     Ktx2Etc1s,
@@ -93,7 +93,7 @@ pub struct WriteOptions {
     pub texture_format: TextureFormat,
 
     /// Quality of JPEG, WebP and ETC1S, 1 to 100; in JPEG, normal maps and data maps have at least 95, except those for
-    /// viewers without parallax maps. UASTC has about the same size at any; from 96 on it is encoded with more care
+    /// viewers without parallax maps. UASTC files have about the same size at any quality; from 96 on it is encoded with more care
     #[cfg_attr(feature = "clap", arg(long, value_name = "QUALITY", default_value_t = DEFAULT_TEXTURE_QUALITY, value_parser = clap::value_parser!(u8).range(1..=100), help_heading = HEADING))]
     pub texture_quality: u8,
 

@@ -16,7 +16,7 @@ use crate::geometry::{Geometry, move_geometry};
 use crate::importance::importances;
 use crate::look::{Look, add_fallback};
 use crate::lost::lost;
-use crate::low_poly::{check_triangles, coarser, low_poly};
+use crate::low_poly::{check_triangles, coarse_surfaces, low_poly};
 use crate::options::{BakeOptions, Shading, UvMode};
 use crate::parts::{with_kept_parts, with_parted_materials, with_parts};
 use crate::plan::Plan;
@@ -107,8 +107,15 @@ pub fn bake_to_triangles(
     let high = &*with_parted_materials(&kept);
     let prepared = prepare(high, options)?;
     check_triangles(&prepared, high, triangles)?;
-    let (low, _) =
-        low_poly(&prepared, high, &coarser(&prepared, high), None, triangles, options.preset, watcher);
+    let (low, _) = low_poly(
+        &prepared,
+        high,
+        &coarse_surfaces(&prepared, high),
+        None,
+        triangles,
+        options.preset,
+        watcher,
+    );
     run(&prepared, &low, Work::Level, options, watcher, begin)
 }
 

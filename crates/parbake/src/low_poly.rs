@@ -8,7 +8,7 @@ use crate::snapshots::of_surface;
 use parbake_model::{AlphaMode, Material, MaterialExtensions, Model};
 use parbake_progress::{Showing, Watcher};
 use parbake_simplify::polish::PolishOptions;
-use parbake_simplify::{ChooseOptions, Coarser, LayerReport, choose_triangles, least_triangles};
+use parbake_simplify::{ChooseOptions, CoarseSurfaces, LayerReport, choose_triangles, least_triangles};
 use parbake_views::high_poly::HighPoly;
 
 /// Triangles that a part which stays apart keeps at least, in each layer.
@@ -35,17 +35,17 @@ pub fn check_triangles(high: &HighPoly, model: &Model, triangles: usize) -> Resu
 }
 
 /// What low-polys of a model begin with.
-pub fn coarser(high: &HighPoly, model: &Model) -> Coarser {
-    Coarser::new(high.scene.mesh(), &parts_of_materials(model))
+pub fn coarse_surfaces(high: &HighPoly, model: &Model) -> CoarseSurfaces {
+    CoarseSurfaces::new(high.scene.mesh(), &parts_of_materials(model))
 }
 
 /// A low-poly of at most so many triangles, without texture coordinates, in the high-poly's own space. `model` is
-/// what the high-poly was prepared from, `start` is what `coarser` makes of both; `before` is a finer low-poly that it may start from. Also returns how the
+/// what the high-poly was prepared from, `start` is what `coarse_surfaces` makes of both; `before` is a finer low-poly that it may start from. Also returns how the
 /// triangles of each layer were found. It moves as the model does, and has its parts.
 pub fn low_poly(
     high: &HighPoly,
     model: &Model,
-    start: &Coarser,
+    start: &CoarseSurfaces,
     before: Option<&Model>,
     triangles: usize,
     preset: Preset,

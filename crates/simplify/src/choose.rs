@@ -18,7 +18,7 @@
 use crate::collapse::collapse_to;
 use crate::pictures::Pictures;
 use crate::polish::{PolishOptions, polish};
-use crate::start::{Coarser, Start, counts_of_parts, with_lost_parts};
+use crate::start::{CoarseSurfaces, Start, counts_of_parts, with_lost_parts};
 use crate::surface::Surface;
 use crate::target::{BACKGROUNDS, Target};
 use parbake_mesh::smooth_normals;
@@ -91,17 +91,17 @@ const COLLAPSING: f64 = 0.4;
 /// Views that tell one collapse from another well enough.
 const FEW: usize = 24;
 
-/// Chooses the triangles; `before` is the level before in the common frame, if there is one. `coarser` is of the
+/// Chooses the triangles; `before` is the level before in the common frame, if there is one. `coarse` is of the
 /// high-poly's mesh; its parts are those that move by themselves, and no triangle of the result lies on two.
 pub fn choose_triangles(
     high: &HighPoly,
     before: Option<&Mesh>,
-    coarser: &Coarser,
+    coarse: &CoarseSurfaces,
     options: &ChooseOptions,
     watcher: &dyn Watcher,
 ) -> Chosen {
-    let (mesh, parts) = (high.scene.mesh(), &coarser.parts[..]);
-    let start = coarser.quadrics(options.room * options.triangles);
+    let (mesh, parts) = (high.scene.mesh(), &coarse.parts[..]);
+    let start = coarse.collapsed_to(options.room * options.triangles);
     let whole = |start: Mesh, own: &Mesh| with_lost_parts(start, own, parts, options.least);
     let layers = high_layers(high);
     let mut chosen = Chosen { mesh: Mesh::default(), layers: Vec::new() };

@@ -13,4 +13,4 @@ pub mod surface;
 pub mod target;
 
 pub use choose::{ChooseOptions, Chosen, LayerReport, StartReport, choose_triangles, least_triangles};
-pub use start::{Coarser, Start};
+pub use start::{CoarseSurfaces, Start};

@@ -12,15 +12,15 @@ use parbake_simplify::pictures::{Pictures, Scratch};
 use parbake_simplify::polish::PolishOptions;
 use parbake_simplify::surface::Surface;
 use parbake_simplify::target::Target;
-use parbake_simplify::{ChooseOptions, Coarser, choose_triangles};
+use parbake_simplify::{ChooseOptions, CoarseSurfaces, choose_triangles};
 use parbake_views::high_poly::{Conventions, HighPoly};
 use parbake_views::pool::{Rig, view_pool};
 
 const RIG: Rig = Rig { radius: 3.5, projection: Projection::Perspective(0.4) };
 
 /// What its triangles begin with.
-fn coarser(high: &HighPoly) -> Coarser {
-    Coarser::new(high.scene.mesh(), &[])
+fn coarse_surfaces(high: &HighPoly) -> CoarseSurfaces {
+    CoarseSurfaces::new(high.scene.mesh(), &[])
 }
 
 /// A sphere within another one, which has the next material.
@@ -141,11 +141,12 @@ fn without_time_the_budget_of_triangles_holds() {
     let polish = PolishOptions { rounds: 2, sweeps: 1, ..PolishOptions::default() };
     let options =
         ChooseOptions { triangles: 40, least: 0, room: 2, views: 4, sets: 1, view_size: 32, polish, seed: 0 };
-    let chosen = choose_triangles(&high, None, &coarser(&high), &options, &Late);
+    let chosen = choose_triangles(&high, None, &coarse_surfaces(&high), &options, &Late);
     assert!((39..=40).contains(&chosen.mesh.triangles.len()), "{}", chosen.mesh.triangles.len());
     let [before, after] = chosen.layers[0].error;
     assert_eq!(before, after);
-    let [before, after] = choose_triangles(&high, None, &coarser(&high), &options, &()).layers[0].error;
+    let [before, after] =
+        choose_triangles(&high, None, &coarse_surfaces(&high), &options, &()).layers[0].error;
     assert!(after < before);
 }
 
@@ -185,7 +186,7 @@ fn chosen_triangles_fit_and_are_the_same_for_any_threads() {
             .num_threads(threads)
             .build()
             .unwrap_or_else(|e| unreachable!("{e}"));
-        pool.install(|| choose_triangles(&high, None, &coarser(&high), &options, &()))
+        pool.install(|| choose_triangles(&high, None, &coarse_surfaces(&high), &options, &()))
     };
     let (one, three) = (on(1), on(3));
     assert_eq!(one.mesh, three.mesh);
@@ -216,7 +217,7 @@ fn what_is_behind_glass_is_kept() {
         polish: PolishOptions { rounds: 0, sweeps: 1, ..PolishOptions::default() },
         seed: 0,
     };
-    let chosen = choose_triangles(&high, None, &coarser(&high), &options, &());
+    let chosen = choose_triangles(&high, None, &coarse_surfaces(&high), &options, &());
     let is_inner = |t: &&[u32; 3]| t.iter().all(|&v| chosen.mesh.positions[v as usize].length() < 0.6);
     let inner = chosen.mesh.triangles.iter().filter(is_inner).count();
     assert!(

@@ -3,8 +3,8 @@
 //!
 //! The container is that of the KTX 2.0 specification (section 3; BasisLZ's global data in section 5), the data
 //! format descriptor that of the Khronos Data Format specification 1.3. Descriptors give the size of UASTC's blocks
-//! also under Zstandard, as the container's fourth revision asks; readers have to take both that and 0. `mips.rs` makes the levels, `basis.rs`
-//! their blocks; `ktx2.rs` beside this folder reads.
+//! also under Zstandard, as later revisions of the container ask; earlier ones asked for 0, and readers take both.
+//! `mips.rs` makes the levels, `basis.rs` their blocks; `ktx2.rs` beside this folder reads.
 //!
 //! Contract: sides are multiples of four, as the extension asks, and at most [`LONGEST_SIDE`]; the same picture
 //! gives the same bytes.

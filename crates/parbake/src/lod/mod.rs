@@ -25,7 +25,7 @@ mod written;
 
 use crate::bake::{Baked, bake_as, prepare_high_poly};
 use crate::error::BakeError;
-use crate::low_poly::{check_triangles, coarser, least_of, low_poly};
+use crate::low_poly::{check_triangles, coarse_surfaces, least_of, low_poly};
 use crate::options::BakeOptions;
 use crate::parts::{PartReport, draw_calls, part_reports, with_kept_parts, with_parted_materials};
 use crate::report::Work;
@@ -35,7 +35,7 @@ use parbake_files::WriteOptions;
 use parbake_model::Model;
 use parbake_progress::Watcher;
 use parbake_simplify::start::triangles_within;
-use parbake_simplify::{Coarser, LayerReport};
+use parbake_simplify::{CoarseSurfaces, LayerReport};
 use parbake_views::high_poly::HighPoly;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -183,7 +183,7 @@ pub(crate) struct Maker<'a> {
     /// Triangles of each level, as its size or an option says.
     wanted: Vec<usize>,
     /// What the triangles of all levels begin with.
-    start: Coarser,
+    start: CoarseSurfaces,
 }
 
 /// A baked level without figures.
@@ -211,7 +211,7 @@ impl<'a> Maker<'a> {
         let lineup = Lineup::new(model, options.shading);
         let original = lineup.subject(model)?;
         let wanted = wanted_triangles(&high, options, least);
-        let start = coarser(&high, model);
+        let start = coarse_surfaces(&high, model);
         Ok(Self { model, high, options, lineup, original, least, wanted, start })
     }
 
