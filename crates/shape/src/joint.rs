@@ -26,6 +26,7 @@ use crate::moving_points::MovingPoints;
 use crate::points::{Motion, Points};
 use crate::provisional::{MovingTexture, Provisional};
 use crate::views::{Judgement, Outline, Views};
+use crate::walls::crossings;
 use glam::{Vec3, Vec4};
 use parbake_image::display::Display;
 use parbake_model::Mesh;
@@ -75,6 +76,9 @@ pub struct ShapeOptions {
     /// Vertices stay where they are unless outlines differ by this share or less of what they differed before: those
     /// that agree hardly better are not worth another shape than the artist's. 0 to 1.
     pub worth_moving: f64,
+    /// Whether a thin wall whose sides would cross (`walls.rs`) moves less where pictures are better for it: for textures that
+    /// take from the high-poly only what faces as they do.
+    pub keeps_sides: bool,
     /// What is behind the model.
     pub background: Background,
     /// Chooses views' order and backgrounds.
@@ -97,6 +101,7 @@ impl Default for ShapeOptions {
             reach: 8.0,
             laplacian: 0.0,
             worth_moving: 0.9,
+            keeps_sides: false,
             background: Background::Random,
             seed: 0,
         }
@@ -153,6 +158,10 @@ impl Fit<'_> {
 const LEAST_COARSE: usize = 64;
 /// Views at most whose outlines are measured before and after.
 const MEASURED: usize = 48;
+/// Share of the pictures' area in which walls may be seen inside out besides what was so before.
+const INSIDE_OUT: f64 = 2e-4;
+/// Times that points of walls inside out are put back at most: each may lay bare others.
+const UNCROSSED: usize = 8;
 /// Distance between outlines in pixels from which on overhang has the full discount.
 const WIDE_GAP: f64 = 1.0;
 /// The shortest distance that is told from rounding, in pixels.
@@ -192,6 +201,7 @@ pub fn fit_shape(
 
     let rate = options.rate.min(gap / options.steps_in_gap);
     let mut moving = MovingPoints::new(&points, options.motion, rate);
+    let projected = options.keeps_sides.then(|| start.clone());
     let mut provisional = MovingTexture::new(start, options.texture_rate, |n| n.normalize_or(Vec3::Z));
     let mut losses = Vec::new();
     let coarse_until = coarse_steps(gap_in_pixels, size, options);
@@ -232,6 +242,9 @@ pub fn fit_shape(
     }
     watcher.progress(Stage::Shape, steps, steps);
     fit.views = fine;
+    if let Some(projected) = &projected {
+        keep_sides(&mut moving, &fit, projected, &measured);
+    }
     let mut after = fit.look(moving.at(), &provisional.texture, &measured).outline;
     let cost = |outline: &Outline| f64::from(1.0 - discount) * outline.overhang + outline.underhang;
     if cost(&after) > options.worth_moving * cost(&before.outline) {
@@ -245,6 +258,31 @@ pub fn fit_shape(
         moved: moving.moved(),
         outline,
         gap: outline.map(|o| o.gap() as f32 * pixel),
+    }
+}
+
+/// Puts points back until hardly more of thin walls is seen inside out than before, if pictures with the `projected`
+/// texture, in which each side keeps what is its own, are better for it.
+fn keep_sides(moving: &mut MovingPoints, fit: &Fit, projected: &Provisional, views: &[(usize, u64)]) {
+    let Views { references, size, .. } = fit.views;
+    let cameras: Vec<Camera> = views.iter().map(|&(view, _)| references[view].view.camera).collect();
+    let of = |at: &[Vec3]| crossings(at, &fit.points.triangles, &cameras, size);
+    let noticed = INSIDE_OUT * (cameras.len() * size * size) as f64;
+    let most = of(&fit.points.rest).pixels + noticed as usize;
+    let mut now = of(moving.at());
+    if now.pixels <= most {
+        return;
+    }
+    let mut kept = moving.clone();
+    for _ in 0..UNCROSSED {
+        if now.pixels <= most || kept.put_back(&now.points) == 0 {
+            break;
+        }
+        now = of(kept.at());
+    }
+    let loss = |at: &[Vec3]| fit.look(at, projected, views).loss.image;
+    if loss(kept.at()) < loss(moving.at()) {
+        *moving = kept;
     }
 }
 

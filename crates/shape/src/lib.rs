@@ -7,6 +7,7 @@
 //! normals       vertex normals that turn with the faces around them
 //! views         what rendered views say: loss, gradients
 //! moving_points points that follow them by Adam, behind the guard
+//! walls         thin walls whose sides crossed
 //! provisional   a texture that follows them, and is thrown away
 //! joint         the fit: vertices and a provisional texture, against rendered views
 //! stage         the stage of a bake: small textures and views, the fit, what moved
@@ -25,6 +26,7 @@ pub mod provisional;
 pub mod stage;
 pub mod triangle_quality;
 pub mod views;
+pub mod walls;
 
 pub use joint::{ShapeOptions, Shaped, fit_shape};
 pub use points::Motion;

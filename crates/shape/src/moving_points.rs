@@ -12,6 +12,7 @@ use glam::{Vec3, Vec4};
 use parbake_solve::adam::{Adam, AdamOptions};
 
 /// The points on their way.
+#[derive(Clone)]
 pub struct MovingPoints<'a> {
     points: &'a Points,
     motion: Motion,
@@ -66,6 +67,25 @@ impl<'a> MovingPoints<'a> {
         self.at = next;
     }
 
+    /// Takes the steps of some points back, and of those whose triangles would not be sane beside them. Returns how many
+    /// there were that had moved.
+    pub fn put_back(&mut self, which: &[u32]) -> usize {
+        let mut next = self.at.clone();
+        let (mut to_do, mut count) = (which.to_vec(), 0);
+        while !to_do.is_empty() {
+            for point in to_do.drain(..).map(|point| point as usize) {
+                count += usize::from(next[point] != self.points.rest[point]);
+                next[point] = self.points.rest[point];
+            }
+            let spoilt = self.quality.invalid(&next).flat_map(|t| self.points.triangles[t]);
+            to_do =
+                spoilt.filter(|&point| next[point as usize] != self.points.rest[point as usize]).collect();
+        }
+        self.values = self.points.values(self.motion, &next);
+        self.at = next;
+        count
+    }
+
     /// Takes all steps back.
     pub fn reset(&mut self) {
         self.values.fill(Vec4::ZERO);
@@ -107,6 +127,21 @@ mod tests {
             moving.reset();
             assert_eq!(moving.at(), points.rest);
         }
+    }
+
+    /// Protects walls that crossed: what is put back lies at rest, with what would be spoilt beside it, and stays in step
+    /// with the values.
+    #[test]
+    fn points_are_put_back() {
+        let points = square();
+        let mut moving = MovingPoints::new(&points, Motion::Free, 0.1);
+        for _ in 0..3 {
+            moving.step(&[-Vec3::Z; 4], &[], 0.0, 1.0);
+        }
+        assert_eq!(moving.put_back(&[1]), 1);
+        assert_eq!((moving.at[1], moving.put_back(&[1])), (points.rest[1], 0));
+        assert!(moving.at[0].z > 0.1 && moving.quality.invalid(&moving.at).count() == 0);
+        assert_eq!(points.displaced(Motion::Free, &moving.values), moving.at);
     }
 
     /// Protects the mesh from a gradient that would turn a triangle over.

@@ -123,7 +123,8 @@ fn fitted(
     let LowPoly { placed, map, .. } = low;
     let start = provisional(start.maps, &placed, &map);
     let display = high.conventions.display;
-    let shaped = fit_shape(&placed, start, references, plan.view_size, display, &plan.fit, watcher);
+    let fit = ShapeOptions { keeps_sides: high.is_whole_material, ..plan.fit };
+    let shaped = fit_shape(&placed, start, references, plan.view_size, display, &fit, watcher);
     Ok((placed, shaped))
 }
 
