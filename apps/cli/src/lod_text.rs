@@ -1,6 +1,6 @@
 //! What `lod` tells of a level: a line, and of a search for a PSNR a short table.
 
-use parbake::{LevelReport, TargetReport, Trial, TrialMap, Verdict};
+use parbake::{LevelReport, TargetReport, Trial, TrialMap, Verdict, Way};
 
 /// What people want to know of a level.
 pub fn line(report: &LevelReport, bytes: u64) -> String {
@@ -14,8 +14,13 @@ pub fn line(report: &LevelReport, bytes: u64) -> String {
         0 => "no textures".into(),
         size => format!("{size}² texels"),
     };
+    let own = match report.way {
+        Way::New => "",
+        Way::Delivered => " in the model's own layout",
+        Way::Scaled => " of the model's own maps",
+    };
     format!(
-        "level {}: {} triangles, {texels}, {:.1} kB; {:.1} dB at {:.0} pixels; {switch}",
+        "level {}: {} triangles, {texels}{own}, {:.1} kB; {:.1} dB at {:.0} pixels; {switch}",
         report.level,
         report.triangles,
         bytes as f64 / 1e3,

@@ -213,20 +213,25 @@ impl Attempt {
 
 /// Where the longest side of a mesh's box is 1, whatever the file's unit: meshoptimizer's own scaling
 /// would overflow.
-struct UnitBox {
+pub(crate) struct UnitBox {
     low: DVec3,
     longest: f64,
 }
 
 impl UnitBox {
-    fn of(mesh: &Mesh) -> Option<Self> {
+    pub(crate) fn of(mesh: &Mesh) -> Option<Self> {
         let bounds = Bounds::of(mesh)?;
         let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         Some(Self { low, longest: (high - low).max_element().max(f64::MIN_POSITIVE) })
     }
 
-    fn place(&self, p: Vec3) -> Vec3 {
+    pub(crate) fn place(&self, p: Vec3) -> Vec3 {
         ((p.as_dvec3() - self.low) / self.longest).as_vec3()
+    }
+
+    /// Where a point of this box was.
+    pub(crate) fn back(&self, p: Vec3) -> Vec3 {
+        (p.as_dvec3() * self.longest + self.low).as_vec3()
     }
 
     /// A mesh's surface in this box, and nothing else of it.

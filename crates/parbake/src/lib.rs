@@ -79,7 +79,7 @@ pub use image::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
 pub use lod::options::LodOptions;
 pub use lod::search::Verdict;
 pub use lod::target::{TargetReport, Trial, TrialMap};
-pub use lod::{Level, LevelReport, make_levels};
+pub use lod::{Candidate, Level, LevelReport, Way, make_levels};
 pub use low_poly::low_poly;
 pub use memory::peak_memory;
 pub use models::{demo_pair, laid_out, simplified, subdivided, wall_pair, with_tangents};

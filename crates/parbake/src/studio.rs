@@ -33,6 +33,8 @@ pub struct Studio {
     options: EvaluateOptions,
     /// None where a headlight shines on matte surfaces.
     whole: Option<MetallicRoughness>,
+    /// Samples along a line over which textures are filtered.
+    footprint: f32,
 }
 
 /// A model made ready for its pictures.
@@ -56,7 +58,13 @@ impl Studio {
             shading => shading == Shading::Pbr,
         };
         let whole = is_whole.then(MetallicRoughness::in_studio);
-        Ok(Self { frame: common_frame(high)?, options: options.clone(), whole })
+        Ok(Self { frame: common_frame(high)?, options: options.clone(), whole, footprint: 1.0 })
+    }
+
+    /// The same with textures filtered over whole pixels, as viewers do that smooth edges alone (multisampling). What a
+    /// pixel's other samples would show is averaged by mip levels then, across charts where these are too close.
+    pub fn as_viewers_do(self) -> Self {
+        Self { footprint: self.options.supersample as f32, ..self }
     }
 
     /// The same under another light, if whole materials are shown.
@@ -103,10 +111,13 @@ impl Studio {
         with_channels: bool,
     ) -> Shot {
         match &self.whole {
-            None => Shot { picture: subject.0.render(&Lambert, camera, size.0, size.1), values: Vec::new() },
+            None => Shot {
+                picture: subject.0.render_filtered(&Lambert, camera, size, self.footprint),
+                values: Vec::new(),
+            },
             Some(brdf) => {
                 let MaterialPicture { light, values } =
-                    subject.0.render_material(brdf, camera, size, with_channels);
+                    subject.0.render_material(brdf, camera, size, self.footprint, with_channels);
                 Shot { picture: light, values }
             }
         }

@@ -389,6 +389,17 @@ impl Scene {
 
     /// The whole view, each pixel the mean of `supersample`² samples.
     pub fn render(&self, brdf: &impl Brdf, camera: &Camera, size: usize, supersample: usize) -> Picture {
+        self.render_filtered(brdf, camera, (size, supersample), 1.0)
+    }
+
+    /// The same with textures filtered over `footprint` samples along a line.
+    pub fn render_filtered(
+        &self,
+        brdf: &impl Brdf,
+        camera: &Camera,
+        (size, supersample): (usize, usize),
+        footprint: f32,
+    ) -> Picture {
         let fine = size * supersample;
         let screen = self.on_screen(camera, fine);
         let seen = self.see(camera, &screen, fine);
@@ -404,7 +415,7 @@ impl Scene {
                         continue;
                     }
                     let at = (x as f64 + 0.5, y as f64 + 0.5);
-                    let light = self.shade(brdf, camera, &screen, triangle as usize, at, 1.0);
+                    let light = self.shade(brdf, camera, &screen, triangle as usize, at, footprint);
                     for k in 0..3 {
                         pixel[k] += light[k] * share;
                     }

@@ -76,16 +76,20 @@ struct Stage<'a, B> {
     /// Samples along a side of the picture, and of a pixel.
     fine: usize,
     supersample: usize,
+    /// Samples along a line over which textures are filtered.
+    footprint: f32,
 }
 
 impl Scene {
     /// The whole view with whole materials, each pixel the mean of `supersample`² samples; the maps' values too,
-    /// if `with_values`.
+    /// if `with_values`. Textures are filtered over `footprint` samples along a line: 1 for one sample, `supersample` for
+    /// a pixel, as viewers do that smooth edges alone.
     pub fn render_material(
         &self,
         brdf: &impl Brdf<Orientation>,
         camera: &Camera,
         (size, supersample): (usize, usize),
+        footprint: f32,
         with_values: bool,
     ) -> MaterialPicture {
         let fine = size * supersample;
@@ -98,7 +102,8 @@ impl Scene {
         };
         let mut opaque = Visibility::default();
         screen.rasterise_some(fine, is_plain, &mut opaque);
-        let stage = Stage { scene: self, brdf, camera, screen, special, opaque, fine, supersample };
+        let stage =
+            Stage { scene: self, brdf, camera, screen, special, opaque, fine, supersample, footprint };
         let mut light = Picture { size, rgba: vec![[0.0; 4]; size * size] };
         let mut values = vec![MapValues::ZERO; if with_values { size * size } else { 0 }];
         let bands = light.rgba.par_chunks_mut(size * BAND);
@@ -215,7 +220,8 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
 
     /// The light of a triangle at a sample.
     fn shade(&self, triangle: usize, on_screen: &ScreenTriangle, at: (f64, f64)) -> (Seen, Vec3) {
-        let seen = self.scene.seen(self.camera, on_screen, triangle, at, 1.0, &|kind| self.brdf.reads(kind));
+        let reads = |kind| self.brdf.reads(kind);
+        let seen = self.scene.seen(self.camera, on_screen, triangle, at, self.footprint, &reads);
         let light = match self.scene.surface(triangle).is_unlit {
             true => seen.values[MapKind::BaseColor].truncate(),
             false => self.brdf.light(&seen.orientation(), &seen.values),

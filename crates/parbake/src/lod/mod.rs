@@ -14,6 +14,7 @@
 //! a chain that is stopped keeps those that are finished. Deterministic.
 
 pub(crate) mod chain;
+mod delivered;
 pub mod document;
 pub mod layout;
 mod maps;
@@ -55,6 +56,30 @@ pub struct Level {
     pub report: LevelReport,
 }
 
+/// How a level was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Way {
+    /// Triangles were chosen by their pictures, the layout is new, maps were fitted.
+    #[default]
+    New,
+    /// Edges of the model collapsed, its layout was mended, maps were fitted.
+    Delivered,
+    /// Edges of the model collapsed; it has its own layout and its own maps, with fewer texels.
+    Scaled,
+}
+
+/// A way that was tried.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Candidate {
+    /// How.
+    pub way: Way,
+    /// Triangles.
+    pub triangles: usize,
+    /// PSNR in dB against the original at the level's size, before anything was compressed.
+    pub psnr: f64,
+}
+
 /// What `lods.json` holds of a level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelReport {
@@ -80,7 +105,14 @@ pub struct LevelReport {
     /// The nodes that stay apart.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub parts: Vec<PartReport>,
-    /// How the triangles of each layer (opaque, cut out, blended, transmitting) were found.
+    /// How it was made.
+    #[serde(default)]
+    pub way: Way,
+    /// The ways that were tried, where there were several.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub candidates: Vec<Candidate>,
+    /// How the triangles of each layer (opaque, cut out, blended, transmitting) were found; empty where it has the
+    /// model's own vertices.
     pub low_poly: Vec<LayerReport>,
     /// Against the original, at the size that it was made for; of what the file holds.
     pub at_screen_size: AtSize,
@@ -132,7 +164,7 @@ pub fn make_levels<E: From<BakeError>>(
             None => {
                 let most = finer.map_or(maker.high.triangles, |low| low.mesh.triangles.len());
                 let (wanted, until) = (maker.wanted[index].min(most), chain.level_until(index));
-                let draft = maker.draft(&mut chain, (index, 0), finer, (wanted, None), until)?;
+                let draft = delivered::draft(&maker, &mut chain, index, finer, wanted, until)?;
                 draft.map(|draft| (draft, options.write, None))
             }
         };
@@ -141,7 +173,7 @@ pub fn make_levels<E: From<BakeError>>(
         let subject =
             maker.lineup.subject(&as_written(&draft.baked.model, &write, options.normal_y)?.model)?;
         let figures = maker.figures(index, &subject, before.as_ref().map(|(_, subject)| subject))?;
-        let Draft { low, layers, baked, seconds: [chosen, fitted, compared] } = draft;
+        let Draft { low, layers, baked, way, candidates, seconds: [chosen, fitted, compared] } = draft;
         let mip = baked.report.options.smallest_mip.unwrap_or(0.0);
         let gutter = baked.report.uv.gutter.as_ref().map(|gutter| (gutter.texels, mip));
         let report = LevelReport {
@@ -154,6 +186,8 @@ pub fn make_levels<E: From<BakeError>>(
             smallest_gutter: gutter.map(|(texels, mip)| texels / mip.exp2()),
             draw_calls: draw_calls(&baked.model),
             parts: part_reports(&baked.model),
+            way,
+            candidates,
             low_poly: layers,
             at_screen_size: figures.at_screen_size,
             switch_pixels: figures.switch_pixels,
@@ -170,12 +204,17 @@ pub fn make_levels<E: From<BakeError>>(
     Ok(count)
 }
 
+/// Samples along a side of a pixel for edges: viewers take four a pixel as a rule.
+const VIEWER_SAMPLES: usize = 2;
+
 /// What all levels are made of.
 pub(crate) struct Maker<'a> {
     pub model: &'a Model,
     pub high: HighPoly,
     pub options: &'a LodOptions,
     pub lineup: Lineup,
+    /// The same for pictures as viewers make them.
+    pub viewer: Lineup,
     /// The model, ready for pictures.
     pub original: Subject,
     /// The fewest triangles that a level may have.
@@ -192,6 +231,8 @@ pub(crate) struct Draft {
     pub low: Model,
     pub layers: Vec<LayerReport>,
     pub baked: Baked,
+    pub way: Way,
+    pub candidates: Vec<Candidate>,
     /// That choosing triangles, baking and pictures took, those of bakes that were not taken included.
     pub seconds: [f64; 3],
 }
@@ -212,7 +253,8 @@ impl<'a> Maker<'a> {
         let original = lineup.subject(model)?;
         let wanted = wanted_triangles(&high, options, least);
         let start = coarse_surfaces(&high, model);
-        Ok(Self { model, high, options, lineup, original, least, wanted, start })
+        let viewer = lineup.as_viewers_do(VIEWER_SAMPLES);
+        Ok(Self { model, high, options, lineup, viewer, original, least, wanted, start })
     }
 
     /// Chooses so many triangles and bakes, to be finished by `until`; the texture's size follows the level's where
@@ -234,14 +276,18 @@ impl<'a> Maker<'a> {
             return Ok(None);
         }
         let chosen = begin.elapsed().as_secs_f64();
-        let side = self.texels_along(&low, self.options.screen_size[level]);
-        let texture_size = texture_size.unwrap_or_else(|| self.power_of_two(side));
-        let smallest_mip = Some(self.smallest_mip(level, texture_size as f64 / side));
-        let options = BakeOptions { smallest_mip, ..self.options.bake(texture_size) };
-        let options = hurried(options, until);
+        let options = hurried(self.bake_options(&low, level, texture_size), until);
         let baked = bake_as(Work::Level, &self.high, &low, &options, &watcher.after_triangles())?;
         let seconds = [chosen, begin.elapsed().as_secs_f64() - chosen, 0.0];
-        Ok(Some(Draft { low, layers, baked, seconds }))
+        Ok(Some(Draft { low, layers, baked, way: Way::New, candidates: Vec::new(), seconds }))
+    }
+
+    /// The options of the bake of a level, without a budget.
+    fn bake_options(&self, low: &Model, level: usize, texture_size: Option<usize>) -> BakeOptions {
+        let side = self.texels_along(low, self.options.screen_size[level]);
+        let texture_size = texture_size.unwrap_or_else(|| self.power_of_two(side));
+        let smallest_mip = Some(self.smallest_mip(level, texture_size as f64 / side));
+        BakeOptions { smallest_mip, ..self.options.bake(texture_size) }
     }
 
     fn figures(

@@ -57,19 +57,30 @@ pub struct Pictures {
 pub struct Lineup {
     original: Model,
     options: EvaluateOptions,
+    /// Samples along a side of a pixel of viewers; none where textures are filtered as finely as edges.
+    viewer_samples: Option<usize>,
 }
 
 impl Lineup {
     /// Around the original.
     pub fn new(original: &Model, shading: Shading) -> Self {
         let options = EvaluateOptions { shading, ..EvaluateOptions::default() };
-        Self { original: original.clone(), options }
+        Self { original: original.clone(), options, viewer_samples: None }
+    }
+
+    /// The same for pictures as viewers make them, with so many samples along a side of a pixel for edges, and one for
+    /// textures.
+    pub fn as_viewers_do(&self, samples: usize) -> Self {
+        Self { original: self.original.clone(), options: self.options.clone(), viewer_samples: Some(samples) }
     }
 
     fn studio(&self, pixels: f64) -> Result<Studio, BakeError> {
         let resolution = (PICTURE * pixels).round().max(16.0) as usize;
-        let supersample = (SAMPLED / pixels).clamp(SAMPLES[0], SAMPLES[1]) as usize;
-        Studio::new(&self.original, &EvaluateOptions { resolution, supersample, ..self.options.clone() })
+        let usual = || (SAMPLED / pixels).clamp(SAMPLES[0], SAMPLES[1]) as usize;
+        let supersample = self.viewer_samples.unwrap_or_else(usual);
+        let options = EvaluateOptions { resolution, supersample, ..self.options.clone() };
+        let studio = Studio::new(&self.original, &options)?;
+        Ok(if self.viewer_samples.is_some() { studio.as_viewers_do() } else { studio })
     }
 
     /// Makes a model ready for pictures.

@@ -6,7 +6,7 @@ use super::search::search;
 use crate::html::textures::textures;
 use crate::page::text::{NOTHING, count, decimal, duration, escape};
 use parbake::lod::document::{LodDocument, LodEntry};
-use parbake::{BakeError, LayerReport, LevelReport, Start, StartReport};
+use parbake::{BakeError, LayerReport, LevelReport, Start, StartReport, Way};
 use parbake_model::Model;
 use std::fmt::Write;
 
@@ -47,7 +47,10 @@ pub fn level(
     if let Some(target) = &report.target {
         out += &search(target);
     }
-    out += &triangles(report);
+    out += &ways(report);
+    if !report.low_poly.is_empty() {
+        out += &triangles(report);
+    }
     let _ = write!(out, "<h3>Textures</h3>{}</section>", maps(model, report.level)?);
     Ok(out)
 }
@@ -57,6 +60,38 @@ fn maps(model: &Model, level: usize) -> Result<String, BakeError> {
         return Ok(r#"<p class="note">It has none: factors of the material say all.</p>"#.into());
     }
     textures(model, &format!("borders{level}"))
+}
+
+/// Which way won, and by how much.
+fn ways(report: &LevelReport) -> String {
+    if report.candidates.is_empty() {
+        return String::new();
+    }
+    let mut out = String::from(concat!(
+        "<h3>How it was made</h3>",
+        r#"<p class="note">Each way was finished and photographed as viewers show it; the one that shows most of the model was taken.</p>"#,
+        r#"<div class="wide"><table class="numbers-table"><thead><tr><th scope="col">way</th><th scope="col">triangles</th>"#,
+        r#"<th scope="col">PSNR</th></tr></thead><tbody>"#
+    ));
+    for candidate in &report.candidates {
+        let taken = if candidate.way == report.way { ", taken" } else { "" };
+        let _ = write!(
+            out,
+            "<tr><th scope=\"row\">{}{taken}</th><td>{}</td><td>{}\u{202f}dB</td></tr>",
+            way_name(candidate.way),
+            count(candidate.triangles),
+            decimal(candidate.psnr, 1)
+        );
+    }
+    out + "</tbody></table></div>"
+}
+
+fn way_name(way: Way) -> &'static str {
+    match way {
+        Way::New => "triangles chosen by pictures, new layout",
+        Way::Delivered => "the model's own vertices and layout, baked",
+        Way::Scaled => "the model's own vertices, layout and maps",
+    }
 }
 
 /// Which start won in each layer, by how much, and what polishing gained.

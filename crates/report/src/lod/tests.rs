@@ -4,8 +4,8 @@ use super::lod_report;
 use parbake::lod::document::LodDocument;
 use parbake::lod::switch::AtSize;
 use parbake::{
-    LayerReport, LevelReport, LodOptions, Start, StartReport, TargetReport, Trial, TrialMap, Verdict,
-    demo_pair,
+    Candidate, LayerReport, LevelReport, LodOptions, Start, StartReport, TargetReport, Trial, TrialMap,
+    Verdict, Way, demo_pair,
 };
 
 fn level(level: usize, target: Option<TargetReport>) -> LevelReport {
@@ -20,6 +20,10 @@ fn level(level: usize, target: Option<TargetReport>) -> LevelReport {
         gutter: Some(4.0),
         smallest_gutter: Some(2.0),
         draw_calls: 1,
+        way: Way::New,
+        candidates: [(Way::New, 31.5), (Way::Scaled, 29.0)]
+            .map(|(way, psnr)| Candidate { way, triangles: 90, psnr })
+            .to_vec(),
         parts: Vec::new(),
         low_poly: vec![LayerReport {
             triangles: 90,
@@ -74,6 +78,8 @@ fn a_chain_has_a_page() {
         "40.0 dB cannot be reached: the best file has 31.50 dB",
         "&lt;b&gt; 64², no normal, quality 65",
         "the level before",
+        "new layout, taken",
+        "layout and maps</th>",
         "At its size: 60 pixels",
         "2.00\u{202f}MB",
     ] {
