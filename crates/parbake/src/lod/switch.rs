@@ -18,6 +18,7 @@ use parbake_model::Model;
 use parbake_render::camera::fibonacci_sphere;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Directions that models are seen from.
 const VIEWS: usize = 6;
@@ -55,7 +56,7 @@ pub struct Pictures {
 
 /// Models in front of cameras.
 pub struct Lineup {
-    original: Model,
+    original: Arc<Model>,
     options: EvaluateOptions,
     /// Samples along a side of a pixel of viewers; none where textures are filtered as finely as edges.
     viewer_samples: Option<usize>,
@@ -65,7 +66,7 @@ impl Lineup {
     /// Around the original.
     pub fn new(original: &Model, shading: Shading) -> Self {
         let options = EvaluateOptions { shading, ..EvaluateOptions::default() };
-        Self { original: original.clone(), options, viewer_samples: None }
+        Self { original: Arc::new(original.clone()), options, viewer_samples: None }
     }
 
     /// The same for pictures as viewers make them, with so many samples along a side of a pixel for edges, and one for
