@@ -24,6 +24,7 @@ use parbake_render::metallic_roughness::MetallicRoughness;
 use parbake_render::scene::{Picture, Scene};
 use parbake_render::scene_material::MaterialPicture;
 use parbake_render::shade::Lambert;
+use parbake_render::shading_rate::ShadingRate;
 use parbake_views::frame::{common_frame, needs_whole_material, scene};
 
 /// Where models are photographed.
@@ -33,8 +34,7 @@ pub struct Studio {
     options: EvaluateOptions,
     /// None where a headlight shines on matte surfaces.
     whole: Option<MetallicRoughness>,
-    /// Samples along a line over which textures are filtered.
-    footprint: f32,
+    rate: ShadingRate,
 }
 
 /// A model made ready for its pictures.
@@ -58,13 +58,12 @@ impl Studio {
             shading => shading == Shading::Pbr,
         };
         let whole = is_whole.then(MetallicRoughness::in_studio);
-        Ok(Self { frame: common_frame(high)?, options: options.clone(), whole, footprint: 1.0 })
+        Ok(Self { frame: common_frame(high)?, options: options.clone(), whole, rate: ShadingRate::Sample })
     }
 
-    /// The same with textures filtered over whole pixels, as viewers do that smooth edges alone (multisampling). What a
-    /// pixel's other samples would show is averaged by mip levels then, across charts where these are too close.
+    /// The same with surfaces shaded once a pixel, as viewers do that smooth edges by multisampling.
     pub fn as_viewers_do(self) -> Self {
-        Self { footprint: self.options.supersample as f32, ..self }
+        Self { rate: ShadingRate::Pixel, ..self }
     }
 
     /// The same under another light, if whole materials are shown.
@@ -111,13 +110,12 @@ impl Studio {
         with_channels: bool,
     ) -> Shot {
         match &self.whole {
-            None => Shot {
-                picture: subject.0.render_filtered(&Lambert, camera, size, self.footprint),
-                values: Vec::new(),
-            },
+            None => {
+                Shot { picture: subject.0.render_at(&Lambert, camera, size, self.rate), values: Vec::new() }
+            }
             Some(brdf) => {
                 let MaterialPicture { light, values } =
-                    subject.0.render_material(brdf, camera, size, self.footprint, with_channels);
+                    subject.0.render_material(brdf, camera, size, self.rate, with_channels);
                 Shot { picture: light, values }
             }
         }

@@ -52,6 +52,7 @@ pub mod scene;
 pub mod scene_material;
 mod scene_textures;
 pub mod shade;
+pub mod shading_rate;
 pub mod spherical_harmonics;
 mod split_sum;
 pub mod surface;

@@ -20,6 +20,7 @@ use crate::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility};
 pub use crate::scene_textures::unpack;
 use crate::scene_textures::{Builder, Map, SeenPoint, Surface, Textures};
 use crate::shade::Brdf;
+use crate::shading_rate::ShadingRate;
 use parbake_image::display::encode_srgb;
 use parbake_image::material_maps::sheen_as_color;
 use parbake_image::pyramid::Pyramid;
@@ -389,16 +390,16 @@ impl Scene {
 
     /// The whole view, each pixel the mean of `supersample`² samples.
     pub fn render(&self, brdf: &impl Brdf, camera: &Camera, size: usize, supersample: usize) -> Picture {
-        self.render_filtered(brdf, camera, (size, supersample), 1.0)
+        self.render_at(brdf, camera, (size, supersample), ShadingRate::Sample)
     }
 
-    /// The same with textures filtered over `footprint` samples along a line.
-    pub fn render_filtered(
+    /// The same with surfaces shaded for each sample or for each pixel.
+    pub fn render_at(
         &self,
         brdf: &impl Brdf,
         camera: &Camera,
         (size, supersample): (usize, usize),
-        footprint: f32,
+        rate: ShadingRate,
     ) -> Picture {
         let fine = size * supersample;
         let screen = self.on_screen(camera, fine);
@@ -415,7 +416,9 @@ impl Scene {
                         continue;
                     }
                     let at = (x as f64 + 0.5, y as f64 + 0.5);
-                    let light = self.shade(brdf, camera, &screen, triangle as usize, at, footprint);
+                    let triangle = triangle as usize;
+                    let at = rate.point(&screen.triangle(triangle), at, supersample);
+                    let light = self.shade(brdf, camera, &screen, triangle, at, rate.footprint(supersample));
                     for k in 0..3 {
                         pixel[k] += light[k] * share;
                     }

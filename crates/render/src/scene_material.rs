@@ -22,6 +22,7 @@ use crate::raster::{NOTHING, ScreenTriangle, Visibility};
 use crate::scene::{Picture, Scene, Seen};
 use crate::scene_textures::{Map, SeenPoint, Surface};
 use crate::shade::Brdf;
+use crate::shading_rate::ShadingRate;
 use parbake_image::MapValues;
 use parbake_image::maps::MapKind;
 use parbake_model::AlphaMode;
@@ -76,20 +77,18 @@ struct Stage<'a, B> {
     /// Samples along a side of the picture, and of a pixel.
     fine: usize,
     supersample: usize,
-    /// Samples along a line over which textures are filtered.
-    footprint: f32,
+    rate: ShadingRate,
 }
 
 impl Scene {
     /// The whole view with whole materials, each pixel the mean of `supersample`² samples; the maps' values too,
-    /// if `with_values`. Textures are filtered over `footprint` samples along a line: 1 for one sample, `supersample` for
-    /// a pixel, as viewers do that smooth edges alone.
+    /// if `with_values`.
     pub fn render_material(
         &self,
         brdf: &impl Brdf<Orientation>,
         camera: &Camera,
         (size, supersample): (usize, usize),
-        footprint: f32,
+        rate: ShadingRate,
         with_values: bool,
     ) -> MaterialPicture {
         let fine = size * supersample;
@@ -102,8 +101,7 @@ impl Scene {
         };
         let mut opaque = Visibility::default();
         screen.rasterise_some(fine, is_plain, &mut opaque);
-        let stage =
-            Stage { scene: self, brdf, camera, screen, special, opaque, fine, supersample, footprint };
+        let stage = Stage { scene: self, brdf, camera, screen, special, opaque, fine, supersample, rate };
         let mut light = Picture { size, rgba: vec![[0.0; 4]; size * size] };
         let mut values = vec![MapValues::ZERO; if with_values { size * size } else { 0 }];
         let bands = light.rgba.par_chunks_mut(size * BAND);
@@ -221,7 +219,9 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
     /// The light of a triangle at a sample.
     fn shade(&self, triangle: usize, on_screen: &ScreenTriangle, at: (f64, f64)) -> (Seen, Vec3) {
         let reads = |kind| self.brdf.reads(kind);
-        let seen = self.scene.seen(self.camera, on_screen, triangle, at, self.footprint, &reads);
+        let at = self.rate.point(on_screen, at, self.supersample);
+        let footprint = self.rate.footprint(self.supersample);
+        let seen = self.scene.seen(self.camera, on_screen, triangle, at, footprint, &reads);
         let light = match self.scene.surface(triangle).is_unlit {
             true => seen.values[MapKind::BaseColor].truncate(),
             false => self.brdf.light(&seen.orientation(), &seen.values),

@@ -32,7 +32,7 @@ fn glowing(color: [f32; 3], alpha: f32, alpha_mode: AlphaMode) -> Material {
 fn seen_from(scene: &Scene, direction: Vec3) -> MaterialPicture {
     let camera = Camera::towards_origin(direction, 3.5, Projection::Orthographic(0.4));
     let dark = MetallicRoughness { lighting: Lighting::default() };
-    scene.render_material(&dark, &camera, (16, 2), 1.0, true)
+    scene.render_material(&dark, &camera, (16, 2), ShadingRate::Sample, true)
 }
 
 /// Protects panes: layers are blended in the order of their depth from either side, whatever their order in the

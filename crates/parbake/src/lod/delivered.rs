@@ -8,9 +8,10 @@
 //!                                                                 └ layout mended, maps fitted (a bake) ─── Delivered
 //! ```
 //!
-//! Both ways and a new layout are finished and photographed as viewers show them: edges are smoothed by four samples a
-//! pixel, textures filtered over whole pixels. Vertices that stay in place lose nothing at edges then, where a shift by a
-//! twentieth of a pixel already flips samples; and charts that lie close together in a texture mix at coarse mip levels.
+//! Both ways and a new layout are finished and photographed as viewers show them (`render/shading_rate.rs`): edges are
+//! smoothed by four samples a pixel, surfaces shaded once. Vertices that stay in place lose nothing at edges then, where a
+//! shift by a twentieth of a pixel already flips samples; and charts that lie close together in a texture mix at coarse
+//! mip levels.
 //!
 //! Contract: a level of scaled maps has at most half of the model's texels. No level has more triangles than were asked
 //! for.
