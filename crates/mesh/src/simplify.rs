@@ -245,6 +245,20 @@ impl UnitBox {
     }
 }
 
+/// Length on the surface of one texture, so that neither its size nor its tiling counts; 0 where coordinates without area
+/// say nothing.
+pub(crate) fn texture_scale(mesh: &Mesh, positions: &[[f32; 3]]) -> f64 {
+    let (mut surface, mut texture) = (0.0, 0.0);
+    for (index, triangle) in mesh.triangles.iter().enumerate() {
+        let [a, b, c] = triangle.map(|v| Vec3::from(positions[v as usize]).as_dvec3());
+        surface += (b - a).cross(c - a).length();
+        let [a, b, c] = mesh.corner_uvs(index).map(Vec2::as_dvec2);
+        texture += (b - a).perp_dot(c - a).abs();
+    }
+    let scale = (surface / texture).sqrt();
+    if scale.is_finite() && scale > 0.0 { scale } else { 0.0 }
+}
+
 /// Per vertex: the texture coordinate, in units of the surface's length so that
 /// neither the texture's size nor its tiling counts, and the normal. Their
 /// weights follow.
@@ -254,16 +268,7 @@ fn attributes(
     options: &SimplifyOptions,
     normals: bool,
 ) -> (Vec<f32>, [f32; 5]) {
-    let (mut surface, mut texture) = (0.0, 0.0);
-    for (index, triangle) in mesh.triangles.iter().enumerate() {
-        let [a, b, c] = triangle.map(|v| Vec3::from(positions[v as usize]).as_dvec3());
-        surface += (b - a).cross(c - a).length();
-        let [a, b, c] = mesh.corner_uvs(index).map(Vec2::as_dvec2);
-        texture += (b - a).perp_dot(c - a).abs();
-    }
-    let scale = (surface / texture).sqrt();
-    // Texture coordinates without area, or absurd ones, say nothing.
-    let scale = if scale.is_finite() && scale > 0.0 { scale } else { 0.0 };
+    let scale = texture_scale(mesh, positions);
     let mut values = Vec::with_capacity(5 * positions.len());
     for v in 0..positions.len() {
         let uv = mesh.uvs.get(v).copied().unwrap_or_default().as_dvec2() * scale;

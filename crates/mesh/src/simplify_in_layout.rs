@@ -7,7 +7,7 @@
 //! Contract: corners keep their material; the result has the attributes that the mesh has. It may have more triangles
 //! than were asked for, where seams are in the way.
 
-use crate::simplify::UnitBox;
+use crate::simplify::{UnitBox, texture_scale};
 use crate::vertices::drop_unused;
 use crate::weld::{ordered_bits, weld_by, weld_by_position};
 use meshopt::{SimplifyOptions as Flags, SimplifyVertex};
@@ -52,7 +52,7 @@ pub fn simplify_in_layout(mesh: &Mesh, triangles: usize, collapses: Collapses) -
     };
     let (mut work, materials) = welded(mesh);
     let mut positions: Vec<[f32; 3]> = work.positions.iter().map(|&p| unit.place(p).to_array()).collect();
-    let scale = texture_scale(&work, &positions);
+    let scale = scale_of_texture(&work, &positions);
     let mut values = values(&work, scale);
     let mut weights = [0.0; ATTRIBUTES];
     weights[..2].fill(if scale > 0.0 { uv_weight } else { 0.0 });
@@ -140,19 +140,11 @@ fn welded(mesh: &Mesh) -> (Mesh, Vec<u32>) {
     (work, sources.into_iter().map(|(_, material)| material).collect())
 }
 
-/// Length on the surface of one texture, so that neither its size nor its tiling counts; 0 where coordinates say nothing.
-fn texture_scale(mesh: &Mesh, positions: &[[f32; 3]]) -> f64 {
-    let (mut surface, mut texture) = (0.0, 0.0);
-    for (index, triangle) in mesh.triangles.iter().enumerate() {
-        let [a, b, c] = triangle.map(|v| Vec3::from(positions[v as usize]).as_dvec3());
-        surface += (b - a).cross(c - a).length();
-        let [a, b, c] = mesh.corner_uvs(index).map(Vec2::as_dvec2);
-        texture += (b - a).perp_dot(c - a).abs();
-    }
-    let scale = (surface / texture).sqrt();
+/// The scale at which texture coordinates count; none where they are absurd.
+fn scale_of_texture(mesh: &Mesh, positions: &[[f32; 3]]) -> f64 {
+    let scale = texture_scale(mesh, positions);
     let greatest = mesh.uvs.iter().map(|uv| f64::from(uv.abs().max_element())).fold(0.0, f64::max);
-    // Coordinates without area, or absurd ones, say nothing.
-    if scale.is_finite() && scale * greatest < 1e6 { scale } else { 0.0 }
+    if scale * greatest < 1e6 { scale } else { 0.0 }
 }
 
 fn values(mesh: &Mesh, scale: f64) -> Vec<f32> {
