@@ -129,7 +129,8 @@ pub struct LevelReport {
     /// Whether a time budget or a signal ended a step early.
     #[serde(default)]
     pub stopped_early: bool,
-    /// Seconds that triangles, bake and figures took; of a search for a PSNR those of all its bakes.
+    /// Seconds that triangles, bake and figures took; of a search for a PSNR those of all its bakes. Ways that were not
+    /// taken count with the figures.
     pub seconds: [f64; 3],
 }
 
