@@ -23,6 +23,7 @@ use super::switch::Pictures;
 use super::{Candidate, Draft, Maker, Way};
 use crate::bake::{Baked, bake_as};
 use crate::error::BakeError;
+use crate::models::with_tangents;
 use crate::options::{BakeOptions, ShapeMode};
 use crate::report::{BakeReport, Work};
 use crate::rigs::transferred;
@@ -334,7 +335,7 @@ fn of_one_material(model: &Model) -> Option<Model> {
     }
     let mut model = Model { materials: vec![material], ..model.clone() };
     model.mesh.triangle_materials.fill(0);
-    Some(model)
+    Some(with_tangents(model))
 }
 
 /// All choices of one of so many for each place.
