@@ -5,6 +5,8 @@
 //! charts, texel_map             which point of the surface a texel shows
 //! projection                    where that point lies on the detailed model
 //! simplify, subdivide, bisect   coarser and finer copies of a mesh
+//! simplify_in_layout            a coarser copy that keeps its layout and attributes
+//! corner_vertices               vertices as both tell them apart
 //! deviation                     how far two surfaces are apart, for a choice between them
 //! distance                      the same in full: Chamfer, Hausdorff, root mean square
 //! topology                      pieces, holes, handles, and where a surface is none
@@ -21,6 +23,7 @@
 pub mod bisect;
 mod bvh;
 pub mod charts;
+mod corner_vertices;
 pub mod demo;
 pub mod deviation;
 pub mod distance;

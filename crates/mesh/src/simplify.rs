@@ -11,12 +11,12 @@
 //! their face's back (`facing.rs`); it is not empty unless the input is, and has no
 //! tangents.
 
+use crate::corner_vertices::{ToldApart, corner_vertices};
 use crate::deviation::deviation;
 use crate::facing::face_outwards;
 use crate::normals::smooth_normals;
 use crate::projection::HighSurface;
 use crate::vertices::drop_unused;
-use crate::weld::{ordered_bits, weld_by};
 use meshopt::SimplifyOptions as Flags;
 use parbake_model::glam::{DVec3, Vec2, Vec3};
 use parbake_model::{Bounds, Mesh};
@@ -148,66 +148,10 @@ impl Attempt {
         work
     }
 
-    /// The mesh with each corner a vertex that all its equals share, and each
-    /// vertex's material.
+    /// The mesh's vertices as this try tells them apart, and each vertex's material.
     fn welded(self, mesh: &Mesh) -> (Mesh, Vec<u32>) {
-        let corners: Vec<(u32, u32)> = mesh
-            .triangles
-            .iter()
-            .zip(&mesh.triangle_materials)
-            .flat_map(|(t, &material)| t.map(|v| (v, material)))
-            .collect();
-        let bits = |v: Option<&[f32]>| {
-            let mut key = [0; 4];
-            for (k, &x) in key.iter_mut().zip(v.unwrap_or_default()) {
-                *k = ordered_bits(x);
-            }
-            key
-        };
-        let first = weld_by(corners.len(), |corner| {
-            let (vertex, material) = corners[corner];
-            let v = vertex as usize;
-            let position = bits(Some(mesh.positions[v].as_ref()));
-            let seams = self != Self::ShapeOnly && self != Self::Clustered;
-            let uv = mesh.uvs.get(v).filter(|_| seams);
-            let uv1 = mesh.uvs1.get(v).filter(|_| seams);
-            let normal = mesh.normals.get(v).filter(|_| self == Self::AllSeams);
-            let color = mesh.colors.get(v).filter(|_| seams);
-            [
-                [material; 4],
-                position,
-                bits(uv.map(|x| x.as_ref().as_slice())),
-                bits(uv1.map(|x| x.as_ref().as_slice())),
-                bits(normal.map(|x| x.as_ref().as_slice())),
-                bits(color.map(|x| x.as_ref().as_slice())),
-            ]
-        });
-        // First corners become the vertices.
-        let mut vertex_of = vec![0; corners.len()];
-        let mut sources = Vec::new();
-        for corner in 0..corners.len() {
-            if first[corner] as usize == corner {
-                vertex_of[corner] = sources.len() as u32;
-                sources.push(corners[corner]);
-            } else {
-                vertex_of[corner] = vertex_of[first[corner] as usize];
-            }
-        }
-        fn pick<T: Copy>(values: &[T], sources: &[(u32, u32)]) -> Vec<T> {
-            sources.iter().filter_map(|&(v, _)| values.get(v as usize).copied()).collect()
-        }
-        let work = Mesh {
-            positions: pick(&mesh.positions, &sources),
-            normals: pick(&mesh.normals, &sources),
-            tangents: Vec::new(),
-            uvs: pick(&mesh.uvs, &sources),
-            uvs1: pick(&mesh.uvs1, &sources),
-            colors: pick(&mesh.colors, &sources),
-            parallax_offsets: pick(&mesh.parallax_offsets, &sources),
-            triangles: vertex_of.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
-            triangle_materials: Vec::new(),
-        };
-        (work, sources.into_iter().map(|(_, material)| material).collect())
+        let seams = self != Self::ShapeOnly && self != Self::Clustered;
+        corner_vertices(mesh, ToldApart { seams, normals: self == Self::AllSeams, tangents: false })
     }
 }
 

@@ -7,9 +7,10 @@
 //! Contract: corners keep their material; the result has the attributes that the mesh has. It may have more triangles
 //! than were asked for, where seams are in the way.
 
+use crate::corner_vertices::{ToldApart, corner_vertices};
 use crate::simplify::{UnitBox, texture_scale};
 use crate::vertices::drop_unused;
-use crate::weld::{ordered_bits, weld_by, weld_by_position};
+use crate::weld::weld_by_position;
 use meshopt::{SimplifyOptions as Flags, SimplifyVertex};
 use parbake_model::Mesh;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
@@ -30,7 +31,7 @@ pub enum Seams {
     Crossed,
 }
 
-/// How edges collapse.
+/// How edges collapse. Weights are 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Collapses {
     /// What becomes of seams.
@@ -44,13 +45,16 @@ pub struct Collapses {
     pub moves: bool,
 }
 
-/// A coarser mesh of about `triangles` triangles.
+/// A coarser mesh of about `triangles` triangles, at least 1; the mesh itself where it has no more than that.
 pub fn simplify_in_layout(mesh: &Mesh, triangles: usize, collapses: Collapses) -> Mesh {
     let Collapses { seams, normal_weight, uv_weight, moves } = collapses;
     let Some(unit) = UnitBox::of(mesh).filter(|_| mesh.triangles.len() > triangles) else {
         return mesh.clone();
     };
-    let (mut work, materials) = welded(mesh);
+    let (mut work, materials) =
+        corner_vertices(mesh, ToldApart { seams: true, normals: true, tangents: true });
+    // They belong to maps of an earlier bake.
+    work.parallax_offsets.clear();
     let mut positions: Vec<[f32; 3]> = work.positions.iter().map(|&p| unit.place(p).to_array()).collect();
     let scale = scale_of_texture(&work, &positions);
     let mut values = values(&work, scale);
@@ -90,56 +94,6 @@ pub fn simplify_in_layout(mesh: &Mesh, triangles: usize, collapses: Collapses) -
     work
 }
 
-/// The mesh with each corner a vertex that all its equals share, and each vertex's material.
-fn welded(mesh: &Mesh) -> (Mesh, Vec<u32>) {
-    let corners: Vec<(u32, u32)> = (mesh.triangles.iter().zip(&mesh.triangle_materials))
-        .flat_map(|(triangle, &material)| triangle.map(|vertex| (vertex, material)))
-        .collect();
-    fn bits<const N: usize>(values: Option<[f32; N]>) -> [u32; 4] {
-        let mut key = [0; 4];
-        key.iter_mut().zip(values.iter().flatten()).for_each(|(k, &x)| *k = ordered_bits(x));
-        key
-    }
-    let first = weld_by(corners.len(), |corner| {
-        let (vertex, material) = corners[corner];
-        let v = vertex as usize;
-        [
-            [material; 4],
-            bits(Some(mesh.positions[v].to_array())),
-            bits(mesh.normals.get(v).map(|x| x.to_array())),
-            bits(mesh.tangents.get(v).map(|x| x.to_array())),
-            bits(mesh.uvs.get(v).map(|x| x.to_array())),
-            bits(mesh.uvs1.get(v).map(|x| x.to_array())),
-            bits(mesh.colors.get(v).map(|x| x.to_array())),
-        ]
-    });
-    // First corners become the vertices.
-    let mut vertex_of = vec![0; corners.len()];
-    let mut sources = Vec::new();
-    for corner in 0..corners.len() {
-        vertex_of[corner] = if first[corner] as usize == corner {
-            sources.push(corners[corner]);
-            sources.len() as u32 - 1
-        } else {
-            vertex_of[first[corner] as usize]
-        };
-    }
-    fn pick<T: Copy>(values: &[T], sources: &[(u32, u32)]) -> Vec<T> {
-        sources.iter().filter_map(|&(v, _)| values.get(v as usize).copied()).collect()
-    }
-    let work = Mesh {
-        positions: pick(&mesh.positions, &sources),
-        normals: pick(&mesh.normals, &sources),
-        tangents: pick(&mesh.tangents, &sources),
-        uvs: pick(&mesh.uvs, &sources),
-        uvs1: pick(&mesh.uvs1, &sources),
-        colors: pick(&mesh.colors, &sources),
-        triangles: vertex_of.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
-        ..Mesh::default()
-    };
-    (work, sources.into_iter().map(|(_, material)| material).collect())
-}
-
 /// The scale at which texture coordinates count; none where they are absurd.
 fn scale_of_texture(mesh: &Mesh, positions: &[[f32; 3]]) -> f64 {
     let scale = texture_scale(mesh, positions);
@@ -147,6 +101,7 @@ fn scale_of_texture(mesh: &Mesh, positions: &[[f32; 3]]) -> f64 {
     if scale * greatest < 1e6 { scale } else { 0.0 }
 }
 
+/// The attributes of all vertices, [`ATTRIBUTES`] each; texture coordinates times `scale`.
 fn values(mesh: &Mesh, scale: f64) -> Vec<f32> {
     let mut values = Vec::with_capacity(ATTRIBUTES * mesh.positions.len());
     for v in 0..mesh.positions.len() {
@@ -159,7 +114,7 @@ fn values(mesh: &Mesh, scale: f64) -> Vec<f32> {
     values
 }
 
-/// Attributes as they came out.
+/// Takes over attributes that moved; normals and tangents become unit vectors again.
 fn take_values(mesh: &mut Mesh, values: &[f32], scale: f64) {
     let of = |v: usize| &values[ATTRIBUTES * v..ATTRIBUTES * (v + 1)];
     if scale > 0.0 {

@@ -46,8 +46,7 @@ pub struct EvaluateOptions {
     pub convention: Convention,
 
     /// What of the materials is shown; pbr is the whole metallic-roughness material under a built-in light, lambert
-    /// colours, normals and emission under a headlight. pbr the whole metallic-roughness material under a built-in light; lambert colours,
-    /// normals and emission under a headlight; auto pbr where a material of the high-poly has more than these,
+    /// colours, normals and emission under a headlight, auto pbr where a material of the high-poly has more than these,
     /// else lambert. Use the value that was baked with
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Shading::Auto))]
     pub shading: Shading,

@@ -70,6 +70,16 @@ impl<'a> Chain<'a> {
     /// A bake of a level begins, the `bake`-th from 0; its triangles are to be chosen by a share of what is left until
     /// `until`.
     pub fn bake(&mut self, level: usize, bake: usize, until: Option<Instant>) -> LevelWatcher<'a> {
+        self.done += self.tell(level, bake);
+        let left = until.map(|until| until.saturating_duration_since(Instant::now()).as_secs_f64());
+        LevelWatcher {
+            watcher: self.watcher,
+            until: left.map(|left| Instant::now() + seconds(SHARES[0] * left)),
+        }
+    }
+
+    /// Says which bake of which level is to come, also where something else is tried first. Returns its weight.
+    pub fn tell(&self, level: usize, bake: usize) -> f64 {
         let own: f64 = self.weights[level].iter().map(|(_, weight)| weight).sum();
         let to_come = self.bakes.saturating_sub(bake).max(1) as f64 * own;
         let later: f64 = (level + 1..self.weights.len()).map(|k| self.work(k)).sum();
@@ -79,12 +89,7 @@ impl<'a> Chain<'a> {
         }
         self.watcher.message(Message::Part { name, work: [self.done, own, self.done + to_come + later] });
         self.watcher.message(Message::Plan(self.weights[level].clone()));
-        self.done += own;
-        let left = until.map(|until| until.saturating_duration_since(Instant::now()).as_secs_f64());
-        LevelWatcher {
-            watcher: self.watcher,
-            until: left.map(|left| Instant::now() + seconds(SHARES[0] * left)),
-        }
+        own
     }
 
     fn work(&self, level: usize) -> f64 {

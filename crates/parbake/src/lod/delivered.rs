@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! model ─ edges collapse, attributes follow (simplify_in_layout) ─┬ its maps, with fewer texels ─────────── Scaled
-//!                                                                 └ layout mended, maps fitted (a bake) ─── Delivered
+//!                                                                 └ layout repaired, maps fitted (a bake) ─ Delivered
 //! ```
 //!
 //! Both ways and a new layout are finished and photographed as viewers show them (`render/shading_rate.rs`): edges are
@@ -13,8 +13,9 @@
 //! shift by a twentieth of a pixel already flips samples; and charts that lie close together in a texture mix at coarse
 //! mip levels.
 //!
-//! Contract: a level of scaled maps has at most half of the model's texels. No level has more triangles than were asked
-//! for.
+//! Contract: a level of scaled maps has at most half of the model's texels, and its layout as it was delivered, shared
+//! texels and mirrored charts included. No level has more triangles than were asked for. A budget and a watcher that says stop
+//! are heeded between pictures.
 
 use super::chain::Chain;
 use super::maps::{Reduction, level_maps, with_reductions};
@@ -60,6 +61,8 @@ const UNSEEN: f64 = 0.05;
 const INVISIBLE: f64 = 60.0;
 /// Decibels by which another way has to be better than a new layout, and a bake than scaled maps.
 const WORTHWHILE: f64 = 0.3;
+/// Share of a level's time budget after which no more collapses are tried.
+const TRYING: f64 = 0.2;
 
 /// The level as that way makes it which shows most of the model. Ways are left out where they cannot win: a new layout
 /// where scaled maps are excellent, another bake where even finer maps would show less. None where the watcher said stop
@@ -72,11 +75,20 @@ pub(crate) fn draft(
     triangles: usize,
     until: Option<Instant>,
 ) -> Result<Option<Draft>, BakeError> {
+    if !may_keep_vertices(maker, triangles) {
+        return maker.draft(chain, (level, 0), finer, (triangles, None), until);
+    }
     let begin = Instant::now();
+    chain.tell(level, 0);
     let pixels = maker.options.screen_size[level];
     let side = maker.texels_along(maker.model, pixels);
     let judge = Judge::new(maker, pixels)?;
-    let own = coarser(maker, &judge, triangles, side)?;
+    let enough = until.map(|until| begin + until.saturating_duration_since(begin).mul_f64(TRYING));
+    let is_over = || chain.stopped() || enough.is_some_and(|enough| Instant::now() > enough);
+    let own = coarser(maker, &judge, triangles, side, &is_over)?;
+    if chain.stopped() {
+        return Ok(None);
+    }
     let scaled = own.as_ref().map(|own| scaled(maker, &judge, own)).transpose()?.flatten();
     let scaled = scaled.map(|(model, psnr)| {
         let seconds = [begin.elapsed().as_secs_f64(), 0.0, 0.0];
@@ -118,8 +130,8 @@ pub(crate) fn draft(
     with(draft, candidates)
 }
 
-/// Who says which way shows most of the model.
-pub(crate) struct Judge<'m> {
+/// Compares ways by their pictures.
+struct Judge<'m> {
     maker: &'m Maker<'m>,
     /// The original at the level's size, and where that is small at twice that: a level is seen from closer, too.
     pictures: Vec<Pictures>,
@@ -140,6 +152,15 @@ impl<'m> Judge<'m> {
         let sum: f64 = self.pictures.iter().map(|pictures| viewer.psnr(pictures, &subject)).sum();
         Ok(sum / self.pictures.len() as f64)
     }
+}
+
+/// Whether a level of so many triangles may have the model's own vertices: the model has a layout, the level keeps a good
+/// part of its triangles, and no option says where triangles have to go.
+fn may_keep_vertices(maker: &Maker, triangles: usize) -> bool {
+    let model = maker.model;
+    let is_few = (triangles as f64) < LEAST_SHARE * model.mesh.triangles.len() as f64;
+    let is_steered = model.parts.is_some() || !maker.high.importances.is_empty();
+    !is_few && !is_steered && !model.mesh.uvs.is_empty()
 }
 
 /// A bake of the model onto its own vertices, fewer of them.
@@ -173,6 +194,7 @@ fn surface_of(low: &Model) -> Model {
     Model { mesh, materials: low.materials.clone(), ..Model::default() }
 }
 
+/// A level without a bake. `side` is how many texels along a line its surface needs, `seconds` are those of [`Draft`].
 fn scaled_draft(maker: &Maker, level: usize, model: Model, side: f64, seconds: [f64; 3]) -> Draft {
     let size = model.images.iter().map(|image| image.width).max().unwrap_or(1);
     let smallest_mip = Some(maker.smallest_mip(level, size as f64 / side));
@@ -208,30 +230,31 @@ fn scaled_draft(maker: &Maker, level: usize, model: Model, side: f64, seconds: [
 }
 
 /// A model's own vertices, fewer of them, with its own materials.
-pub(crate) struct Coarser {
-    pub model: Model,
+struct Coarser {
+    model: Model,
     /// PSNR in dB with maps that are finer than the level's.
-    pub psnr: f64,
+    psnr: f64,
 }
 
-/// The model with at most `triangles` triangles and its own layout, as its pictures find it best; none where it has no
-/// layout, or keeps too few triangles. `side` is how many texels along a line its surface needs.
-pub(crate) fn coarser(
+/// The model with at most `triangles` triangles and its own layout, by those of [`COLLAPSES`] whose pictures show most; none
+/// where seams leave too many triangles. `side` is how many texels along a line its surface needs.
+fn coarser(
     maker: &Maker,
     judge: &Judge,
     triangles: usize,
     side: f64,
+    is_over: &dyn Fn() -> bool,
 ) -> Result<Option<Coarser>, BakeError> {
     let model = maker.model;
-    let is_few = (triangles as f64) < LEAST_SHARE * model.mesh.triangles.len() as f64;
-    let is_steered = model.parts.is_some() || !maker.high.importances.is_empty();
-    if is_few || is_steered || model.mesh.uvs.is_empty() {
-        return Ok(None);
-    }
     let finest = maker.power_of_two(DENSITY * side);
     let look = with_maps_at_most(model, finest);
     let mut best: Option<Coarser> = None;
-    for collapses in COLLAPSES {
+    // With all triangles there is nothing to choose.
+    let ways = if model.mesh.triangles.len() > triangles { COLLAPSES.len() } else { 1 };
+    for collapses in COLLAPSES.into_iter().take(ways) {
+        if is_over() {
+            break;
+        }
         let mesh = simplify_in_layout(&model.mesh, triangles, collapses);
         if mesh.triangles.is_empty() || mesh.triangles.len() > triangles {
             continue;
@@ -271,11 +294,7 @@ fn kinds_of_images(materials: &[Material]) -> Vec<(usize, MapKind)> {
 
 /// The model with the maps of its only material scaled, and its PSNR: to the fewest texels that show nothing less, at most
 /// half of the original's. None where it has several materials, or maps that cannot be scaled.
-pub(crate) fn scaled(
-    maker: &Maker,
-    judge: &Judge,
-    coarser: &Coarser,
-) -> Result<Option<(Model, f64)>, BakeError> {
+fn scaled(maker: &Maker, judge: &Judge, coarser: &Coarser) -> Result<Option<(Model, f64)>, BakeError> {
     let Some(model) = of_one_material(&coarser.model) else { return Ok(None) };
     let maps = level_maps(&model);
     let shown = |choice: &[usize]| -> Result<(Model, f64), BakeError> {
@@ -317,8 +336,7 @@ pub(crate) fn scaled(
         }
     }
     let Some((_, choice)) = best else { return Ok(None) };
-    let found = shown(&choice)?;
-    Ok(Some(found))
+    shown(&choice).map(Some)
 }
 
 /// A model whose triangles have one material, with that alone; none where they have several, or it has maps that cannot
