@@ -24,7 +24,6 @@ use parbake_render::metallic_roughness::MetallicRoughness;
 use parbake_render::scene::{Picture, Scene};
 use parbake_render::scene_material::MaterialPicture;
 use parbake_render::shade::Lambert;
-use parbake_render::shading_rate::ShadingRate;
 use parbake_views::frame::{common_frame, needs_whole_material, scene};
 
 /// Where models are photographed.
@@ -34,7 +33,8 @@ pub struct Studio {
     options: EvaluateOptions,
     /// None where a headlight shines on matte surfaces.
     whole: Option<MetallicRoughness>,
-    rate: ShadingRate,
+    /// Whether roughness grows where vertex normals turn, as viewers do it.
+    is_viewers: bool,
 }
 
 /// A model made ready for its pictures.
@@ -58,12 +58,12 @@ impl Studio {
             shading => shading == Shading::Pbr,
         };
         let whole = is_whole.then(MetallicRoughness::in_studio);
-        Ok(Self { frame: common_frame(high)?, options: options.clone(), whole, rate: ShadingRate::Sample })
+        Ok(Self { frame: common_frame(high)?, options: options.clone(), whole, is_viewers: false })
     }
 
-    /// The same with surfaces shaded once a pixel, as viewers do that smooth edges by multisampling.
+    /// The same with rougher surfaces where vertex normals turn within a pixel, as viewers show them.
     pub fn as_viewers_do(self) -> Self {
-        Self { rate: ShadingRate::Pixel, ..self }
+        Self { is_viewers: true, ..self }
     }
 
     /// The same under another light, if whole materials are shown.
@@ -110,12 +110,10 @@ impl Studio {
         with_channels: bool,
     ) -> Shot {
         match &self.whole {
-            None => {
-                Shot { picture: subject.0.render_at(&Lambert, camera, size, self.rate), values: Vec::new() }
-            }
+            None => Shot { picture: subject.0.render(&Lambert, camera, size.0, size.1), values: Vec::new() },
             Some(brdf) => {
                 let MaterialPicture { light, values } =
-                    subject.0.render_material(brdf, camera, size, self.rate, with_channels);
+                    subject.0.render_material(brdf, camera, size, self.is_viewers, with_channels);
                 Shot { picture: light, values }
             }
         }

@@ -20,7 +20,6 @@ use crate::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility};
 pub use crate::scene_textures::unpack;
 use crate::scene_textures::{Builder, Map, SeenPoint, Surface, Textures};
 use crate::shade::Brdf;
-use crate::shading_rate::ShadingRate;
 use parbake_image::display::encode_srgb;
 use parbake_image::material_maps::sheen_as_color;
 use parbake_image::pyramid::Pyramid;
@@ -390,17 +389,6 @@ impl Scene {
 
     /// The whole view, each pixel the mean of `supersample`² samples.
     pub fn render(&self, brdf: &impl Brdf, camera: &Camera, size: usize, supersample: usize) -> Picture {
-        self.render_at(brdf, camera, (size, supersample), ShadingRate::Sample)
-    }
-
-    /// The same with surfaces shaded for each sample or for each pixel.
-    pub fn render_at(
-        &self,
-        brdf: &impl Brdf,
-        camera: &Camera,
-        (size, supersample): (usize, usize),
-        rate: ShadingRate,
-    ) -> Picture {
         let fine = size * supersample;
         let screen = self.on_screen(camera, fine);
         let seen = self.see(camera, &screen, fine);
@@ -416,9 +404,7 @@ impl Scene {
                         continue;
                     }
                     let at = (x as f64 + 0.5, y as f64 + 0.5);
-                    let triangle = triangle as usize;
-                    let at = rate.point(&screen.triangle(triangle), at, supersample);
-                    let light = self.shade(brdf, camera, &screen, triangle, at, rate.footprint(supersample));
+                    let light = self.shade(brdf, camera, &screen, triangle as usize, at, 1.0);
                     for k in 0..3 {
                         pixel[k] += light[k] * share;
                     }

@@ -22,7 +22,7 @@ use crate::raster::{NOTHING, ScreenTriangle, Visibility};
 use crate::scene::{Picture, Scene, Seen};
 use crate::scene_textures::{Map, SeenPoint, Surface};
 use crate::shade::Brdf;
-use crate::shading_rate::ShadingRate;
+use crate::turning_normals::added_roughness;
 use parbake_image::MapValues;
 use parbake_image::maps::MapKind;
 use parbake_model::AlphaMode;
@@ -77,18 +77,18 @@ struct Stage<'a, B> {
     /// Samples along a side of the picture, and of a pixel.
     fine: usize,
     supersample: usize,
-    rate: ShadingRate,
+    is_viewers: bool,
 }
 
 impl Scene {
     /// The whole view with whole materials, each pixel the mean of `supersample`² samples; the maps' values too,
-    /// if `with_values`.
+    /// if `with_values`. With `is_viewers` roughness grows as viewers do it (`turning_normals.rs`).
     pub fn render_material(
         &self,
         brdf: &impl Brdf<Orientation>,
         camera: &Camera,
         (size, supersample): (usize, usize),
-        rate: ShadingRate,
+        is_viewers: bool,
         with_values: bool,
     ) -> MaterialPicture {
         let fine = size * supersample;
@@ -101,7 +101,8 @@ impl Scene {
         };
         let mut opaque = Visibility::default();
         screen.rasterise_some(fine, is_plain, &mut opaque);
-        let stage = Stage { scene: self, brdf, camera, screen, special, opaque, fine, supersample, rate };
+        let stage =
+            Stage { scene: self, brdf, camera, screen, special, opaque, fine, supersample, is_viewers };
         let mut light = Picture { size, rgba: vec![[0.0; 4]; size * size] };
         let mut values = vec![MapValues::ZERO; if with_values { size * size } else { 0 }];
         let bands = light.rgba.par_chunks_mut(size * BAND);
@@ -219,9 +220,13 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
     /// The light of a triangle at a sample.
     fn shade(&self, triangle: usize, on_screen: &ScreenTriangle, at: (f64, f64)) -> (Seen, Vec3) {
         let reads = |kind| self.brdf.reads(kind);
-        let at = self.rate.point(on_screen, at, self.supersample);
-        let footprint = self.rate.footprint(self.supersample);
-        let seen = self.scene.seen(self.camera, on_screen, triangle, at, footprint, &reads);
+        let mut seen = self.scene.seen(self.camera, on_screen, triangle, at, 1.0, &reads);
+        if self.is_viewers {
+            let mesh = &self.scene.mesh;
+            let normals = mesh.triangles[triangle].map(|vertex| mesh.normals[vertex as usize]);
+            let added = added_roughness(self.camera, normals, &barycentrics(on_screen, at.0, at.1));
+            seen.values[MapKind::MetallicRoughness].y += added;
+        }
         let light = match self.scene.surface(triangle).is_unlit {
             true => seen.values[MapKind::BaseColor].truncate(),
             false => self.brdf.light(&seen.orientation(), &seen.values),

@@ -32,7 +32,7 @@ fn glowing(color: [f32; 3], alpha: f32, alpha_mode: AlphaMode) -> Material {
 fn seen_from(scene: &Scene, direction: Vec3) -> MaterialPicture {
     let camera = Camera::towards_origin(direction, 3.5, Projection::Orthographic(0.4));
     let dark = MetallicRoughness { lighting: Lighting::default() };
-    scene.render_material(&dark, &camera, (16, 2), ShadingRate::Sample, true)
+    scene.render_material(&dark, &camera, (16, 2), false, true)
 }
 
 /// Protects panes: layers are blended in the order of their depth from either side, whatever their order in the
@@ -130,4 +130,24 @@ fn large_scenes_look_the_same() {
         assert!(all.light.rgba.iter().any(|p| p[2] > 0.1) && all.light.rgba.iter().any(|p| p[0] > 0.1));
         assert_eq!(large, all, "{direction}");
     }
+}
+
+/// Protects figures that agree with viewers: a glossy surface whose normals turn is rougher to them, so its highlight is
+/// darker; a flat one is as it is.
+#[test]
+fn viewers_see_turning_normals_as_rougher() {
+    let glossy = Material { roughness: 0.1, metallic: 1.0, ..Material::default() };
+    let mut scene = squares(&[0.0], &[glossy]);
+    let camera = Camera::towards_origin(Vec3::Z, 3.5, Projection::Orthographic(0.4));
+    let lit = MetallicRoughness { lighting: Lighting::lamp_from_the_side() };
+    let brightest = |scene: &Scene, is_viewers: bool| {
+        let picture = scene.render_material(&lit, &camera, (16, 2), is_viewers, false);
+        picture.light.rgba.iter().map(|pixel| pixel[1]).fold(0.0, f32::max)
+    };
+    assert_eq!(brightest(&scene, true), brightest(&scene, false));
+    // The lamp is mirrored somewhere on it.
+    for (normal, x) in scene.mesh.normals.iter_mut().zip([-0.5f32, 0.5, 0.5, -0.5]) {
+        *normal = Vec3::new(0.4 + 1.2 * x, 0.27, 1.0).normalize();
+    }
+    assert!(brightest(&scene, true) < 0.8 * brightest(&scene, false));
 }

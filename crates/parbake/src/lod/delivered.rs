@@ -8,21 +8,18 @@
 //!                                                                 └ layout repaired, maps fitted (a bake) ─ Delivered
 //! ```
 //!
-//! Both ways and a new layout are finished and photographed as viewers show them (`render/shading_rate.rs`): edges are
-//! smoothed by four samples a pixel, surfaces shaded once. Vertices that stay in place lose nothing at edges then, where a
-//! shift by a twentieth of a pixel already flips samples; and charts that lie close together in a texture mix at coarse
-//! mip levels.
+//! Both compete with a new layout, and by pictures, in `ways.rs`.
 //!
 //! Contract: a level of scaled maps has at most half of the model's texels, and its layout as it was delivered, shared
-//! texels and mirrored charts included. No level has more triangles than were asked for. A budget and a watcher that says stop
-//! are heeded between pictures.
+//! texels and mirrored charts included. No level has more triangles than were asked for. A watcher that says stop is heeded
+//! between pictures.
 
 use super::chain::Chain;
 use super::maps::{Reduction, level_maps, with_reductions};
 use super::search::error_of;
-use super::switch::Pictures;
-use super::{Candidate, Draft, Maker, Way};
-use crate::bake::{Baked, bake_as};
+use super::ways::Judge;
+use super::{Draft, Maker, Way};
+use crate::bake::Baked;
 use crate::error::BakeError;
 use crate::models::with_tangents;
 use crate::options::{BakeOptions, ShapeMode};
@@ -49,128 +46,35 @@ const COLLAPSES: [Collapses; 8] = [
     Collapses { seams: Seams::Crossed, normal_weight: 0.5, uv_weight: 0.5, moves: false },
     Collapses { seams: Seams::Crossed, normal_weight: 0.5, uv_weight: 0.5, moves: true },
 ];
-/// Pixels that a model spans at most in the larger ones of the pictures that are compared.
-const LARGEST: f64 = 300.0;
 /// Texels of a map along a line for each pixel that the surface covers, at most.
 const DENSITY: f64 = 4.0;
 
-/// Decibels from which on nobody would see what other ways gain.
-const EXCELLENT: f64 = 50.0;
 /// Decibels that fewer texels may cost, and those of which more show nothing, whatever is looked at.
 const UNSEEN: f64 = 0.05;
 const INVISIBLE: f64 = 60.0;
-/// Decibels by which another way has to be better than a new layout, and a bake than scaled maps.
-const WORTHWHILE: f64 = 0.3;
-/// Share of a level's time budget after which no more collapses are tried.
-const TRYING: f64 = 0.2;
-
-/// The level as that way makes it which shows most of the model. Ways are left out where they cannot win: a new layout
-/// where scaled maps are excellent, another bake where even finer maps would show less. None where the watcher said stop
-/// before there was one.
-pub(crate) fn draft(
-    maker: &Maker,
-    chain: &mut Chain,
-    level: usize,
-    finer: Option<&Model>,
-    triangles: usize,
-    until: Option<Instant>,
-) -> Result<Option<Draft>, BakeError> {
-    if !may_keep_vertices(maker, triangles) {
-        return maker.draft(chain, (level, 0), finer, (triangles, None), until);
-    }
-    let begin = Instant::now();
-    chain.tell(level, 0);
-    let pixels = maker.options.screen_size[level];
-    let side = maker.texels_along(maker.model, pixels);
-    let judge = Judge::new(maker, pixels)?;
-    let enough = until.map(|until| begin + until.saturating_duration_since(begin).mul_f64(TRYING));
-    let is_over = || chain.stopped() || enough.is_some_and(|enough| Instant::now() > enough);
-    let own = coarser(maker, &judge, triangles, side, &is_over)?;
-    if chain.stopped() {
-        return Ok(None);
-    }
-    let scaled = own.as_ref().map(|own| scaled(maker, &judge, own)).transpose()?.flatten();
-    let scaled = scaled.map(|(model, psnr)| {
-        let seconds = [begin.elapsed().as_secs_f64(), 0.0, 0.0];
-        let candidate = Candidate { way: Way::Scaled, triangles: model.mesh.triangles.len(), psnr };
-        (scaled_draft(maker, level, model, side, seconds), candidate)
-    });
-    let with = |mut draft: Draft, candidates: Vec<Candidate>| {
-        draft.candidates = candidates;
-        draft.seconds[2] = begin.elapsed().as_secs_f64() - draft.seconds[0] - draft.seconds[1];
-        Ok(Some(draft))
-    };
-    let scaled = match scaled {
-        Some((draft, candidate)) if candidate.psnr >= EXCELLENT => return with(draft, vec![candidate]),
-        other => other,
-    };
-    let Some(new) = maker.draft(chain, (level, 0), finer, (triangles, None), until)? else { return Ok(None) };
-    let Some(own) = own else { return Ok(Some(new)) };
-    let measured = |draft: &Draft| -> Result<Candidate, BakeError> {
-        let psnr = judge.psnr(&draft.baked.model)?;
-        Ok(Candidate { way: draft.way, triangles: draft.baked.model.mesh.triangles.len(), psnr })
-    };
-    let mut best = measured(&new)?;
-    let (mut draft, mut candidates) = (new, vec![best]);
-    if let Some((scaled, candidate)) = scaled {
-        candidates.push(candidate);
-        if candidate.psnr > best.psnr + WORTHWHILE {
-            (draft, best) = (scaled, candidate);
-        }
-    }
-    // A budget is for one bake.
-    if own.psnr > best.psnr + WORTHWHILE && until.is_none() && !chain.stopped() {
-        let baked = baked_draft(maker, chain, level, own)?;
-        let candidate = measured(&baked)?;
-        candidates.push(candidate);
-        if candidate.psnr > best.psnr + WORTHWHILE && !chain.stopped() {
-            draft = baked;
-        }
-    }
-    with(draft, candidates)
-}
-
-/// Compares ways by their pictures.
-struct Judge<'m> {
-    maker: &'m Maker<'m>,
-    /// The original at the level's size, and where that is small at twice that: a level is seen from closer, too.
-    pictures: Vec<Pictures>,
-}
-
-impl<'m> Judge<'m> {
-    fn new(maker: &'m Maker<'m>, pixels: f64) -> Result<Self, BakeError> {
-        let sizes = [pixels, (2.0 * pixels).min(LARGEST)];
-        let sizes = sizes.into_iter().enumerate().filter(|&(k, size)| k == 0 || size > pixels);
-        let pictures = sizes.map(|(_, size)| maker.viewer.pictures(&maker.original, size));
-        Ok(Self { maker, pictures: pictures.collect::<Result<_, _>>()? })
-    }
-
-    /// PSNR in dB, the mean over the sizes.
-    fn psnr(&self, model: &Model) -> Result<f64, BakeError> {
-        let viewer = &self.maker.viewer;
-        let subject = viewer.subject(model)?;
-        let sum: f64 = self.pictures.iter().map(|pictures| viewer.psnr(pictures, &subject)).sum();
-        Ok(sum / self.pictures.len() as f64)
-    }
-}
 
 /// Whether a level of so many triangles may have the model's own vertices: the model has a layout, the level keeps a good
 /// part of its triangles, and no option says where triangles have to go.
-fn may_keep_vertices(maker: &Maker, triangles: usize) -> bool {
+pub(crate) fn may_keep_vertices(maker: &Maker, triangles: usize) -> bool {
     let model = maker.model;
     let is_few = (triangles as f64) < LEAST_SHARE * model.mesh.triangles.len() as f64;
     let is_steered = model.parts.is_some() || !maker.high.importances.is_empty();
     !is_few && !is_steered && !model.mesh.uvs.is_empty()
 }
 
-/// A bake of the model onto its own vertices, fewer of them.
-fn baked_draft(maker: &Maker, chain: &mut Chain, level: usize, own: Coarser) -> Result<Draft, BakeError> {
+/// A bake of the model onto its own vertices, fewer of them; the texture's size follows the level's where none is given.
+pub(crate) fn baked_draft(
+    maker: &Maker,
+    chain: &mut Chain,
+    level: usize,
+    own: &Coarser,
+    texture_size: Option<usize>,
+) -> Result<Draft, BakeError> {
     let begin = Instant::now();
-    let mut low = Model { images: Vec::new(), ..own.model };
+    let mut low = Model { images: Vec::new(), ..own.model.clone() };
     low.mesh.tangents.clear();
-    let options = BakeOptions { shape: ShapeMode::Keep, ..maker.bake_options(&low, level, None) };
     let watcher = chain.bake(level, 0, None);
-    let baked = bake_as(Work::Level, &maker.high, &low, &options, &watcher.after_triangles())?;
+    let baked = maker.baked(&low, (level, texture_size), Some(ShapeMode::Keep), None, &watcher)?;
     let seconds = [0.0, begin.elapsed().as_secs_f64(), 0.0];
     Ok(Draft {
         low: surface_of(&low),
@@ -195,7 +99,7 @@ fn surface_of(low: &Model) -> Model {
 }
 
 /// A level without a bake. `side` is how many texels along a line its surface needs, `seconds` are those of [`Draft`].
-fn scaled_draft(maker: &Maker, level: usize, model: Model, side: f64, seconds: [f64; 3]) -> Draft {
+pub(crate) fn scaled_draft(maker: &Maker, level: usize, model: Model, side: f64, seconds: [f64; 3]) -> Draft {
     let size = model.images.iter().map(|image| image.width).max().unwrap_or(1);
     let smallest_mip = Some(maker.smallest_mip(level, size as f64 / side));
     let options = BakeOptions { smallest_mip, ..maker.options.bake(size) };
@@ -230,15 +134,15 @@ fn scaled_draft(maker: &Maker, level: usize, model: Model, side: f64, seconds: [
 }
 
 /// A model's own vertices, fewer of them, with its own materials.
-struct Coarser {
-    model: Model,
+pub(crate) struct Coarser {
+    pub model: Model,
     /// PSNR in dB with maps that are finer than the level's.
-    psnr: f64,
+    pub psnr: f64,
 }
 
 /// The model with at most `triangles` triangles and its own layout, by those of [`COLLAPSES`] whose pictures show most; none
 /// where seams leave too many triangles. `side` is how many texels along a line its surface needs.
-fn coarser(
+pub(crate) fn coarser(
     maker: &Maker,
     judge: &Judge,
     triangles: usize,
@@ -294,7 +198,11 @@ fn kinds_of_images(materials: &[Material]) -> Vec<(usize, MapKind)> {
 
 /// The model with the maps of its only material scaled, and its PSNR: to the fewest texels that show nothing less, at most
 /// half of the original's. None where it has several materials, or maps that cannot be scaled.
-fn scaled(maker: &Maker, judge: &Judge, coarser: &Coarser) -> Result<Option<(Model, f64)>, BakeError> {
+pub(crate) fn scaled(
+    maker: &Maker,
+    judge: &Judge,
+    coarser: &Coarser,
+) -> Result<Option<(Model, f64)>, BakeError> {
     let Some(model) = of_one_material(&coarser.model) else { return Ok(None) };
     let maps = level_maps(&model);
     let shown = |choice: &[usize]| -> Result<(Model, f64), BakeError> {
@@ -366,7 +274,7 @@ fn choices(counts: &[usize]) -> Vec<Vec<usize>> {
     })
 }
 
-fn texels(image: &parbake_model::Image) -> usize {
+pub(crate) fn texels(image: &parbake_model::Image) -> usize {
     image.width * image.height
 }
 
@@ -374,6 +282,7 @@ fn texels(image: &parbake_model::Image) -> usize {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::super::options::LodOptions;
+    use super::super::ways::WORTHWHILE;
     use super::super::{Level, make_levels};
     use super::*;
     use parbake_model::Image;

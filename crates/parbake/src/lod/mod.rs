@@ -22,16 +22,18 @@ pub mod options;
 pub mod search;
 pub mod switch;
 pub mod target;
+mod ways;
 mod written;
 
 use crate::bake::{Baked, bake_as, prepare_high_poly};
 use crate::error::BakeError;
 use crate::low_poly::{check_triangles, coarse_surfaces, least_of, low_poly};
-use crate::options::BakeOptions;
+use crate::options::{BakeOptions, ShapeMode};
 use crate::parts::{PartReport, draw_calls, part_reports, with_kept_parts, with_parted_materials};
 use crate::report::Work;
-use chain::{Chain, hurried};
+use chain::{Chain, LevelWatcher, hurried};
 use options::LodOptions;
+use parbake_atlas::AtlasError;
 use parbake_files::WriteOptions;
 use parbake_model::Model;
 use parbake_progress::Watcher;
@@ -76,6 +78,8 @@ pub struct Candidate {
     pub way: Way,
     /// Triangles.
     pub triangles: usize,
+    /// Texels along a side of its largest texture.
+    pub texture_size: usize,
     /// PSNR in dB against the original in pictures as viewers make them, the mean of the level's size and, up to 300
     /// pixels, twice that; before anything was compressed.
     pub psnr: f64,
@@ -166,7 +170,7 @@ pub fn make_levels<E: From<BakeError>>(
             None => {
                 let most = finer.map_or(maker.high.triangles, |low| low.mesh.triangles.len());
                 let (wanted, until) = (maker.wanted[index].min(most), chain.level_until(index));
-                let draft = delivered::draft(&maker, &mut chain, index, finer, wanted, until)?;
+                let draft = ways::draft(&maker, &mut chain, index, finer, wanted, until)?;
                 draft.map(|draft| (draft, options.write, None))
             }
         };
@@ -239,6 +243,14 @@ pub(crate) struct Draft {
     pub seconds: [f64; 3],
 }
 
+impl Draft {
+    fn candidate(&self, psnr: f64) -> Candidate {
+        let model = &self.baked.model;
+        let texture_size = model.images.iter().map(|image| image.width).max().unwrap_or(0);
+        Candidate { way: self.way, triangles: model.mesh.triangles.len(), texture_size, psnr }
+    }
+}
+
 /// What pictures say of a level.
 struct Figures {
     at_screen_size: AtSize,
@@ -278,10 +290,43 @@ impl<'a> Maker<'a> {
             return Ok(None);
         }
         let chosen = begin.elapsed().as_secs_f64();
-        let options = hurried(self.bake_options(&low, level, texture_size), until);
-        let baked = bake_as(Work::Level, &self.high, &low, &options, &watcher.after_triangles())?;
+        let baked = self.baked(&low, (level, texture_size), None, until, &watcher)?;
         let seconds = [chosen, begin.elapsed().as_secs_f64() - chosen, 0.0];
         Ok(Some(Draft { low, layers, baked, way: Way::New, candidates: Vec::new(), seconds }))
+    }
+
+    /// The bake of a draft of a new layout with another texture size.
+    fn baked_again(
+        &self,
+        chain: &mut Chain,
+        level: usize,
+        draft: &Draft,
+        texture_size: usize,
+    ) -> Result<Draft, BakeError> {
+        let begin = Instant::now();
+        let (low, layers) = (draft.low.clone(), draft.layers.clone());
+        let watcher = chain.bake(level, 0, None);
+        let baked = self.baked(&low, (level, Some(texture_size)), None, None, &watcher)?;
+        let seconds = [draft.seconds[0], begin.elapsed().as_secs_f64(), 0.0];
+        Ok(Draft { low, layers, baked, way: Way::New, candidates: Vec::new(), seconds })
+    }
+
+    /// Bakes onto a low-poly, with twice the texels along a side as often as its charts do not fit.
+    fn baked(
+        &self,
+        low: &Model,
+        (level, texture_size): (usize, Option<usize>),
+        shape: Option<ShapeMode>,
+        until: Option<Instant>,
+        watcher: &LevelWatcher,
+    ) -> Result<Baked, BakeError> {
+        let usual = hurried(self.bake_options(low, level, texture_size), until);
+        with_room(usual.texture_size, self.options.max_texture_size, |size| {
+            let of_size = self.bake_options(low, level, Some(size));
+            let (time_budget, shape) = (usual.time_budget, shape.unwrap_or(of_size.shape));
+            let options = BakeOptions { time_budget, shape, ..of_size };
+            bake_as(Work::Level, &self.high, low, &options, &watcher.after_triangles())
+        })
     }
 
     /// The options of the bake of a level, without a budget.
@@ -337,6 +382,20 @@ impl<'a> Maker<'a> {
     }
 }
 
+/// What comes of a texture of this size, or of twice that as often as charts do not fit.
+fn with_room<T>(
+    size: usize,
+    most: usize,
+    mut of_size: impl FnMut(usize) -> Result<T, BakeError>,
+) -> Result<T, BakeError> {
+    match of_size(size) {
+        Err(BakeError::Atlas(AtlasError::NoRoom { .. })) if 2 * size <= most => {
+            with_room(2 * size, most, of_size)
+        }
+        result => result,
+    }
+}
+
 /// Triangles of each level, of which none has fewer than `least`.
 fn wanted_triangles(high: &HighPoly, options: &LodOptions, least: usize) -> Vec<usize> {
     let wanted = |level: usize| match (options.triangles.get(level), options.ratio.get(level)) {
@@ -349,4 +408,28 @@ fn wanted_triangles(high: &HighPoly, options: &LodOptions, least: usize) -> Vec<
         }
     };
     (0..options.screen_size.len()).into_par_iter().map(wanted).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects chains from ending at a model of many parts: its charts get a texture in which they fit, where one may be
+    /// so large.
+    #[test]
+    fn many_charts_get_a_larger_texture() {
+        let fits_from = |least: usize| {
+            move |size: usize| match size < least {
+                true => {
+                    let error = AtlasError::NoRoom { charts: 5128, texture_size: size, gutter_texels: 1.0 };
+                    Err(BakeError::Atlas(error))
+                }
+                false => Ok(size),
+            }
+        };
+        assert!(matches!(with_room(64, 512, fits_from(64)), Ok(64)));
+        assert!(matches!(with_room(64, 512, fits_from(200)), Ok(256)));
+        let fails = with_room(64, 512, fits_from(1024));
+        assert!(matches!(fails, Err(BakeError::Atlas(AtlasError::NoRoom { texture_size: 512, .. }))));
+    }
 }

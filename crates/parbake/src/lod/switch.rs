@@ -15,7 +15,9 @@ use crate::studio::Studio;
 pub use crate::studio::Subject;
 use parbake_metric::Rgb;
 use parbake_model::Model;
+use parbake_model::glam::Vec3;
 use parbake_render::camera::fibonacci_sphere;
+use parbake_render::lighting::Lighting;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -50,7 +52,7 @@ pub struct AtSize {
 
 /// A model's pictures at one size.
 pub struct Pictures {
-    studio: Studio,
+    studios: Vec<Studio>,
     views: Vec<Rgb>,
 }
 
@@ -58,7 +60,7 @@ pub struct Pictures {
 pub struct Lineup {
     original: Arc<Model>,
     options: EvaluateOptions,
-    /// Samples along a side of a pixel of viewers; none where textures are filtered as finely as edges.
+    /// Samples along a side of a pixel of viewers; none for as many as small sizes need.
     viewer_samples: Option<usize>,
 }
 
@@ -69,8 +71,8 @@ impl Lineup {
         Self { original: Arc::new(original.clone()), options, viewer_samples: None }
     }
 
-    /// The same for pictures as viewers make them, with so many samples along a side of a pixel for edges, and one for
-    /// textures.
+    /// The same for pictures as viewers make them, with so many samples along a side of a pixel; every other one under a
+    /// lamp from the side.
     pub fn as_viewers_do(&self, samples: usize) -> Self {
         Self { original: self.original.clone(), options: self.options.clone(), viewer_samples: Some(samples) }
     }
@@ -82,6 +84,13 @@ impl Lineup {
         let options = EvaluateOptions { resolution, supersample, ..self.options.clone() };
         let studio = Studio::new(&self.original, &options)?;
         Ok(if self.viewer_samples.is_some() { studio.as_viewers_do() } else { studio })
+    }
+
+    /// Those that take turns from view to view.
+    fn studios(&self, pixels: f64) -> Result<Vec<Studio>, BakeError> {
+        let studio = self.studio(pixels)?;
+        let lamp = self.viewer_samples.map(|_| studio.clone().under(Lighting::lamp_from_the_side()));
+        Ok(std::iter::once(studio).chain(lamp).collect())
     }
 
     /// Makes a model ready for pictures.
@@ -97,21 +106,20 @@ impl Lineup {
     /// # Errors
     /// Where the original has no extent.
     pub fn pictures(&self, subject: &Subject, pixels: f64) -> Result<Pictures, BakeError> {
-        let studio = self.studio(pixels)?;
+        let studios = self.studios(pixels)?;
         let views = fibonacci_sphere(VIEWS, 0.0)
             .into_par_iter()
-            .map(|direction| studio.develop(&studio.shot(subject, direction), [GREY; 3]))
+            .enumerate()
+            .map(|(view, direction)| picture(&studios, subject, view, direction))
             .collect();
-        Ok(Pictures { studio, views })
+        Ok(Pictures { studios, views })
     }
 
     /// PSNR in dB of a model against another one's pictures: that of [`Lineup::compare`].
     pub fn psnr(&self, pictures: &Pictures, subject: &Subject) -> f64 {
-        let Pictures { studio, views } = pictures;
-        let figures: Vec<f64> = (fibonacci_sphere(VIEWS, 0.0).into_par_iter().zip(views))
-            .map(|(direction, other)| {
-                psnr(other, &studio.develop(&studio.shot(subject, direction), [GREY; 3]))
-            })
+        let Pictures { studios, views } = pictures;
+        let figures: Vec<f64> = (fibonacci_sphere(VIEWS, 0.0).into_par_iter().zip(views).enumerate())
+            .map(|(view, (direction, other))| psnr(other, &picture(studios, subject, view, direction)))
             .collect();
         figures.iter().sum::<f64>() / figures.len() as f64
     }
@@ -184,6 +192,12 @@ impl Lineup {
         }
         Ok(goes_up.then_some(pixels))
     }
+}
+
+/// A view in one of the studios, which take turns.
+fn picture(studios: &[Studio], subject: &Subject, view: usize, direction: Vec3) -> Rgb {
+    let studio = &studios[view % studios.len()];
+    studio.develop(&studio.shot(subject, direction), [GREY; 3])
 }
 
 fn psnr(a: &Rgb, b: &Rgb) -> f64 {

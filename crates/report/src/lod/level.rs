@@ -71,13 +71,15 @@ fn ways(report: &LevelReport) -> String {
         "<h3>How it was made</h3>",
         r#"<p class="note">Each way was finished and photographed as viewers show it; the one that shows most of the model was taken.</p>"#,
         r#"<div class="wide"><table class="numbers-table"><thead><tr><th scope="col">way</th><th scope="col">triangles</th>"#,
-        r#"<th scope="col">PSNR</th></tr></thead><tbody>"#
+        r#"<th scope="col">texture</th><th scope="col">PSNR</th></tr></thead><tbody>"#
     ));
     for candidate in &report.candidates {
-        let taken = if candidate.way == report.way { ", taken" } else { "" };
+        let is_taken = candidate.way == report.way && candidate.texture_size == report.texture_size;
+        let side = candidate.texture_size;
+        let taken = if is_taken { ", taken" } else { "" };
         let _ = write!(
             out,
-            "<tr><th scope=\"row\">{}{taken}</th><td>{}</td><td>{}\u{202f}dB</td></tr>",
+            "<tr><th scope=\"row\">{}{taken}</th><td>{}</td><td>{side}\u{202f}×\u{202f}{side}</td><td>{}\u{202f}dB</td></tr>",
             way_name(candidate.way),
             count(candidate.triangles),
             decimal(candidate.psnr, 1)

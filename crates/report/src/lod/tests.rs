@@ -22,7 +22,7 @@ fn level(level: usize, target: Option<TargetReport>) -> LevelReport {
         draw_calls: 1,
         way: Way::New,
         candidates: [(Way::New, 31.5), (Way::Scaled, 29.0)]
-            .map(|(way, psnr)| Candidate { way, triangles: 90, psnr })
+            .map(|(way, psnr)| Candidate { way, triangles: 90, texture_size: 64, psnr })
             .to_vec(),
         parts: Vec::new(),
         low_poly: vec![LayerReport {
