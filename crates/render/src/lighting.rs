@@ -106,7 +106,7 @@ impl Lighting {
         }
     }
 
-    /// One lamp from the side and little else: it shows each normal, and dark sides as well.
+    /// One lamp from the side and little else: shading follows the normals on its side, the other stays dim.
     pub fn lamp_from_the_side() -> Self {
         let direction = Vec3::new(3.0, 2.0, 1.0).normalize();
         let lamp = DirectionalLight { direction, color: Vec3::splat(2.6) };

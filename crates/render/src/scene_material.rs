@@ -17,6 +17,7 @@
 use crate::camera::Camera;
 use crate::frame::Orientation;
 use crate::interpolate::{barycentrics, interpolate};
+use crate::metallic_roughness::LEAST_ROUGHNESS;
 use crate::on_screen::OnScreen;
 use crate::raster::{NOTHING, ScreenTriangle, Visibility};
 use crate::scene::{Picture, Scene, Seen};
@@ -220,16 +221,18 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
     /// The light of a triangle at a sample.
     fn shade(&self, triangle: usize, on_screen: &ScreenTriangle, at: (f64, f64)) -> (Seen, Vec3) {
         let reads = |kind| self.brdf.reads(kind);
-        let mut seen = self.scene.seen(self.camera, on_screen, triangle, at, 1.0, &reads);
+        let seen = self.scene.seen(self.camera, on_screen, triangle, at, 1.0, &reads);
+        let mut values = seen.values;
         if self.is_viewers {
             let mesh = &self.scene.mesh;
             let normals = mesh.triangles[triangle].map(|vertex| mesh.normals[vertex as usize]);
             let added = added_roughness(self.camera, normals, &barycentrics(on_screen, at.0, at.1));
-            seen.values[MapKind::MetallicRoughness].y += added;
+            let roughness = &mut values[MapKind::MetallicRoughness].y;
+            *roughness = (roughness.max(LEAST_ROUGHNESS) + added).min(1.0);
         }
         let light = match self.scene.surface(triangle).is_unlit {
             true => seen.values[MapKind::BaseColor].truncate(),
-            false => self.brdf.light(&seen.orientation(), &seen.values),
+            false => self.brdf.light(&seen.orientation(), &values),
         };
         (seen, light)
     }

@@ -136,7 +136,7 @@ fn large_scenes_look_the_same() {
 /// darker; a flat one is as it is.
 #[test]
 fn viewers_see_turning_normals_as_rougher() {
-    let glossy = Material { roughness: 0.1, metallic: 1.0, ..Material::default() };
+    let glossy = Material { roughness: 0.3, metallic: 1.0, ..Material::default() };
     let mut scene = squares(&[0.0], &[glossy]);
     let camera = Camera::towards_origin(Vec3::Z, 3.5, Projection::Orthographic(0.4));
     let lit = MetallicRoughness { lighting: Lighting::lamp_from_the_side() };
@@ -147,7 +147,7 @@ fn viewers_see_turning_normals_as_rougher() {
     assert_eq!(brightest(&scene, true), brightest(&scene, false));
     // The lamp is mirrored somewhere on it.
     for (normal, x) in scene.mesh.normals.iter_mut().zip([-0.5f32, 0.5, 0.5, -0.5]) {
-        *normal = Vec3::new(0.4 + 1.2 * x, 0.27, 1.0).normalize();
+        *normal = Vec3::new(0.63 + 2.4 * x, 0.42, 1.0).normalize();
     }
     assert!(brightest(&scene, true) < 0.8 * brightest(&scene, false));
 }

@@ -197,11 +197,13 @@ fn kinds_of_images(materials: &[Material]) -> Vec<(usize, MapKind)> {
 }
 
 /// The model with the maps of its only material scaled, and its PSNR: to the fewest texels that show nothing less, at most
-/// half of the original's. None where it has several materials, or maps that cannot be scaled.
+/// half of the original's. None where it has several materials, or maps that cannot be scaled, and where it took
+/// too long.
 pub(crate) fn scaled(
     maker: &Maker,
     judge: &Judge,
     coarser: &Coarser,
+    is_over: &dyn Fn() -> bool,
 ) -> Result<Option<(Model, f64)>, BakeError> {
     let Some(model) = of_one_material(&coarser.model) else { return Ok(None) };
     let maps = level_maps(&model);
@@ -217,6 +219,9 @@ pub(crate) fn scaled(
     for place in 0..maps.len() {
         let mut own = vec![0.0];
         for reduction in 1..maps[place].reductions.len() {
+            if is_over() {
+                return Ok(None);
+            }
             let mut choice = vec![0; maps.len()];
             choice[place] = reduction;
             own.push((error_of(shown(&choice)?.1) - whole).max(0.0));
@@ -338,7 +343,11 @@ mod tests {
         let Level { report, baked, .. } = level;
         assert!(report.triangles <= 400 && report.triangles == baked.model.mesh.triangles.len());
         let best = report.candidates.iter().map(|c| c.psnr).fold(0.0, f64::max);
-        let taken = report.candidates.iter().find(|c| c.way == report.way).unwrap();
+        let taken = report
+            .candidates
+            .iter()
+            .find(|c| c.way == report.way && c.texture_size == report.texture_size)
+            .unwrap();
         assert!(taken.psnr >= best - WORTHWHILE, "{:?}", report.candidates);
         // Few triangles of a wavy sheet, and halved fields are grey: both ways were weighed.
         assert!(report.candidates.len() >= 2, "{:?}", report.candidates);

@@ -5,6 +5,7 @@
 //!                          └ … the next level may start from the triangles of this one ◁───────────┘
 //! ```
 //!
+//! `ways.rs` makes a level in several ways and takes the best (`delivered.rs`: those that keep the model's layout).
 //! `target.rs` makes a level of several bakes where a PSNR is asked for; `chain.rs` is progress and time.
 //!
 //! Each level is made for a size on screen. From that follow how far its surface may be off, hence its triangles, and
@@ -113,7 +114,7 @@ pub struct LevelReport {
     /// How it was made.
     #[serde(default)]
     pub way: Way,
-    /// The ways that were tried, where there were several.
+    /// The ways that were tried; that with finer maps once more.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub candidates: Vec<Candidate>,
     /// How the triangles of each layer (opaque, cut out, blended, transmitting) were found; empty where it has the
@@ -210,7 +211,7 @@ pub fn make_levels<E: From<BakeError>>(
     Ok(count)
 }
 
-/// Samples along a side of a pixel for edges: viewers take four a pixel as a rule.
+/// Samples along a side of a pixel, each shaded.
 const VIEWER_SAMPLES: usize = 2;
 
 /// What all levels are made of.
@@ -320,11 +321,13 @@ impl<'a> Maker<'a> {
         until: Option<Instant>,
         watcher: &LevelWatcher,
     ) -> Result<Baked, BakeError> {
-        let usual = hurried(self.bake_options(low, level, texture_size), until);
-        with_room(usual.texture_size, self.options.max_texture_size, |size| {
+        let first = hurried(self.bake_options(low, level, texture_size), until).texture_size;
+        with_room(first, self.options.max_texture_size, |size| {
             let of_size = self.bake_options(low, level, Some(size));
-            let (time_budget, shape) = (usual.time_budget, shape.unwrap_or(of_size.shape));
-            let options = BakeOptions { time_budget, shape, ..of_size };
+            let in_time = hurried(of_size.clone(), until);
+            // Where charts fit into no texture that can be baked in time, the bake takes longer.
+            let mut options = if in_time.texture_size == size { in_time } else { of_size };
+            options.shape = shape.unwrap_or(options.shape);
             bake_as(Work::Level, &self.high, low, &options, &watcher.after_triangles())
         })
     }
@@ -388,10 +391,9 @@ fn with_room<T>(
     most: usize,
     mut of_size: impl FnMut(usize) -> Result<T, BakeError>,
 ) -> Result<T, BakeError> {
+    let next = (2 * size).min(most);
     match of_size(size) {
-        Err(BakeError::Atlas(AtlasError::NoRoom { .. })) if 2 * size <= most => {
-            with_room(2 * size, most, of_size)
-        }
+        Err(BakeError::Atlas(AtlasError::NoRoom { .. })) if next > size => with_room(next, most, of_size),
         result => result,
     }
 }
@@ -429,6 +431,7 @@ mod tests {
         };
         assert!(matches!(with_room(64, 512, fits_from(64)), Ok(64)));
         assert!(matches!(with_room(64, 512, fits_from(200)), Ok(256)));
+        assert!(matches!(with_room(64, 200, fits_from(200)), Ok(200)));
         let fails = with_room(64, 512, fits_from(1024));
         assert!(matches!(fails, Err(BakeError::Atlas(AtlasError::NoRoom { texture_size: 512, .. }))));
     }

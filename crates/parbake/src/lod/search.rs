@@ -66,7 +66,7 @@ pub struct Step {
 pub struct Baking {
     /// What was asked for.
     pub asked: Plan,
-    /// What came of it: it may have fewer triangles.
+    /// What came of it: it may have fewer triangles, and more texels where its charts did not fit.
     pub plan: Plan,
     /// Bytes of all but the maps.
     pub mesh_bytes: u64,
@@ -139,7 +139,8 @@ impl Baking {
     fn is_of(&self, plan: Plan) -> bool {
         let [asked, came] = [self.asked, self.plan].map(|own| own.triangles as f64);
         let same = (1.0 - SAME) * came.min(asked)..=(1.0 + SAME) * came.max(asked);
-        self.plan.texture_size == plan.texture_size && same.contains(&(plan.triangles as f64))
+        let sizes = [self.asked, self.plan].map(|own| own.texture_size);
+        sizes.contains(&plan.texture_size) && same.contains(&(plan.triangles as f64))
     }
 
     /// Bytes of the maps and what their reduction adds to the error.

@@ -1,7 +1,8 @@
 //! Where a level may take the place of the one before: the largest size on screen at which nobody can tell the two,
 //! found by rendering both at that size.
 //!
-//! Both are photographed from some directions, by the whole material under the built-in light where there is one, on
+//! Both are photographed from some directions, by the whole material under the built-in light where there is one (for
+//! viewers also under a lamp from the side), on
 //! grey. The figure is the PSNR over whole pictures in which the model's longest side spans five sevenths of the
 //! width, the mean over the directions. Sizes are tried in steps of a fifth from the one that the level was made for;
 //! the largest that passes before one does not counts.

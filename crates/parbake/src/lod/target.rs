@@ -253,7 +253,7 @@ impl Tried {
         }
         let mesh_bytes = all - bytes.iter().map(|steps| steps[0]).sum::<u64>().min(all);
         let triangles = model.mesh.triangles.len();
-        let came = Plan { triangles, ..plan };
+        let came = Plan { triangles, texture_size: self.draft.baked.report.options.texture_size };
         let baking = Baking { asked: plan, plan: came, mesh_bytes, error: whole, maps };
         let file = |choice: &Choice, quality: usize| -> Result<(u64, f64), BakeError> {
             let reduced = with_reductions(model, &self.maps, &reductions(&self.maps, choice));

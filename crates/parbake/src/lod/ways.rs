@@ -1,15 +1,16 @@
 //! Which way a level is made: several are finished, and the one whose pictures show most of the model is taken.
 //!
 //! ```text
-//! its own maps, scaled (delivered.rs) ──────── excellent: taken
-//! triangles chosen by pictures, new layout ──┐
-//! its own layout, baked (delivered.rs) ──────┼─ the best ─ maps show at this size? ─ baked again with finer ones
+//! its own maps, scaled (delivered.rs) ─ excellent? taken; else ─┐
+//! triangles chosen by pictures, new layout ─────────────────────┼─ the best ─ a bake whose maps show? again with finer ones
+//! its own layout, baked (delivered.rs) ─────────────────────────┘
 //! ```
 //!
-//! All are photographed as viewers show them: four samples a pixel, each shaded; rougher where vertex normals turn within
-//! a pixel (`render/turning_normals.rs`); in every other view under a lamp from the side, which shows each normal.
-//! So vertices that stay in place lose nothing at edges, where a shift by a twentieth of a pixel already flips samples.
-//! A level takes over at up to twice the size that it is made for, so maps may be worth twice as many texels along a side.
+//! All are photographed as viewers show them: four samples a pixel, each shaded, so that vertices which stay in place lose
+//! nothing at edges, where a shift by a twentieth of a pixel already flips samples. Whole materials are rougher where vertex
+//! normals turn (`render/turning_normals.rs`), and every other view is under a lamp from the side, where shading follows
+//! normals. A level takes over at up to 1.7 times the size that it is made for, so maps may be worth twice as many texels
+//! along a side.
 //!
 //! Contract: deterministic without a budget. A budget is for one bake; a watcher that says stop is heeded between pictures.
 
@@ -35,109 +36,123 @@ const GAINED_BY_MAPS: f64 = 0.5;
 const TRYING: f64 = 0.2;
 
 /// The level as that way makes it which shows most of the model. Ways are left out where they cannot win: a new layout
-/// where scaled maps are excellent, another bake where even finer maps would show less. None where the watcher said stop
-/// before there was one.
+/// where scaled maps are excellent, the delivered layout where its own vertices with maps of nearly all texels would show
+/// less. `before` is the low-poly of the level before. None where the watcher said stop before there was a level.
 pub(crate) fn draft(
     maker: &Maker,
     chain: &mut Chain,
     level: usize,
-    finer: Option<&Model>,
+    before: Option<&Model>,
     triangles: usize,
     until: Option<Instant>,
 ) -> Result<Option<Draft>, BakeError> {
+    let keeps = may_keep_vertices(maker, triangles);
+    if !keeps && until.is_some() {
+        return maker.draft(chain, (level, 0), before, (triangles, None), until);
+    }
     let begin = Instant::now();
     chain.tell(level, 0);
     let judge = Judge::new(maker, maker.options.screen_size[level])?;
     let enough = until.map(|until| begin + until.saturating_duration_since(begin).mul_f64(TRYING));
     let is_over = || chain.stopped() || enough.is_some_and(|enough| Instant::now() > enough);
     let side = maker.texels_along(maker.model, maker.options.screen_size[level]);
-    let own = match may_keep_vertices(maker, triangles) {
-        true => coarser(maker, &judge, triangles, side, &is_over)?,
-        false => None,
-    };
-    if chain.stopped() {
-        return Ok(None);
-    }
-    let mut candidates = Vec::new();
-    let mut best: Option<Tried> = None;
-    if let Some((model, psnr)) = own.as_ref().map(|own| scaled(maker, &judge, own)).transpose()?.flatten() {
-        let seconds = [begin.elapsed().as_secs_f64(), 0.0, 0.0];
-        let draft = scaled_draft(maker, level, model, side, seconds);
+    let own = if keeps { coarser(maker, &judge, triangles, side, &is_over)? } else { None };
+    let maps = own.as_ref().map(|own| scaled(maker, &judge, own, &is_over)).transpose()?.flatten();
+    let scaled = maps.map(|(model, psnr)| {
+        let draft = scaled_draft(maker, level, model, side, [begin.elapsed().as_secs_f64(), 0.0, 0.0]);
         let candidate = draft.candidate(psnr);
-        candidates.push(candidate);
-        best = Some((draft, candidate));
-    }
-    if best.as_ref().is_none_or(|(_, scaled)| scaled.psnr < EXCELLENT) {
-        let Some(new) = maker.draft(chain, (level, 0), finer, (triangles, None), until)? else {
-            return Ok(None);
-        };
-        let candidate = judge.candidate(&new)?;
-        candidates.insert(0, candidate);
-        if best.as_ref().is_none_or(|(_, scaled)| scaled.psnr <= candidate.psnr + WORTHWHILE) {
-            best = Some((new, candidate));
-        }
-        let is_behind =
-            |own: &&Coarser| best.as_ref().is_some_and(|(_, best)| own.psnr > best.psnr + WORTHWHILE);
-        // A budget is for one bake.
-        let is_free = until.is_none() && !chain.stopped();
-        if let Some(own) = own.as_ref().filter(is_behind).filter(|_| is_free) {
-            let baked = baked_draft(maker, chain, level, own, None)?;
-            let candidate = judge.candidate(&baked)?;
-            candidates.push(candidate);
-            if best.as_ref().is_none_or(|(_, best)| candidate.psnr > best.psnr + WORTHWHILE)
-                && !chain.stopped()
-            {
-                best = Some((baked, candidate));
-            }
-        }
-        if let Some(tried) = best.as_ref().filter(|_| until.is_none() && !chain.stopped())
-            && let Some((finer, candidate)) =
-                with_finer_maps(maker, chain, &judge, level, tried, own.as_ref())?
-        {
-            candidates.push(candidate);
-            if candidate.psnr >= tried.1.psnr + GAINED_BY_MAPS && !chain.stopped() {
-                best = Some((finer, candidate));
-            }
-        }
-    }
-    Ok(best.map(|(mut draft, _)| {
+        (draft, candidate)
+    });
+    let finished = |(mut draft, _): Tried, candidates: Vec<Candidate>| {
         draft.candidates = candidates;
         draft.seconds[2] = begin.elapsed().as_secs_f64() - draft.seconds[0] - draft.seconds[1];
-        draft
-    }))
+        Ok(Some(draft))
+    };
+    let scaled = match scaled {
+        Some(scaled) if scaled.1.psnr >= EXCELLENT || chain.stopped() => {
+            let candidate = scaled.1;
+            return finished(scaled, vec![candidate]);
+        }
+        other => other,
+    };
+    let new = maker.draft(chain, (level, 0), before, (triangles, None), until)?;
+    let (new, scaled) = match (new, scaled) {
+        // A bake that was cut short shows less than a level that is finished.
+        (_, Some(scaled)) if chain.stopped() => {
+            let candidate = scaled.1;
+            return finished(scaled, vec![candidate]);
+        }
+        (Some(new), scaled) => (new, scaled),
+        (None, _) => return Ok(None),
+    };
+    if chain.stopped() {
+        return Ok(Some(new));
+    }
+    let mut best = judge.tried(new)?;
+    let mut candidates = vec![best.1];
+    if let Some(scaled) = scaled {
+        weigh(&mut best, scaled, WORTHWHILE, &mut candidates);
+    }
+    // A budget is for one bake.
+    let may_bake =
+        |chain: &Chain, best: &Tried| until.is_none() && best.1.psnr < EXCELLENT && !chain.stopped();
+    if let Some(own) = own.as_ref().filter(|own| own.psnr > best.1.psnr + WORTHWHILE)
+        && may_bake(chain, &best)
+    {
+        let baked = baked_draft(maker, chain, level, own, None)?;
+        if !chain.stopped() {
+            weigh(&mut best, judge.tried(baked)?, WORTHWHILE, &mut candidates);
+        }
+    }
+    if may_bake(chain, &best)
+        && let Some(refined) = refined(maker, chain, &judge, level, &best, own.as_ref())?
+        && !chain.stopped()
+    {
+        weigh(&mut best, judge.tried(refined)?, GAINED_BY_MAPS, &mut candidates);
+    }
+    finished(best, candidates)
 }
 
-/// What a way came to.
+/// A level, and what its pictures say.
 type Tried = (Draft, Candidate);
+
+/// Takes the other one where it shows more by at least so many decibels.
+fn weigh(best: &mut Tried, other: Tried, least: f64, candidates: &mut Vec<Candidate>) {
+    candidates.push(other.1);
+    if other.1.psnr >= best.1.psnr + least {
+        *best = other;
+    }
+}
 
 /// The same bake with twice the texels along a side, where its maps show at this size and all of them still have at most
 /// half of the model's texels.
-fn with_finer_maps(
+fn refined(
     maker: &Maker,
     chain: &mut Chain,
     judge: &Judge,
     level: usize,
     (draft, candidate): &Tried,
     own: Option<&Coarser>,
-) -> Result<Option<Tried>, BakeError> {
+) -> Result<Option<Draft>, BakeError> {
     let of_all = |model: &Model| model.images.iter().map(texels).sum::<usize>();
     let size = 2 * candidate.texture_size;
     let baked = &draft.baked.model;
-    let is_small = size <= maker.options.max_texture_size && 8 * of_all(baked) <= of_all(maker.model);
-    if draft.way == Way::Scaled || !is_small {
+    let may_grow = size <= maker.options.max_texture_size && 8 * of_all(baked) <= of_all(maker.model);
+    if size == 0 || !may_grow {
         return Ok(None);
     }
-    let maps = level_maps(baked);
-    let halved: Vec<Reduction> = maps.iter().map(|_| Reduction::Halved(1)).collect();
-    if judge.psnr(&with_reductions(baked, &maps, &halved))? > candidate.psnr - SHOWN_BY_MAPS {
-        return Ok(None);
-    }
-    let finer = match own {
-        Some(own) if draft.way == Way::Delivered => baked_draft(maker, chain, level, own, Some(size))?,
-        _ => maker.baked_again(chain, level, draft, size)?,
+    let shows = |judge: &Judge| -> Result<bool, BakeError> {
+        let maps = level_maps(baked);
+        let halved: Vec<Reduction> = maps.iter().map(|_| Reduction::Halved(1)).collect();
+        Ok(judge.psnr(&with_reductions(baked, &maps, &halved))? <= candidate.psnr - SHOWN_BY_MAPS)
     };
-    let candidate = judge.candidate(&finer)?;
-    Ok(Some((finer, candidate)))
+    match (draft.way, own) {
+        (Way::New, _) if shows(judge)? => maker.baked_again(chain, level, draft, size).map(Some),
+        (Way::Delivered, Some(own)) if shows(judge)? => {
+            baked_draft(maker, chain, level, own, Some(size)).map(Some)
+        }
+        _ => Ok(None),
+    }
 }
 
 /// Compares ways by their pictures.
@@ -164,8 +179,11 @@ impl<'m> Judge<'m> {
         Ok(sum / self.pictures.len() as f64)
     }
 
-    fn candidate(&self, draft: &Draft) -> Result<Candidate, BakeError> {
-        Ok(draft.candidate(self.psnr(&draft.baked.model)?))
+    /// A draft with its figure.
+    fn tried(&self, draft: Draft) -> Result<Tried, BakeError> {
+        let psnr = self.psnr(&draft.baked.model)?;
+        let candidate = draft.candidate(psnr);
+        Ok((draft, candidate))
     }
 }
 

@@ -64,22 +64,25 @@ fn maps(model: &Model, level: usize) -> Result<String, BakeError> {
 
 /// Which way won, and by how much.
 fn ways(report: &LevelReport) -> String {
-    if report.candidates.is_empty() {
+    if report.candidates.len() < 2 {
         return String::new();
     }
     let mut out = String::from(concat!(
         "<h3>How it was made</h3>",
-        r#"<p class="note">Each way was finished and photographed as viewers show it; the one that shows most of the model was taken.</p>"#,
+        r#"<p class="note">Each way was finished and photographed as viewers show it; the one that shows most of the model was taken, a new layout where others gain less than 0.3 dB.</p>"#,
         r#"<div class="wide"><table class="numbers-table"><thead><tr><th scope="col">way</th><th scope="col">triangles</th>"#,
-        r#"<th scope="col">texture</th><th scope="col">PSNR</th></tr></thead><tbody>"#
+        r#"<th scope="col">largest texture</th><th scope="col">PSNR</th></tr></thead><tbody>"#
     ));
     for candidate in &report.candidates {
         let is_taken = candidate.way == report.way && candidate.texture_size == report.texture_size;
-        let side = candidate.texture_size;
+        let side = match candidate.texture_size {
+            0 => "none".into(),
+            size => format!("{size} texels wide"),
+        };
         let taken = if is_taken { ", taken" } else { "" };
         let _ = write!(
             out,
-            "<tr><th scope=\"row\">{}{taken}</th><td>{}</td><td>{side}\u{202f}×\u{202f}{side}</td><td>{}\u{202f}dB</td></tr>",
+            "<tr><th scope=\"row\">{}{taken}</th><td>{}</td><td>{side}</td><td>{}\u{202f}dB</td></tr>",
             way_name(candidate.way),
             count(candidate.triangles),
             decimal(candidate.psnr, 1)
