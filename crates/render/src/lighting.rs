@@ -106,13 +106,6 @@ impl Lighting {
         }
     }
 
-    /// One lamp from the side and little else: shading follows the normals on its side, the other stays dim.
-    pub fn lamp_from_the_side() -> Self {
-        let direction = Vec3::new(3.0, 2.0, 1.0).normalize();
-        let lamp = DirectionalLight { direction, color: Vec3::splat(2.6) };
-        Self { ambient: Vec3::splat(0.1), soft: Vec::new(), directional: vec![lamp] }
-    }
-
     /// Irradiance over π of all but the directional lights: what a white matte surface with this normal sends out.
     pub(crate) fn diffuse<T: Real>(&self, normal: Triple<T>) -> Triple<T> {
         let of = |sum: Triple<T>, light: &SoftLight| {

@@ -3,7 +3,7 @@
 use super::*;
 use crate::camera::Projection;
 use crate::interpretation::Interpretation;
-use crate::lighting::Lighting;
+use crate::lighting::{DirectionalLight, Lighting};
 use crate::metallic_roughness::MetallicRoughness;
 use parbake_model::glam::Vec4;
 use parbake_model::{Material, Mesh};
@@ -139,7 +139,8 @@ fn viewers_see_turning_normals_as_rougher() {
     let glossy = Material { roughness: 0.3, metallic: 1.0, ..Material::default() };
     let mut scene = squares(&[0.0], &[glossy]);
     let camera = Camera::towards_origin(Vec3::Z, 3.5, Projection::Orthographic(0.4));
-    let lit = MetallicRoughness { lighting: Lighting::lamp_from_the_side() };
+    let lamp = DirectionalLight { direction: Vec3::new(3.0, 2.0, 1.0).normalize(), color: Vec3::ONE };
+    let lit = MetallicRoughness { lighting: Lighting { directional: vec![lamp], ..Lighting::default() } };
     let brightest = |scene: &Scene, is_viewers: bool| {
         let picture = scene.render_material(&lit, &camera, (16, 2), is_viewers, false);
         picture.light.rgba.iter().map(|pixel| pixel[1]).fold(0.0, f32::max)

@@ -1,8 +1,7 @@
 //! Where a level may take the place of the one before: the largest size on screen at which nobody can tell the two,
 //! found by rendering both at that size.
 //!
-//! Both are photographed from some directions, by the whole material under the built-in light where there is one (for
-//! viewers also under a lamp from the side), on
+//! Both are photographed from some directions, by the whole material under the built-in light where there is one, on
 //! grey. The figure is the PSNR over whole pictures in which the model's longest side spans five sevenths of the
 //! width, the mean over the directions. Sizes are tried in steps of a fifth from the one that the level was made for;
 //! the largest that passes before one does not counts.
@@ -16,9 +15,7 @@ use crate::studio::Studio;
 pub use crate::studio::Subject;
 use parbake_metric::Rgb;
 use parbake_model::Model;
-use parbake_model::glam::Vec3;
 use parbake_render::camera::fibonacci_sphere;
-use parbake_render::lighting::Lighting;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -53,7 +50,7 @@ pub struct AtSize {
 
 /// A model's pictures at one size.
 pub struct Pictures {
-    studios: Vec<Studio>,
+    studio: Studio,
     views: Vec<Rgb>,
 }
 
@@ -72,8 +69,7 @@ impl Lineup {
         Self { original: Arc::new(original.clone()), options, viewer_samples: None }
     }
 
-    /// The same for pictures as viewers make them, with so many samples along a side of a pixel; every other one under a
-    /// lamp from the side.
+    /// The same for pictures as viewers make them, with so many samples along a side of a pixel.
     pub fn as_viewers_do(&self, samples: usize) -> Self {
         Self { original: self.original.clone(), options: self.options.clone(), viewer_samples: Some(samples) }
     }
@@ -85,13 +81,6 @@ impl Lineup {
         let options = EvaluateOptions { resolution, supersample, ..self.options.clone() };
         let studio = Studio::new(&self.original, &options)?;
         Ok(if self.viewer_samples.is_some() { studio.as_viewers_do() } else { studio })
-    }
-
-    /// Those that take turns from view to view.
-    fn studios(&self, pixels: f64) -> Result<Vec<Studio>, BakeError> {
-        let studio = self.studio(pixels)?;
-        let lamp = self.viewer_samples.map(|_| studio.clone().under(Lighting::lamp_from_the_side()));
-        Ok(std::iter::once(studio).chain(lamp).collect())
     }
 
     /// Makes a model ready for pictures.
@@ -107,20 +96,21 @@ impl Lineup {
     /// # Errors
     /// Where the original has no extent.
     pub fn pictures(&self, subject: &Subject, pixels: f64) -> Result<Pictures, BakeError> {
-        let studios = self.studios(pixels)?;
+        let studio = self.studio(pixels)?;
         let views = fibonacci_sphere(VIEWS, 0.0)
             .into_par_iter()
-            .enumerate()
-            .map(|(view, direction)| picture(&studios, subject, view, direction))
+            .map(|direction| studio.develop(&studio.shot(subject, direction), [GREY; 3]))
             .collect();
-        Ok(Pictures { studios, views })
+        Ok(Pictures { studio, views })
     }
 
     /// PSNR in dB of a model against another one's pictures: that of [`Lineup::compare`].
     pub fn psnr(&self, pictures: &Pictures, subject: &Subject) -> f64 {
-        let Pictures { studios, views } = pictures;
-        let figures: Vec<f64> = (fibonacci_sphere(VIEWS, 0.0).into_par_iter().zip(views).enumerate())
-            .map(|(view, (direction, other))| psnr(other, &picture(studios, subject, view, direction)))
+        let Pictures { studio, views } = pictures;
+        let figures: Vec<f64> = (fibonacci_sphere(VIEWS, 0.0).into_par_iter().zip(views))
+            .map(|(direction, other)| {
+                psnr(other, &studio.develop(&studio.shot(subject, direction), [GREY; 3]))
+            })
             .collect();
         figures.iter().sum::<f64>() / figures.len() as f64
     }
@@ -193,12 +183,6 @@ impl Lineup {
         }
         Ok(goes_up.then_some(pixels))
     }
-}
-
-/// A view in one of the studios, which take turns.
-fn picture(studios: &[Studio], subject: &Subject, view: usize, direction: Vec3) -> Rgb {
-    let studio = &studios[view % studios.len()];
-    studio.develop(&studio.shot(subject, direction), [GREY; 3])
 }
 
 fn psnr(a: &Rgb, b: &Rgb) -> f64 {

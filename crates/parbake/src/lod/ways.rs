@@ -8,9 +8,8 @@
 //!
 //! All are photographed as viewers show them: four samples a pixel, each shaded, so that vertices which stay in place lose
 //! nothing at edges, where a shift by a twentieth of a pixel already flips samples. Whole materials are rougher where vertex
-//! normals turn (`render/turning_normals.rs`), and every other view is under a lamp from the side, where shading follows
-//! normals. A level takes over at up to 1.7 times the size that it is made for, so maps may be worth twice as many texels
-//! along a side.
+//! normals turn (`render/turning_normals.rs`). A level takes over at up to 1.7 times the size that it is made for, so maps
+//! may be worth twice as many texels along a side.
 //!
 //! Contract: deterministic without a budget. A budget is for one bake; a watcher that says stop is heeded between pictures.
 
