@@ -34,7 +34,7 @@ pub struct Studio {
     /// None where a headlight shines on matte surfaces.
     whole: Option<MetallicRoughness>,
     /// Whether roughness grows where vertex normals turn, as viewers do it.
-    is_viewers: bool,
+    widens_highlights: bool,
 }
 
 /// A model made ready for its pictures.
@@ -58,12 +58,12 @@ impl Studio {
             shading => shading == Shading::Pbr,
         };
         let whole = is_whole.then(MetallicRoughness::in_studio);
-        Ok(Self { frame: common_frame(high)?, options: options.clone(), whole, is_viewers: false })
+        Ok(Self { frame: common_frame(high)?, options: options.clone(), whole, widens_highlights: false })
     }
 
-    /// The same with rougher surfaces where vertex normals turn within a pixel, as viewers show them.
+    /// The same with roughness raised where vertex normals turn from sample to sample, as three.js does.
     pub fn as_viewers_do(self) -> Self {
-        Self { is_viewers: true, ..self }
+        Self { widens_highlights: true, ..self }
     }
 
     /// The same under another light, if whole materials are shown.
@@ -113,7 +113,7 @@ impl Studio {
             None => Shot { picture: subject.0.render(&Lambert, camera, size.0, size.1), values: Vec::new() },
             Some(brdf) => {
                 let MaterialPicture { light, values } =
-                    subject.0.render_material(brdf, camera, size, self.is_viewers, with_channels);
+                    subject.0.render_material(brdf, camera, size, self.widens_highlights, with_channels);
                 Shot { picture: light, values }
             }
         }

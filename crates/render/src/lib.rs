@@ -14,8 +14,8 @@
 //! what goes in. `shade.rs` is what a BRDF is, and Lambert's; `metallic_roughness.rs` is glTF's, under the
 //! light of `lighting.rs`, with the table of `split_sum.rs` and the derivatives of `real.rs`. `scene.rs`
 //! renders whole models, forward only (`scene_material.rs` with all of their materials), with the textures of
-//! `scene_textures.rs`, read as `interpretation.rs` says, as rough as `turning_normals.rs` says where viewers are to be matched; meshes of many small triangles by
-//! `raster_clusters.rs`. `cutout.rs` is where a surface is not there, seen from the wrong side.
+//! `scene_textures.rs`, read as `interpretation.rs` says; meshes of many small
+//! triangles by `raster_clusters.rs`. `turning_normals.rs` widens highlights as three.js does. `cutout.rs` is where a surface is not there, seen from the wrong side.
 //! `parallax_variants` puts other ways to shift coordinates behind one interface.
 //! `parallax_images.rs` and `cutout_images.rs` take maps to 8-bit images and back, by
 //! `channels.rs`.

@@ -78,18 +78,18 @@ struct Stage<'a, B> {
     /// Samples along a side of the picture, and of a pixel.
     fine: usize,
     supersample: usize,
-    is_viewers: bool,
+    widens_highlights: bool,
 }
 
 impl Scene {
     /// The whole view with whole materials, each pixel the mean of `supersample`² samples; the maps' values too,
-    /// if `with_values`. With `is_viewers` roughness grows as viewers do it (`turning_normals.rs`).
+    /// if `with_values`. With `widens_highlights` roughness grows where vertex normals turn (`turning_normals.rs`).
     pub fn render_material(
         &self,
         brdf: &impl Brdf<Orientation>,
         camera: &Camera,
         (size, supersample): (usize, usize),
-        is_viewers: bool,
+        widens_highlights: bool,
         with_values: bool,
     ) -> MaterialPicture {
         let fine = size * supersample;
@@ -102,8 +102,17 @@ impl Scene {
         };
         let mut opaque = Visibility::default();
         screen.rasterise_some(fine, is_plain, &mut opaque);
-        let stage =
-            Stage { scene: self, brdf, camera, screen, special, opaque, fine, supersample, is_viewers };
+        let stage = Stage {
+            scene: self,
+            brdf,
+            camera,
+            screen,
+            special,
+            opaque,
+            fine,
+            supersample,
+            widens_highlights,
+        };
         let mut light = Picture { size, rgba: vec![[0.0; 4]; size * size] };
         let mut values = vec![MapValues::ZERO; if with_values { size * size } else { 0 }];
         let bands = light.rgba.par_chunks_mut(size * BAND);
@@ -223,7 +232,7 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
         let reads = |kind| self.brdf.reads(kind);
         let seen = self.scene.seen(self.camera, on_screen, triangle, at, 1.0, &reads);
         let mut values = seen.values;
-        if self.is_viewers {
+        if self.widens_highlights {
             let mesh = &self.scene.mesh;
             let normals = mesh.triangles[triangle].map(|vertex| mesh.normals[vertex as usize]);
             let added = added_roughness(self.camera, normals, &barycentrics(on_screen, at.0, at.1));

@@ -141,8 +141,8 @@ fn viewers_see_turning_normals_as_rougher() {
     let camera = Camera::towards_origin(Vec3::Z, 3.5, Projection::Orthographic(0.4));
     let lamp = DirectionalLight { direction: Vec3::new(3.0, 2.0, 1.0).normalize(), color: Vec3::ONE };
     let lit = MetallicRoughness { lighting: Lighting { directional: vec![lamp], ..Lighting::default() } };
-    let brightest = |scene: &Scene, is_viewers: bool| {
-        let picture = scene.render_material(&lit, &camera, (16, 2), is_viewers, false);
+    let brightest = |scene: &Scene, widens_highlights: bool| {
+        let picture = scene.render_material(&lit, &camera, (16, 2), widens_highlights, false);
         picture.light.rgba.iter().map(|pixel| pixel[1]).fold(0.0, f32::max)
     };
     assert_eq!(brightest(&scene, true), brightest(&scene, false));

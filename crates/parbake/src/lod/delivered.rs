@@ -1,4 +1,4 @@
-//! A level that keeps what its model was delivered with: vertices, layout, and where it can its maps.
+//! A level that starts from its model's own vertices, and keeps its layout and, where it can, its maps.
 //!
 //! Where a level keeps a good part of its model's triangles, a new layout has to repeat what an artist did: seams along
 //! edges that are sharp or change colour, texels on the texels of the original. So two other ways compete:
@@ -18,7 +18,7 @@ use super::chain::Chain;
 use super::maps::{Reduction, level_maps, with_reductions};
 use super::search::error_of;
 use super::ways::Judge;
-use super::{Draft, Maker, Way};
+use super::{Draft, Maker, Way, largest_texture};
 use crate::bake::Baked;
 use crate::error::BakeError;
 use crate::models::with_tangents;
@@ -100,7 +100,7 @@ fn surface_of(low: &Model) -> Model {
 
 /// A level without a bake. `side` is how many texels along a line its surface needs, `seconds` are those of [`Draft`].
 pub(crate) fn scaled_draft(maker: &Maker, level: usize, model: Model, side: f64, seconds: [f64; 3]) -> Draft {
-    let size = model.images.iter().map(|image| image.width).max().unwrap_or(1);
+    let size = largest_texture(&model).max(1);
     let smallest_mip = Some(maker.smallest_mip(level, size as f64 / side));
     let options = BakeOptions { smallest_mip, ..maker.options.bake(size) };
     let report = BakeReport {
@@ -197,8 +197,8 @@ fn kinds_of_images(materials: &[Material]) -> Vec<(usize, MapKind)> {
 }
 
 /// The model with the maps of its only material scaled, and its PSNR: to the fewest texels that show nothing less, at most
-/// half of the original's. None where it has several materials, or maps that cannot be scaled, and where it took
-/// too long.
+/// half of the original's. None where it has several materials, or maps that cannot be scaled, or time was too short for
+/// enough of them.
 pub(crate) fn scaled(
     maker: &Maker,
     judge: &Judge,
@@ -220,7 +220,7 @@ pub(crate) fn scaled(
         let mut own = vec![0.0];
         for reduction in 1..maps[place].reductions.len() {
             if is_over() {
-                return Ok(None);
+                break;
             }
             let mut choice = vec![0; maps.len()];
             choice[place] = reduction;
@@ -238,7 +238,7 @@ pub(crate) fn scaled(
     let most = maps.iter().map(|map| texels(&maker.model.images[map.image])).sum::<usize>() / 2;
     let allowed = error_of((coarser.psnr - UNSEEN).min(INVISIBLE));
     let mut best: Option<((bool, f64, usize), Vec<usize>)> = None;
-    for choice in choices(&maps.iter().map(|map| map.reductions.len()).collect::<Vec<_>>()) {
+    for choice in choices(&costs.iter().map(Vec::len).collect::<Vec<_>>()) {
         let texels: usize = choice.iter().enumerate().map(|(place, &k)| texels_of(place, k)).sum();
         let error = whole + choice.iter().enumerate().map(|(place, &k)| costs[place][k]).sum::<f64>();
         let is_seen = error > allowed;
@@ -279,7 +279,7 @@ fn choices(counts: &[usize]) -> Vec<Vec<usize>> {
     })
 }
 
-pub(crate) fn texels(image: &parbake_model::Image) -> usize {
+fn texels(image: &parbake_model::Image) -> usize {
     image.width * image.height
 }
 

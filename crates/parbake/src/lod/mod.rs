@@ -27,6 +27,7 @@ mod ways;
 mod written;
 
 use crate::bake::{Baked, bake_as, prepare_high_poly};
+use crate::budget::check_budget;
 use crate::error::BakeError;
 use crate::low_poly::{check_triangles, coarse_surfaces, least_of, low_poly};
 use crate::options::{BakeOptions, ShapeMode};
@@ -187,8 +188,8 @@ pub fn make_levels<E: From<BakeError>>(
             level: index,
             screen_size: options.screen_size[index],
             triangles: baked.model.mesh.triangles.len(),
-            texture_size: baked.model.images.iter().map(|image| image.width).max().unwrap_or(0),
-            texels: baked.model.images.iter().map(|image| image.width * image.height).sum(),
+            texture_size: largest_texture(&baked.model),
+            texels: texels_of(&baked.model),
             gutter: gutter.map(|(texels, _)| texels),
             smallest_gutter: gutter.map(|(texels, mip)| texels / mip.exp2()),
             draw_calls: draw_calls(&baked.model),
@@ -247,8 +248,8 @@ pub(crate) struct Draft {
 impl Draft {
     fn candidate(&self, psnr: f64) -> Candidate {
         let model = &self.baked.model;
-        let texture_size = model.images.iter().map(|image| image.width).max().unwrap_or(0);
-        Candidate { way: self.way, triangles: model.mesh.triangles.len(), texture_size, psnr }
+        let (triangles, texture_size) = (model.mesh.triangles.len(), largest_texture(model));
+        Candidate { way: self.way, triangles, texture_size, psnr }
     }
 }
 
@@ -323,11 +324,13 @@ impl<'a> Maker<'a> {
     ) -> Result<Baked, BakeError> {
         let first = hurried(self.bake_options(low, level, texture_size), until).texture_size;
         with_room(first, self.options.max_texture_size, |size| {
-            let of_size = self.bake_options(low, level, Some(size));
-            let in_time = hurried(of_size.clone(), until);
-            // Where charts fit into no texture that can be baked in time, the bake takes longer.
-            let mut options = if in_time.texture_size == size { in_time } else { of_size };
+            let mut options = self.bake_options(low, level, Some(size));
             options.shape = shape.unwrap_or(options.shape);
+            options.time_budget = hurried(options.clone(), until).time_budget;
+            // Where charts need more texels than there is time for, the bake has the least time that these can be written in.
+            if let Err(BakeError::Budget { least, .. }) = check_budget(&options) {
+                options.time_budget = Some(least);
+            }
             bake_as(Work::Level, &self.high, low, &options, &watcher.after_triangles())
         })
     }
@@ -383,6 +386,16 @@ impl<'a> Maker<'a> {
         let smaller = sizes.get(level + 1).copied().unwrap_or(0.5 * sizes[level]);
         (share * sizes[level] / smaller).log2().max(0.0)
     }
+}
+
+/// Width of a model's widest texture in texels; 0 where it has none.
+fn largest_texture(model: &Model) -> usize {
+    model.images.iter().map(|image| image.width).max().unwrap_or(0)
+}
+
+/// Texels of all textures of a model.
+fn texels_of(model: &Model) -> usize {
+    model.images.iter().map(|image| image.width * image.height).sum()
 }
 
 /// What comes of a texture of this size, or of twice that as often as charts do not fit.

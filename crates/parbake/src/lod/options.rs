@@ -36,8 +36,8 @@ pub struct LodOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "DECIBELS", conflicts_with_all = ["triangles", "ratio", "error"], help_heading = LEVELS))]
     pub target_psnr: Option<f64>,
 
-    /// Largest texture of a level, in texels along a side, 16 to 8192; textures follow the size on screen, with about
-    /// a texel for each pixel
+    /// Largest texture of a level, in texels along a side, 16 to 8192; textures follow the size on screen: about a texel
+    /// for each pixel, more where finer maps show or charts need room
     #[cfg_attr(feature = "clap", arg(long, value_name = "TEXELS", default_value_t = 2048, value_parser = crate::texels::parse_texels, help_heading = LEVELS))]
     #[serde(deserialize_with = "crate::texels::texels")]
     pub max_texture_size: usize,
@@ -74,7 +74,7 @@ pub struct LodOptions {
     pub importance_attribute: Option<String>,
 
     /// Seconds after which levels are finished with what there is, 0 to 1e9, reading of files included: fewer steps,
-    /// no level less [default: no limit]
+    /// fewer ways to make a level and smaller textures, no level less [default: no limit]
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "SECONDS", help_heading = heading::QUALITY))]
     pub time_budget: Option<f64>,
 

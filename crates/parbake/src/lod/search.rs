@@ -66,7 +66,8 @@ pub struct Step {
 pub struct Baking {
     /// What was asked for.
     pub asked: Plan,
-    /// What came of it: it may have fewer triangles, and more texels where its charts did not fit.
+    /// What came of it: it may have fewer triangles, and more texels where its charts did not fit, or fewer
+    /// where time was short.
     pub plan: Plan,
     /// Bytes of all but the maps.
     pub mesh_bytes: u64,

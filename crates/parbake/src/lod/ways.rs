@@ -6,7 +6,7 @@
 //! its own layout, baked (delivered.rs) ─────────────────────────┘
 //! ```
 //!
-//! All are photographed as viewers show them: four samples a pixel, each shaded, so that vertices which stay in place lose
+//! All are rendered with 2 × 2 samples a pixel, each shaded, so that vertices which stay in place lose
 //! nothing at edges, where a shift by a twentieth of a pixel already flips samples. Whole materials are rougher where vertex
 //! normals turn (`render/turning_normals.rs`). A level takes over at up to 1.7 times the size that it is made for, so maps
 //! may be worth twice as many texels along a side.
@@ -14,12 +14,13 @@
 //! Contract: deterministic without a budget. A budget is for one bake; a watcher that says stop is heeded between pictures.
 
 use super::chain::Chain;
-use super::delivered::{Coarser, baked_draft, coarser, may_keep_vertices, scaled, scaled_draft, texels};
+use super::delivered::{Coarser, baked_draft, coarser, may_keep_vertices, scaled, scaled_draft};
 use super::maps::{Reduction, level_maps, with_reductions};
 use super::switch::Pictures;
-use super::{Candidate, Draft, Maker, Way};
+use super::{Candidate, Draft, Maker, Way, texels_of};
 use crate::error::BakeError;
 use parbake_model::Model;
+use std::cell::Cell;
 use std::time::Instant;
 
 /// Pixels that a model spans at most in the larger ones of the pictures that are compared.
@@ -31,7 +32,7 @@ pub(crate) const WORTHWHILE: f64 = 0.3;
 /// Decibels that a bake has to lose by halving its maps for finer ones to be tried, and those that finer ones have to gain.
 const SHOWN_BY_MAPS: f64 = 1.0;
 const GAINED_BY_MAPS: f64 = 0.5;
-/// Share of a level's time budget after which no more collapses are tried.
+/// Share of a level's time budget for collapses and scaled maps; what was measured until then counts.
 const TRYING: f64 = 0.2;
 
 /// The level as that way makes it which shows most of the model. Ways are left out where they cannot win: a new layout
@@ -46,47 +47,47 @@ pub(crate) fn draft(
     until: Option<Instant>,
 ) -> Result<Option<Draft>, BakeError> {
     let keeps = may_keep_vertices(maker, triangles);
-    if !keeps && until.is_some() {
+    // Nothing to compare: one bake, whose maps cannot grow either.
+    if !keeps && (until.is_some() || texels_of(maker.model) == 0) {
         return maker.draft(chain, (level, 0), before, (triangles, None), until);
     }
     let begin = Instant::now();
     chain.tell(level, 0);
     let judge = Judge::new(maker, maker.options.screen_size[level])?;
     let enough = until.map(|until| begin + until.saturating_duration_since(begin).mul_f64(TRYING));
-    let is_over = || chain.stopped() || enough.is_some_and(|enough| Instant::now() > enough);
+    let is_cut = Cell::new(false);
+    let is_over = |chain: &Chain| {
+        let is_over = chain.stopped() || enough.is_some_and(|enough| Instant::now() > enough);
+        is_cut.set(is_cut.get() || is_over);
+        is_over
+    };
     let side = maker.texels_along(maker.model, maker.options.screen_size[level]);
-    let own = if keeps { coarser(maker, &judge, triangles, side, &is_over)? } else { None };
-    let maps = own.as_ref().map(|own| scaled(maker, &judge, own, &is_over)).transpose()?.flatten();
+    let own = if keeps { coarser(maker, &judge, triangles, side, &|| is_over(chain))? } else { None };
+    let maps = own.as_ref().map(|own| scaled(maker, &judge, own, &|| is_over(chain))).transpose()?.flatten();
     let scaled = maps.map(|(model, psnr)| {
         let draft = scaled_draft(maker, level, model, side, [begin.elapsed().as_secs_f64(), 0.0, 0.0]);
         let candidate = draft.candidate(psnr);
         (draft, candidate)
     });
-    let finished = |(mut draft, _): Tried, candidates: Vec<Candidate>| {
+    let finished = |chain: &Chain, mut draft: Draft, candidates: Vec<Candidate>| {
         draft.candidates = candidates;
         draft.seconds[2] = begin.elapsed().as_secs_f64() - draft.seconds[0] - draft.seconds[1];
+        draft.baked.report.stopped_early |= is_cut.get() || chain.stopped();
         Ok(Some(draft))
     };
+    let is_enough = |chain: &Chain, scaled: &Tried| scaled.1.psnr >= EXCELLENT || chain.stopped();
     let scaled = match scaled {
-        Some(scaled) if scaled.1.psnr >= EXCELLENT || chain.stopped() => {
-            let candidate = scaled.1;
-            return finished(scaled, vec![candidate]);
-        }
+        Some(scaled) if is_enough(chain, &scaled) => return finished(chain, scaled.0, vec![scaled.1]),
         other => other,
     };
     let new = maker.draft(chain, (level, 0), before, (triangles, None), until)?;
     let (new, scaled) = match (new, scaled) {
         // A bake that was cut short shows less than a level that is finished.
-        (_, Some(scaled)) if chain.stopped() => {
-            let candidate = scaled.1;
-            return finished(scaled, vec![candidate]);
-        }
+        (_, Some(scaled)) if chain.stopped() => return finished(chain, scaled.0, vec![scaled.1]),
+        (Some(new), _) if chain.stopped() => return finished(chain, new, Vec::new()),
         (Some(new), scaled) => (new, scaled),
         (None, _) => return Ok(None),
     };
-    if chain.stopped() {
-        return Ok(Some(new));
-    }
     let mut best = judge.tried(new)?;
     let mut candidates = vec![best.1];
     if let Some(scaled) = scaled {
@@ -109,7 +110,7 @@ pub(crate) fn draft(
     {
         weigh(&mut best, judge.tried(refined)?, GAINED_BY_MAPS, &mut candidates);
     }
-    finished(best, candidates)
+    finished(chain, best.0, candidates)
 }
 
 /// A level, and what its pictures say.
@@ -133,11 +134,10 @@ fn refined(
     (draft, candidate): &Tried,
     own: Option<&Coarser>,
 ) -> Result<Option<Draft>, BakeError> {
-    let of_all = |model: &Model| model.images.iter().map(texels).sum::<usize>();
-    let size = 2 * candidate.texture_size;
+    let size = 2 * draft.baked.report.options.texture_size;
     let baked = &draft.baked.model;
-    let may_grow = size <= maker.options.max_texture_size && 8 * of_all(baked) <= of_all(maker.model);
-    if size == 0 || !may_grow {
+    let may_grow = size <= maker.options.max_texture_size && 8 * texels_of(baked) <= texels_of(maker.model);
+    if baked.images.is_empty() || !may_grow {
         return Ok(None);
     }
     let shows = |judge: &Judge| -> Result<bool, BakeError> {

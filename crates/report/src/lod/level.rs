@@ -69,7 +69,7 @@ fn ways(report: &LevelReport) -> String {
     }
     let mut out = String::from(concat!(
         "<h3>How it was made</h3>",
-        r#"<p class="note">Each way was finished and photographed as viewers show it; the one that shows most of the model was taken, a new layout where others gain less than 0.3 dB.</p>"#,
+        r#"<p class="note">Each row was finished and rendered. The best one is used; a new layout stays unless another way gains at least 0.3 dB, and finer maps have to gain 0.5 dB.</p>"#,
         r#"<div class="wide"><table class="numbers-table"><thead><tr><th scope="col">way</th><th scope="col">triangles</th>"#,
         r#"<th scope="col">largest texture</th><th scope="col">PSNR</th></tr></thead><tbody>"#
     ));
