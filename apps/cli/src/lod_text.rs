@@ -12,6 +12,8 @@ pub fn line(report: &LevelReport, bytes: u64) -> String {
     };
     let texels = match report.texture_size {
         0 => "no textures".into(),
+        // Maps of a model's own textures need not be square.
+        size if report.way == Way::Scaled => format!("textures of up to {size}² texels"),
         size => format!("{size}² texels"),
     };
     let own = match report.way {

@@ -10,10 +10,12 @@
 //! repair      a sound layout from a delivered one
 //! mend        its faults mended where they are
 //! sharing     texels that several parts share, in words
+//! blocks      several textures in one, by rectangles that are moved
 //! tiles       charts of repeated textures brought into one tile
 //! tutte       an embedding of each piece in a circle or square
 //! ```
 
+pub mod blocks;
 pub mod check;
 mod conflicts;
 pub mod error;

@@ -3,6 +3,7 @@
 //! ```text
 //! 8-bit image ─ quantise ─ FloatImage ─ mip ─ Pyramid ─ fetch (pyramid), its adjoint (slopes)
 //!      maps ─────┘ (which maps there are, domains, encodings)
+//! window: a part of a map with another number of texels
 //! display, display_table: transfer curves
 //! ```
 
@@ -16,6 +17,7 @@ pub mod pyramid;
 pub mod quantise;
 pub mod reduced;
 pub mod slopes;
+pub mod window;
 
 pub use float_image::{FloatImage, Texel};
 pub use maps::{Domain, Encoding, MapKind, MapSet, MapSpec, MapValues};

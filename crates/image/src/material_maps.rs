@@ -57,10 +57,16 @@ pub fn fitted_alpha(material: &Material) -> (AlphaMode, f32) {
     match (material.alpha_mode, passing) {
         (AlphaMode::Mask, _) | (_, None) => (material.alpha_mode, 1.0),
         (_, Some(transmission)) => {
-            let passes = (transmission.factor * (1.0 - material.metallic)).clamp(0.0, 1.0);
-            (AlphaMode::Blend, 1.0 - (1.0 - REFLECTED) * passes)
+            // Where a texture says what is metal, the factor that multiplies it says little.
+            let metallic = material.metallic_roughness_texture.map_or(material.metallic, |_| 0.0);
+            (AlphaMode::Blend, opacity(transmission.factor * (1.0 - metallic)))
         }
     }
+}
+
+/// Opacity that stands in for a surface which this share of the light passes: some is left for what it reflects.
+pub fn opacity(passes: f32) -> f32 {
+    1.0 - (1.0 - REFLECTED) * passes.clamp(0.0, 1.0)
 }
 
 /// Less light that passes than this is not worth a layer.
@@ -147,5 +153,7 @@ mod tests {
         assert!(transmits(&glass) && transmits(&textured));
         let metal = Material { metallic: 1.0, ..glass };
         assert!(fitted_alpha(&metal).1 == 1.0 && !transmits(&metal));
+        let mapped = Material { metallic_roughness_texture: Some(TextureSlot::default()), ..metal };
+        assert!(fitted_alpha(&mapped).1 < 0.1 && transmits(&mapped));
     }
 }

@@ -19,7 +19,13 @@ fn halve(side: usize) -> (usize, usize) {
 impl<const C: usize> FloatImage<[f32; C]> {
     /// The next coarser level.
     pub fn halved(&self) -> Self {
-        let ((sx, width), (sy, height)) = (halve(self.width), halve(self.height));
+        self.halved_along([true; 2])
+    }
+
+    /// Half of the texels along u, along v, or along both.
+    pub fn halved_along(&self, along: [bool; 2]) -> Self {
+        let side = |side: usize, is_halved: bool| if is_halved { halve(side) } else { (1, side) };
+        let ((sx, width), (sy, height)) = (side(self.width, along[0]), side(self.height, along[1]));
         let scale = 1.0 / (sx * sy) as f32;
         let mut texels = vec![[0.0; C]; width * height];
         texels.par_chunks_mut(width).enumerate().for_each(|(y, row)| {

@@ -35,7 +35,7 @@ impl Taps {
 }
 
 #[inline]
-fn wrapped(i: i64, size: i64, wrap: Wrap) -> u32 {
+pub(crate) fn wrapped(i: i64, size: i64, wrap: Wrap) -> u32 {
     (match wrap {
         // The texture's inside needs no division.
         _ if (0..size).contains(&i) => i,

@@ -7,15 +7,18 @@ use glam::Vec4;
 use parbake_model::Image;
 use rayon::prelude::*;
 
-/// The map with its sides halved so many times; all other channels than the kind's own go along. `srgb` as in
-/// [`from_image`].
-pub fn reduced(kind: MapKind, image: &Image, srgb: bool, halvings: usize) -> Image {
-    if halvings == 0 {
+/// The map with its sides halved so many times, along u and along v; all other channels than the kind's own go along. `srgb`
+/// as in [`from_image`].
+pub fn reduced(kind: MapKind, image: &Image, srgb: bool, halvings: [usize; 2]) -> Image {
+    if halvings == [0; 2] {
         return image.clone();
     }
     let FloatImage { width, height, texels } = from_image(kind, image, srgb);
     let fine = FloatImage { width, height, texels: texels.iter().map(Vec4::to_array).collect() };
-    let FloatImage { width, height, texels } = (0..halvings).fold(fine, |map, _| map.halved());
+    let FloatImage { width, height, texels } = {
+        let steps = (0..halvings[0].max(halvings[1])).map(|step| halvings.map(|times| step < times));
+        steps.fold(fine, |map, along| map.halved_along(along))
+    };
     let map = FloatImage { width, height, texels: texels.into_iter().map(Vec4::from).collect() };
     Image { name: image.name.clone(), ..to_image(kind, &map, srgb) }
 }
@@ -67,9 +70,14 @@ mod tests {
             let pixels = (0..side * side).map(|k| [value(k), value(k), value(k), 255]).collect();
             Image { name: "board".into(), width: side, height: side, pixels }
         };
-        let small = reduced(MapKind::BaseColor, &board(8), true, 2);
+        let small = reduced(MapKind::BaseColor, &board(8), true, [2; 2]);
         assert_eq!((small.width, small.height, small.name.as_str()), (2, 2, "board"));
         assert_eq!(small.pixels, [[188, 188, 188, 255]; 4]);
-        assert_eq!(reduced(MapKind::MetallicRoughness, &board(8), true, 1).pixels[0], [128, 128, 128, 255]);
+        assert_eq!(
+            reduced(MapKind::MetallicRoughness, &board(8), true, [1; 2]).pixels[0],
+            [128, 128, 128, 255]
+        );
+        let wide = reduced(MapKind::BaseColor, &board(8), true, [0, 2]);
+        assert_eq!((wide.width, wide.height, wide.pixels[0]), (8, 2, [188, 188, 188, 255]));
     }
 }

@@ -157,7 +157,7 @@ fn fit(
     images.retain(|(kind, _)| matches!(kind, MapKind::BaseColor | MapKind::Normal));
     for (kind, image) in &mut images {
         if *kind == MapKind::Normal && image.width >= 2 * LEAST {
-            *image = reduced(*kind, image, high.conventions.srgb(), 1);
+            *image = reduced(*kind, image, high.conventions.srgb(), [1; 2]);
         }
     }
     Ok(images)

@@ -21,8 +21,8 @@ const POINTS: usize = 4;
 /// What becomes of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Reduction {
-    /// Its sides are halved so many times.
-    Halved(usize),
+    /// Its sides are halved so many times, along u and along v.
+    Halved([usize; 2]),
     /// A factor stands for it.
     Factor,
 }
@@ -38,8 +38,16 @@ pub(crate) struct LevelMap {
     pub reductions: Vec<Reduction>,
 }
 
-/// The maps of a level that may be reduced.
+/// The maps of a level that may be reduced, with both of their sides.
 pub(crate) fn level_maps(model: &Model) -> Vec<LevelMap> {
+    let mut maps = oblong_level_maps(model);
+    let is_even = |reduction: &Reduction| !matches!(reduction, Reduction::Halved([u, v]) if u != v);
+    maps.iter_mut().for_each(|map| map.reductions.retain(is_even));
+    maps
+}
+
+/// The maps of a level that may be reduced, one side once more than the other one, too.
+pub(crate) fn oblong_level_maps(model: &Model) -> Vec<LevelMap> {
     let mut maps: Vec<LevelMap> = Vec::new();
     let Some(material) = model.materials.first() else { return maps };
     let is_opaque = model.materials.iter().all(|material| material.alpha_mode == AlphaMode::Opaque);
@@ -47,9 +55,12 @@ pub(crate) fn level_maps(model: &Model) -> Vec<LevelMap> {
         let Some(slot) = texture_slot(material, kind) else { continue };
         let is_known = maps.iter().any(|map| map.image == slot.image);
         let Some(image) = model.images.get(slot.image).filter(|_| !is_known) else { continue };
-        let side = image.width.min(image.height);
-        let halvings = (0..=HALVINGS).filter(|&times| times == 0 || side >> times >= LEAST_SIDE);
-        let mut reductions: Vec<Reduction> = halvings.map(Reduction::Halved).collect();
+        let steps = (0..=HALVINGS).flat_map(|k| [[k, k], [k + 1, k], [k, k + 1]]);
+        let is_large_enough = |&[u, v]: &[usize; 2]| {
+            let stays = |side: usize, times: usize| times == 0 || side >> times >= LEAST_SIDE;
+            u.max(v) <= HALVINGS && stays(image.width, u) && stays(image.height, v)
+        };
+        let mut reductions: Vec<Reduction> = steps.filter(is_large_enough).map(Reduction::Halved).collect();
         if kind != MapKind::BaseColor || is_opaque {
             reductions.push(Reduction::Factor);
         }
@@ -58,11 +69,36 @@ pub(crate) fn level_maps(model: &Model) -> Vec<LevelMap> {
     maps
 }
 
+/// Images that extensions alone bring along, and whether they are colours in sRGB; each once.
+pub(crate) fn images_of_extensions(model: &Model) -> Vec<(usize, bool)> {
+    let others: Vec<usize> = level_maps(model).iter().map(|map| map.image).collect();
+    let mut images: Vec<(usize, bool)> = Vec::new();
+    for (slot, is_color) in model.materials.iter().flat_map(|material| material.extensions.textures()) {
+        let is_known = others.contains(&slot.image) || images.iter().any(|(known, _)| *known == slot.image);
+        if !is_known && slot.image < model.images.len() {
+            images.push((slot.image, is_color));
+        }
+    }
+    images
+}
+
+/// The level with those images halved so many times along u and along v.
+pub(crate) fn with_halved_extensions(mut model: Model, halvings: [usize; 2]) -> Model {
+    for (image, is_color) in images_of_extensions(&model) {
+        let own = &model.images[image];
+        let [u, v] = halvings;
+        let times = [u.min(own.width.ilog2() as usize), v.min(own.height.ilog2() as usize)];
+        // Their fourth channel may say something, too: they are read as a base colour is.
+        model.images[image] = reduced(MapKind::BaseColor, own, is_color, times);
+    }
+    model
+}
+
 /// Texels along a side of a reduced map; 0 for a factor.
 pub(crate) fn size_of(model: &Model, map: &LevelMap, reduction: Reduction) -> usize {
     match reduction {
         Reduction::Factor => 0,
-        Reduction::Halved(times) => (model.images[map.image].width >> times).max(1),
+        Reduction::Halved([times, _]) => (model.images[map.image].width >> times).max(1),
     }
 }
 
@@ -187,7 +223,7 @@ mod tests {
         let model = level();
         let maps = level_maps(&model);
         assert_eq!(maps.iter().map(|map| map.image).collect::<Vec<_>>(), [0, 1, 2]);
-        let chosen = [Reduction::Halved(1), Reduction::Factor, Reduction::Factor];
+        let chosen = [Reduction::Halved([1; 2]), Reduction::Factor, Reduction::Factor];
         let out = with_reductions(&model, &maps, &chosen);
         let material = &out.materials[0];
         assert_eq!((out.images.len(), out.images[0].width), (1, 8));

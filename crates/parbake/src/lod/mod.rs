@@ -19,8 +19,11 @@ mod delivered;
 pub mod document;
 pub mod layout;
 mod maps;
+mod merged;
 pub mod options;
+mod scaled;
 pub mod search;
+mod see_through;
 pub mod switch;
 pub mod target;
 mod ways;
@@ -43,6 +46,7 @@ use parbake_simplify::start::triangles_within;
 use parbake_simplify::{CoarseSurfaces, LayerReport};
 use parbake_views::high_poly::HighPoly;
 use rayon::prelude::*;
+use see_through::with_blending;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 use switch::{AtSize, Lineup, Subject};
@@ -221,10 +225,12 @@ pub(crate) struct Maker<'a> {
     pub high: HighPoly,
     pub options: &'a LodOptions,
     pub lineup: Lineup,
-    /// The same for pictures as viewers make them.
-    pub viewer: Lineup,
-    /// The model, ready for pictures.
+    /// The model, ready for its pictures.
     pub original: Subject,
+    /// Pictures as viewers make them.
+    pub viewer: Lineup,
+    /// The model, ready for these.
+    pub viewed: Subject,
     /// The fewest triangles that a level may have.
     pub least: usize,
     /// Triangles of each level, as its size or an option says.
@@ -270,7 +276,8 @@ impl<'a> Maker<'a> {
         let wanted = wanted_triangles(&high, options, least);
         let start = coarse_surfaces(&high, model);
         let viewer = lineup.as_viewers_do(VIEWER_SAMPLES);
-        Ok(Self { model, high, options, lineup, viewer, original, least, wanted, start })
+        let viewed = viewer.subject(&with_blending(model))?;
+        Ok(Self { model, high, options, lineup, original, viewer, viewed, least, wanted, start })
     }
 
     /// Chooses so many triangles and bakes, to be finished by `until`; the texture's size follows the level's where
@@ -388,9 +395,9 @@ impl<'a> Maker<'a> {
     }
 }
 
-/// Width of a model's widest texture in texels; 0 where it has none.
+/// Texels along the longest side of a model's textures; 0 where it has none.
 fn largest_texture(model: &Model) -> usize {
-    model.images.iter().map(|image| image.width).max().unwrap_or(0)
+    model.images.iter().map(|image| image.width.max(image.height)).max().unwrap_or(0)
 }
 
 /// Texels of all textures of a model.

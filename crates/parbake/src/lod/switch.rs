@@ -69,9 +69,11 @@ impl Lineup {
         Self { original: Arc::new(original.clone()), options, viewer_samples: None }
     }
 
-    /// The same for pictures as viewers make them, with so many samples along a side of a pixel.
+    /// The same for pictures as viewers make them: of whole materials, which a bake may be told not to fit, and with so many
+    /// samples along a side of a pixel.
     pub fn as_viewers_do(&self, samples: usize) -> Self {
-        Self { original: self.original.clone(), options: self.options.clone(), viewer_samples: Some(samples) }
+        let options = EvaluateOptions { shading: Shading::Pbr, ..self.options.clone() };
+        Self { original: self.original.clone(), options, viewer_samples: Some(samples) }
     }
 
     fn studio(&self, pixels: f64) -> Result<Studio, BakeError> {

@@ -283,7 +283,7 @@ impl Tried {
         let halvings = |map: &LevelMap| map.reductions.iter().filter(|r| **r != Reduction::Factor).count();
         for times in 0..self.maps.iter().map(halvings).max().unwrap_or(0) {
             let all: Vec<Reduction> =
-                self.maps.iter().map(|map| Reduction::Halved(times.min(halvings(map) - 1))).collect();
+                self.maps.iter().map(|map| Reduction::Halved([times.min(halvings(map) - 1); 2])).collect();
             let reduced = with_reductions(model, &self.maps, &all);
             let (_, written) = parbake_files::glb_bytes_with(&reduced, &self.write)?;
             for (own, map) in bytes.iter_mut().zip(&self.maps).filter(|(_, map)| times < halvings(map)) {

@@ -14,8 +14,10 @@
 //! Contract: deterministic without a budget. A budget is for one bake; a watcher that says stop is heeded between pictures.
 
 use super::chain::Chain;
-use super::delivered::{Coarser, baked_draft, coarser, may_keep_vertices, scaled, scaled_draft};
+use super::delivered::{Coarser, baked_draft, coarser, may_keep_vertices};
 use super::maps::{Reduction, level_maps, with_reductions};
+use super::scaled::{scaled, scaled_draft};
+use super::see_through::with_blending;
 use super::switch::Pictures;
 use super::{Candidate, Draft, Maker, Way, texels_of};
 use crate::error::BakeError;
@@ -63,7 +65,8 @@ pub(crate) fn draft(
     };
     let side = maker.texels_along(maker.model, maker.options.screen_size[level]);
     let own = if keeps { coarser(maker, &judge, triangles, side, &|| is_over(chain))? } else { None };
-    let maps = own.as_ref().map(|own| scaled(maker, &judge, own, &|| is_over(chain))).transpose()?.flatten();
+    let maps =
+        own.as_ref().map(|own| scaled(maker, &judge, own, side, &|| is_over(chain))).transpose()?.flatten();
     let scaled = maps.map(|(model, psnr)| {
         let draft = scaled_draft(maker, level, model, side, [begin.elapsed().as_secs_f64(), 0.0, 0.0]);
         let candidate = draft.candidate(psnr);
@@ -142,7 +145,7 @@ fn refined(
     }
     let shows = |judge: &Judge| -> Result<bool, BakeError> {
         let maps = level_maps(baked);
-        let halved: Vec<Reduction> = maps.iter().map(|_| Reduction::Halved(1)).collect();
+        let halved: Vec<Reduction> = maps.iter().map(|_| Reduction::Halved([1; 2])).collect();
         Ok(judge.psnr(&with_reductions(baked, &maps, &halved))? <= candidate.psnr - SHOWN_BY_MAPS)
     };
     match (draft.way, own) {
@@ -166,14 +169,14 @@ impl<'m> Judge<'m> {
     fn new(maker: &'m Maker<'m>, pixels: f64) -> Result<Self, BakeError> {
         let sizes = [pixels, (2.0 * pixels).min(LARGEST)];
         let sizes = sizes.into_iter().enumerate().filter(|&(k, size)| k == 0 || size > pixels);
-        let pictures = sizes.map(|(_, size)| maker.viewer.pictures(&maker.original, size));
+        let pictures = sizes.map(|(_, size)| maker.viewer.pictures(&maker.viewed, size));
         Ok(Self { maker, pictures: pictures.collect::<Result<_, _>>()? })
     }
 
     /// PSNR in dB, the mean over the sizes.
     pub(crate) fn psnr(&self, model: &Model) -> Result<f64, BakeError> {
         let viewer = &self.maker.viewer;
-        let subject = viewer.subject(model)?;
+        let subject = viewer.subject(&with_blending(model))?;
         let sum: f64 = self.pictures.iter().map(|pictures| viewer.psnr(pictures, &subject)).sum();
         Ok(sum / self.pictures.len() as f64)
     }
@@ -193,7 +196,7 @@ mod tests {
     use super::super::{LevelReport, make_levels};
     use super::*;
     use parbake_model::glam::{Vec3, vec2};
-    use parbake_model::{Image, Material, Mesh, TextureSlot};
+    use parbake_model::{Image, Material, Mesh, TextureSlot, UvTransform};
 
     fn level(model: &Model, options: &LodOptions) -> LevelReport {
         let mut reports = Vec::new();
@@ -205,8 +208,8 @@ mod tests {
         reports.remove(0)
     }
 
-    /// A square of many triangles with a chequered texture of so many fields along a side, in two materials, so that its
-    /// maps cannot be scaled.
+    /// A square of many triangles with a chequered texture of so many fields along a side, in two materials that read it in
+    /// two ways, so that its maps cannot be scaled.
     fn chequered(fields: usize) -> Model {
         let (cells, side, mut mesh) = (12u32, 1024, Mesh::default());
         for (row, column) in (0..=cells).flat_map(|row| (0..=cells).map(move |column| (row, column))) {
@@ -224,7 +227,14 @@ mod tests {
         let pixels = (0..side * side).map(color).collect();
         let images = vec![Image { name: "fields".into(), width: side, height: side, pixels }];
         let slot = TextureSlot { image: 0, ..TextureSlot::default() };
-        let material = Material { base_color_texture: Some(slot), double_sided: true, ..Material::default() };
+        let transform = UvTransform { scale: vec2(0.5, 0.5), ..UvTransform::default() };
+        let material = Material {
+            base_color_texture: Some(slot),
+            occlusion_texture: Some(TextureSlot { transform, ..slot }),
+            occlusion_strength: 0.0,
+            double_sided: true,
+            ..Material::default()
+        };
         let materials = vec![material.clone(), material];
         Model { name: "fields".into(), mesh, materials, images, ..Model::default() }
     }

@@ -53,7 +53,7 @@ fn small(model: &Model) -> Model {
         let Some(kind) = kind else { continue };
         let halvings =
             image.width.max(image.height).div_ceil(MOST_TEXELS).next_power_of_two().ilog2() as usize;
-        *image = reduced(kind, image, true, halvings);
+        *image = reduced(kind, image, true, [halvings; 2]);
     }
     model
 }

@@ -1,0 +1,166 @@
+//! Tests of common maps: squares of several materials side by side.
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+use parbake_image::pyramid::Pyramid;
+use parbake_model::glam::{Vec3, vec2};
+use parbake_model::{Clearcoat, Mesh, Transmission, UvTransform};
+
+/// Squares side by side, each of its own material: a texture that repeats, another one moved by its transform with a
+/// normal map of half of its size, and a shiny red without textures.
+fn squares() -> Model {
+    let mut mesh = Mesh::default();
+    for square in 0..3u32 {
+        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
+            mesh.positions.push(Vec3::new(1.1 * square as f32 + x, y, 0.0));
+            mesh.normals.push(Vec3::Z);
+            mesh.uvs.push(if square == 0 { vec2(2.0 * x + 0.3, y) } else { vec2(x, y) });
+        }
+        let v = 4 * square;
+        mesh.triangles.extend([[v, v + 1, v + 2], [v, v + 2, v + 3]]);
+        mesh.triangle_materials.extend([square; 2]);
+    }
+    let image = |side: usize, texel: fn(usize, usize) -> [u8; 4]| Image {
+        name: "image".into(),
+        width: side,
+        height: side,
+        pixels: (0..side * side).map(|i| texel(i % side, i / side)).collect(),
+    };
+    let images = vec![
+        image(64, |x, y| [(4 * x) as u8, (4 * y) as u8, 90, 255]),
+        image(64, |x, y| [200, (3 * x) as u8, (2 * y) as u8, 255]),
+        image(32, |x, _| [(100 + x) as u8, 128, 250, 255]),
+    ];
+    let slot = |image| TextureSlot { image, ..TextureSlot::default() };
+    let transform = UvTransform { offset: vec2(0.1, 0.2), scale: vec2(0.5, 0.5), ..UvTransform::default() };
+    let moved = |image| TextureSlot { transform, ..slot(image) };
+    let materials = vec![
+        Material {
+            name: "a".into(),
+            base_color: [0.5, 1.0, 1.0, 1.0],
+            base_color_texture: Some(slot(0)),
+            ..Material::default()
+        },
+        Material {
+            name: "b".into(),
+            base_color_texture: Some(moved(1)),
+            normal_texture: Some(moved(2)),
+            roughness: 0.4,
+            ..Material::default()
+        },
+        Material {
+            name: "c".into(),
+            base_color: [0.8, 0.1, 0.1, 1.0],
+            roughness: 0.2,
+            metallic: 1.0,
+            ..Material::default()
+        },
+    ];
+    Model { name: "squares".into(), mesh, materials, images, ..Model::default() }
+}
+
+/// What a kind of map says at a point of a triangle.
+fn read(model: &Model, kind: MapKind, triangle: usize, weights: [f32; 3]) -> Vec4 {
+    let material = &model.materials[model.mesh.triangle_materials[triangle] as usize];
+    let corners = model.mesh.corner_uvs(triangle);
+    let uv = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
+    let texel = texture_slot(material, kind).map(|slot| {
+        let FloatImage { width, height, texels } = from_image(kind, &model.images[slot.image], true);
+        let texels = texels.into_iter().map(|t| t.to_array()).collect();
+        let pyramid = Pyramid { wrap: slot.wrap, ..Pyramid::single(FloatImage { width, height, texels }) };
+        Vec4::from(pyramid.fetch(slot.transform.apply(uv), 0.0))
+    });
+    let one = if kind == MapKind::Normal { Vec4::Z } else { Vec4::ONE };
+    factors(material)[kind] * texel.unwrap_or(one)
+}
+
+/// Protects looks: every point has the colour, the normal, the roughness and the metal that it had, whatever was moved.
+#[test]
+fn every_point_looks_as_before() {
+    let model = squares();
+    let out = with_common_maps(&model, 100.0, 1024, usize::MAX).unwrap();
+    assert_eq!(out.materials.len(), 1);
+    assert_eq!(out.materials[0].name, "squares");
+    for triangle in 0..6 {
+        for weights in [[0.2, 0.3, 0.5], [0.1, 0.8, 0.1], [0.6, 0.2, 0.2]] {
+            for kind in [MapKind::BaseColor, MapKind::Normal, MapKind::MetallicRoughness] {
+                let [before, now] = [&model, &out].map(|model| {
+                    let value = read(model, kind, triangle, weights).truncate();
+                    if kind == MapKind::Normal { value.normalize() } else { value }
+                });
+                assert!((before - now).abs().max_element() < 0.02, "{kind:?} of {triangle}: {before} {now}");
+            }
+        }
+    }
+}
+
+/// Protects small files: textures of more texels than anybody sees are halved, and no size is exceeded.
+#[test]
+fn unseen_texels_are_left_out() {
+    let model = squares();
+    let texels = |model: &Model| model.images.iter().map(|i| i.width * i.height).max().unwrap();
+    let fine = with_common_maps(&model, 100.0, 1024, usize::MAX).unwrap();
+    assert!(texels(&with_common_maps(&model, 4.0, 1024, usize::MAX).unwrap()) <= texels(&fine) / 4);
+    assert!(texels(&with_common_maps(&model, 100.0, 64, usize::MAX).unwrap()) <= 64 * 64);
+    assert!(texels(&with_common_maps(&model, 100.0, 1024, 32 * 32).unwrap()) <= 32 * 32);
+}
+
+/// Protects coats that textures paint: they lie where the other maps do, and are white where a material has none.
+#[test]
+fn textures_of_extensions_go_along() {
+    let mut model = squares();
+    let coat = |texture| Some(Clearcoat { factor: 0.6, texture, ..Clearcoat::default() });
+    for (index, texture) in [(0, None), (1, model.materials[1].base_color_texture), (2, None)] {
+        model.materials[index].extensions.clearcoat = coat(texture);
+    }
+    let out = with_common_maps(&model, 100.0, 1024, usize::MAX).unwrap();
+    assert_eq!(out.materials.len(), 1);
+    let own = out.materials[0].extensions.clearcoat.unwrap();
+    let image = &out.images[own.texture.unwrap().image];
+    assert_eq!((own.factor, &image.name[..]), (0.6, "image"));
+    // The square with the texture has its colours in both maps.
+    let base = &out.images[out.materials[0].base_color_texture.unwrap().image];
+    let at = |triangle: usize, image: &Image| {
+        let uv: Vec2 = out.mesh.corner_uvs(triangle).into_iter().sum::<Vec2>() / 3.0;
+        image.pixels
+            [(uv.y * image.height as f32) as usize * image.width + (uv.x * image.width as f32) as usize]
+    };
+    let off = |a: [u8; 4], b: [u8; 4]| a.iter().zip(b).map(|(a, b)| a.abs_diff(b)).max();
+    assert!(off(at(2, image), at(2, base)) <= Some(2), "{:?} {:?}", at(2, image), at(2, base));
+    assert_eq!((at(0, image), at(4, image)), ([255; 4], [255; 4]));
+    // Without a texture a coat's normals are not those of a white one.
+    let mut model = squares();
+    model.materials[0].extensions.clearcoat = coat(None);
+    let normal_texture = model.materials[1].normal_texture;
+    model.materials[1].extensions.clearcoat = coat(None).map(|coat| Clearcoat { normal_texture, ..coat });
+    assert!(with_common_maps(&model, 100.0, 1024, usize::MAX).is_none());
+}
+
+/// Protects layers, coats and glass: what maps do not say keeps materials apart, and where too many would stay, or a
+/// texture cannot be moved, there are no common maps.
+#[test]
+fn what_maps_do_not_say_stays() {
+    let mut model = squares();
+    model.materials[1].alpha_mode = AlphaMode::Blend;
+    let out = with_common_maps(&model, 100.0, 1024, usize::MAX).unwrap();
+    assert_eq!(
+        out.materials.iter().map(|m| m.alpha_mode).collect::<Vec<_>>(),
+        [AlphaMode::Opaque, AlphaMode::Blend]
+    );
+    assert_eq!(out.mesh.triangle_materials, [0, 0, 1, 1, 0, 0]);
+    let mut glass = squares();
+    glass.materials[2].metallic = 0.0;
+    let transmission = Some(Transmission { factor: 0.7, texture: None });
+    glass.materials[2].extensions = MaterialExtensions { transmission, ..MaterialExtensions::default() };
+    let out = with_common_maps(&glass, 100.0, 1024, usize::MAX).unwrap();
+    assert_eq!(out.materials[1].extensions, glass.materials[2].extensions);
+    let refused = |change: fn(&mut Model)| {
+        let mut model = squares();
+        change(&mut model);
+        with_common_maps(&model, 100.0, 1024, usize::MAX).is_none()
+    };
+    assert!(refused(|model| model.materials[0].unlit = true));
+    assert!(refused(|model| model.materials[1].normal_texture = model.materials[0].base_color_texture));
+    assert!(refused(|model| model.mesh.triangles[2][0] = 0));
+    assert!(!refused(|_| {}));
+}

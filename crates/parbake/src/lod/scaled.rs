@@ -1,0 +1,264 @@
+//! A level with its model's own maps, with fewer texels: no bake.
+//!
+//! Materials share one set of maps (`merged.rs`). How much each map may lose is found by pictures: each is reduced by itself,
+//! step by step; of all together the errors add up, nearly enough.
+//!
+//! Contract: at most half of the model's texels. Charts are as they were delivered, shared texels and mirrored charts
+//! included. A watcher that says stop is heeded between pictures.
+
+use super::delivered::{Coarser, surface_of};
+use super::maps::{
+    LevelMap, Reduction, images_of_extensions, oblong_level_maps, with_halved_extensions, with_reductions,
+};
+use super::merged::with_common_maps;
+use super::search::error_of;
+use super::ways::Judge;
+use super::{Draft, Maker, Way, largest_texture};
+use crate::bake::Baked;
+use crate::error::BakeError;
+use crate::options::BakeOptions;
+use crate::report::{BakeReport, Work};
+use parbake_atlas::check_mesh;
+use parbake_model::{Image, Model};
+
+/// Decibels that fewer texels may cost, and those of which more show nothing, whatever is looked at.
+const UNSEEN: f64 = 0.05;
+const INVISIBLE: f64 = 60.0;
+/// Texels of all maps below which there is nothing to be gained by fewer.
+const FREE: usize = 256 * 256;
+/// Texels that a model without textures may get for the colours of its materials.
+const PALETTE: usize = 64 * 64;
+/// A map whose error alone is so many times that of all else is not reduced further.
+const HOPELESS: f64 = 10.0;
+
+/// A level without a bake. `side` is how many texels along a line its surface needs, `seconds` are those of [`Draft`].
+pub(crate) fn scaled_draft(maker: &Maker, level: usize, model: Model, side: f64, seconds: [f64; 3]) -> Draft {
+    let size = largest_texture(&model).max(1);
+    let smallest_mip = Some(maker.smallest_mip(level, size as f64 / side));
+    let options = BakeOptions { smallest_mip, ..maker.options.bake(size) };
+    let report = BakeReport {
+        work: Work::Level,
+        shape: None,
+        growth: None,
+        parallax_maps: None,
+        fallback: None,
+        uv_stage: None,
+        options,
+        high_triangles: maker.high.triangles,
+        low_triangles: model.mesh.triangles.len(),
+        views: 0,
+        samples: 0,
+        covered_texels: 0,
+        unseen_texels: 0,
+        overlapping_texels: 0,
+        missed_texels: 0,
+        uv: check_mesh(&model.mesh, size),
+        comparison: None,
+        losses: Vec::new(),
+        stages: Vec::new(),
+        stopped_early: false,
+        warnings: Vec::new(),
+        written: None,
+        peak_memory: crate::memory::peak_memory(),
+    };
+    let low = surface_of(&model);
+    let baked = Baked { ray_cast: model.clone(), model, report, uv_moves: None };
+    Draft { low, layers: Vec::new(), baked, way: Way::Scaled, candidates: Vec::new(), seconds }
+}
+
+/// The model with scaled maps, and its PSNR: with the fewest texels that show nothing less, at most half of the original's.
+/// `side` is how many texels along a line its surface needs. None where materials have no common maps, or time was too short for
+/// enough of them.
+pub(crate) fn scaled(
+    maker: &Maker,
+    judge: &Judge,
+    coarser: &Coarser,
+    side: f64,
+    is_over: &dyn Fn() -> bool,
+) -> Result<Option<(Model, f64)>, BakeError> {
+    let most = (texels_read(maker.model) / 2).max(PALETTE);
+    let Some(model) = with_common_maps(&coarser.model, side, maker.options.max_texture_size, most) else {
+        return Ok(None);
+    };
+    let maps = oblong_level_maps(&model);
+    let shown = |choice: &[usize]| -> Result<(Model, f64), BakeError> {
+        let reductions: Vec<Reduction> = maps.iter().zip(choice).map(|(map, &k)| map.reductions[k]).collect();
+        let halvings = halvings_of_extensions(&maps, choice);
+        let reduced = with_halved_extensions(with_reductions(&model, &maps, &reductions), halvings);
+        let psnr = judge.psnr(&reduced)?;
+        Ok((reduced, psnr))
+    };
+    let unreduced =
+        if model.materials == coarser.model.materials { coarser.psnr } else { judge.psnr(&model)? };
+    let whole = error_of(unreduced);
+    let allowed = error_of((unreduced - UNSEEN).min(INVISIBLE));
+    // What each map costs by itself; of all together about the sum.
+    let mut costs: Vec<Vec<f64>> = Vec::new();
+    for place in 0..maps.len() {
+        let mut own = vec![0.0];
+        for reduction in 1..maps[place].reductions.len() {
+            if is_over() || own.iter().any(|cost| *cost > HOPELESS * allowed) {
+                break;
+            }
+            let mut choice = vec![0; maps.len()];
+            choice[place] = reduction;
+            own.push((error_of(shown(&choice)?.1) - whole).max(0.0));
+        }
+        costs.push(own);
+    }
+    let texels_of = |place: usize, reduction: usize| match maps[place].reductions[reduction] {
+        Reduction::Factor => 0,
+        Reduction::Halved([u, v]) => {
+            let image = &model.images[maps[place].image];
+            (image.width >> u).max(1) * (image.height >> v).max(1)
+        }
+    };
+    // Pictures do not show what extensions say, so their maps keep as many texels as the finest of the others.
+    let others = images_of_extensions(&model);
+    let texels_of_others = |choice: &[usize]| -> usize {
+        let [u, v] = halvings_of_extensions(&maps, choice);
+        let texels = |image: &Image| (image.width >> u).max(1) * (image.height >> v).max(1);
+        others.iter().map(|(image, _)| texels(&model.images[*image])).sum()
+    };
+    let mut best: Option<((bool, f64, f64), Vec<usize>)> = None;
+    for choice in choices(&costs.iter().map(Vec::len).collect::<Vec<_>>()) {
+        let texels = choice.iter().enumerate().map(|(place, &k)| texels_of(place, k)).sum::<usize>()
+            + texels_of_others(&choice);
+        let error = whole + choice.iter().enumerate().map(|(place, &k)| costs[place][k]).sum::<f64>();
+        let is_seen = error > allowed;
+        // Where something is lost anyway, the least; else the fewest texels.
+        let rank =
+            if is_seen { (true, error, texels as f64) } else { (false, texels.max(FREE) as f64, error) };
+        if texels <= most && best.as_ref().is_none_or(|(least, _)| rank < *least) {
+            best = Some((rank, choice));
+        }
+    }
+    let Some((_, choice)) = best else { return Ok(None) };
+    shown(&choice).map(Some)
+}
+
+/// How often the maps of extensions are halved: as the finest of the others.
+fn halvings_of_extensions(maps: &[LevelMap], choice: &[usize]) -> [usize; 2] {
+    let halved = maps.iter().zip(choice).filter_map(|(map, &k)| match map.reductions[k] {
+        Reduction::Halved(times) => Some(times),
+        Reduction::Factor => None,
+    });
+    halved.min_by_key(|[u, v]| u + v).unwrap_or([2; 2])
+}
+
+/// Texels of all images that triangles show.
+fn texels_read(model: &Model) -> usize {
+    let mut images: Vec<usize> = (model.mesh.triangle_materials.iter())
+        .filter_map(|&own| model.materials.get(own as usize))
+        .flat_map(|material| material.all_texture_slots().map(|slot| slot.image))
+        .collect();
+    images.sort_unstable();
+    images.dedup();
+    images.iter().filter_map(|&image| model.images.get(image)).map(|image| image.width * image.height).sum()
+}
+
+/// All choices of one of so many for each place.
+fn choices(counts: &[usize]) -> Vec<Vec<usize>> {
+    counts.iter().fold(vec![Vec::new()], |all, &count| {
+        let longer = |choice: &Vec<usize>| -> Vec<Vec<usize>> {
+            (0..count).map(|k| choice.iter().copied().chain([k]).collect()).collect()
+        };
+        all.iter().flat_map(longer).collect()
+    })
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::super::options::LodOptions;
+    use super::super::ways::WORTHWHILE;
+    use super::super::{Level, make_levels};
+    use super::*;
+    use parbake_model::glam::{Vec2, Vec3, vec2};
+    use parbake_model::{Material, Mesh, TextureSlot, Wrap};
+
+    /// A wavy sheet with a checkerboard of 32² fields on a texture of 64² texels: no other layout with fewer texels shows
+    /// them as they are.
+    fn checkered() -> Model {
+        let (cells, mut mesh) = (24u32, Mesh::default());
+        for (row, column) in (0..=cells).flat_map(|row| (0..=cells).map(move |column| (row, column))) {
+            let (x, y) = (column as f32 / cells as f32, row as f32 / cells as f32);
+            mesh.positions.push(Vec3::new(2.0 * x, 2.0 * y, 0.1 * (5.0 * x).sin() * (4.0 * y).cos()));
+            mesh.uvs.push(vec2(x, y));
+        }
+        for (row, column) in (0..cells).flat_map(|row| (0..cells).map(move |column| (row, column))) {
+            let a = row * (cells + 1) + column;
+            mesh.triangles.extend([[a, a + 1, a + cells + 2], [a, a + cells + 2, a + cells + 1]]);
+        }
+        mesh.triangle_materials = vec![0; mesh.triangles.len()];
+        let field = |i: u32| {
+            if (i % 64 / 2 + i / 64 / 2).is_multiple_of(2) { [200, 30, 20, 255] } else { [20, 60, 190, 255] }
+        };
+        let images = vec![Image {
+            name: "fields".into(),
+            width: 64,
+            height: 64,
+            pixels: (0..4096).map(field).collect(),
+        }];
+        let slot = TextureSlot { image: 0, wrap: [Wrap::Clamp; 2], ..TextureSlot::default() };
+        let materials =
+            vec![Material { base_color_texture: Some(slot), double_sided: true, ..Material::default() }];
+        Model { name: "fields".into(), mesh, materials, images, ..Model::default() }
+    }
+
+    fn levels(model: &Model, triangles: usize) -> Vec<Level> {
+        let options =
+            LodOptions { screen_size: vec![64.0], triangles: vec![triangles], ..LodOptions::default() };
+        let mut levels = Vec::new();
+        make_levels::<BakeError>(model, &options, &(), |level| {
+            levels.push(level);
+            Ok(())
+        })
+        .unwrap();
+        levels
+    }
+
+    /// Protects what an artist laid out: the way that shows most is taken and named, all figures are told, and a level
+    /// never has more triangles than were asked for.
+    #[test]
+    fn the_best_way_is_taken() {
+        let [level] = &levels(&checkered(), 400)[..] else { panic!("one level") };
+        let Level { report, baked, .. } = level;
+        assert!(report.triangles <= 400 && report.triangles == baked.model.mesh.triangles.len());
+        let best = report.candidates.iter().map(|c| c.psnr).fold(0.0, f64::max);
+        let taken = report
+            .candidates
+            .iter()
+            .find(|c| c.way == report.way && c.texture_size == report.texture_size)
+            .unwrap();
+        assert!(taken.psnr >= best - WORTHWHILE, "{:?}", report.candidates);
+        // Few triangles of a wavy sheet, and halved fields are grey: both ways were weighed.
+        assert!(report.candidates.len() >= 2, "{:?}", report.candidates);
+    }
+
+    /// Protects small files and sharp maps: of maps that are larger than needed so many texels stay as are seen, at most
+    /// half, and where that shows nearly all no bake is begun.
+    #[test]
+    fn large_maps_are_scaled() {
+        let mut model = checkered();
+        // The same fields with 32² texels each.
+        let enlarged = |i: usize| model.images[0].pixels[i / 1024 / 16 * 64 + i % 1024 / 16];
+        let pixels = (0..1024 * 1024).map(enlarged).collect();
+        model.images[0] = Image { name: "fields".into(), width: 1024, height: 1024, pixels };
+        let [level] = &levels(&model, 1100)[..] else { panic!("one level") };
+        let Level { report, baked, .. } = level;
+        assert_eq!(report.way, Way::Scaled, "{:?}", report.candidates);
+        assert_eq!(report.candidates.len(), 1);
+        assert!(report.texels <= 512 * 512 && report.texels >= 64 * 64, "{}", report.texels);
+        let mesh = &baked.model.mesh;
+        let is_own = |(uv, p): (&Vec2, &Vec3)| (*uv - 0.5 * p.truncate()).length() < 0.01;
+        assert!(mesh.uvs.iter().zip(&mesh.positions).all(is_own));
+        assert!(report.at_screen_size.psnr > 40.0, "{}", report.at_screen_size.psnr);
+    }
+
+    /// Protects from choices that are forgotten.
+    #[test]
+    fn all_choices_are_weighed() {
+        assert_eq!(choices(&[2, 1, 2]), [[0, 0, 0], [0, 0, 1], [1, 0, 0], [1, 0, 1]]);
+    }
+}
