@@ -50,7 +50,7 @@ pub struct LayerLook {
 }
 
 /// Less than this share of the largest value makes no difference.
-const ALIKE: f32 = 0.01;
+pub(crate) const ALIKE: f32 = 0.01;
 
 /// The extensions for a low-poly whose triangles are of these kinds.
 pub fn extension_maps(low: &LowPoly, kinds: &[LayerKind], high: &HighPoly) -> ExtensionMaps {
@@ -121,7 +121,11 @@ pub fn extension_maps(low: &LowPoly, kinds: &[LayerKind], high: &HighPoly) -> Ex
             set(&mut out.layers[layer].extensions, group, said, image);
         }
         if is_mapped {
-            out.images.push(painted(group, values, largest, low.map.size));
+            let known: Vec<bool> = values.iter().map(Option::is_some).collect();
+            let texels = values.into_iter().map(|value| value.unwrap_or_default()).collect();
+            let mut canvas = FloatImage::square(low.map.size, texels);
+            gutter::fill(&mut canvas, &known);
+            out.images.push(painted(group, &canvas, largest));
         }
     }
     out
@@ -223,7 +227,7 @@ impl<F: Fn(usize) -> bool + Sync> Values<'_, F> {
 }
 
 /// What the texels of each layer say together of either part of a group.
-fn summed(
+pub(crate) fn summed(
     group: Group,
     values: &[Option<Vec4>],
     of_texel: &impl Fn(usize) -> Option<usize>,
@@ -265,11 +269,7 @@ fn summed(
 }
 
 /// The image of a group, in which `largest` is white.
-fn painted(group: Group, values: Vec<Option<Vec4>>, largest: [f32; 2], size: usize) -> Image {
-    let known: Vec<bool> = values.iter().map(Option::is_some).collect();
-    let texels = values.into_iter().map(|value| value.unwrap_or_default()).collect();
-    let mut canvas = FloatImage::square(size, texels);
-    gutter::fill(&mut canvas, &known);
+pub(crate) fn painted(group: Group, texels: &FloatImage<Vec4>, largest: [f32; 2]) -> Image {
     let byte = |x: f32| (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
     let share = |x: f32, place: usize| if largest[place] > 0.0 { x / largest[place] } else { 1.0 };
     let pixel = |v: &Vec4| match group {
@@ -285,8 +285,8 @@ fn painted(group: Group, values: Vec<Option<Vec4>>, largest: [f32; 2], size: usi
             [color(v.x), color(v.y), color(v.z), byte(share(v.w, 1))]
         }
     };
-    let pixels = canvas.texels.par_iter().map(pixel).collect();
-    Image { name: group.name().into(), width: size, height: size, pixels }
+    let pixels = texels.texels.par_iter().map(pixel).collect();
+    Image { name: group.name().into(), width: texels.width, height: texels.height, pixels }
 }
 
 #[cfg(test)]

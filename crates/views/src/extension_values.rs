@@ -57,7 +57,7 @@ impl Group {
     }
 
     /// The textures of a group.
-    fn slots(self, e: &MaterialExtensions) -> [Option<TextureSlot>; 2] {
+    pub fn slots(self, e: &MaterialExtensions) -> [Option<TextureSlot>; 2] {
         match self {
             Self::Clearcoat => e.clearcoat.map_or([None; 2], |c| [c.texture, c.roughness_texture]),
             Self::Sheen => e.sheen.map_or([None; 2], |s| [s.color_texture, s.roughness_texture]),
@@ -71,14 +71,19 @@ impl Group {
         }
     }
 
+    /// Whether the first of its textures holds colours in sRGB; the second never does.
+    pub fn has_colors(self) -> bool {
+        matches!(self, Self::Sheen | Self::DiffuseTransmission | Self::Specular)
+    }
+
     /// Whether textures vary the group in a material.
     pub fn is_textured(self, e: &MaterialExtensions) -> bool {
         self.slots(e).iter().any(Option::is_some)
     }
 
     /// The value, with what the group's textures say there (1 where there is none). Of anisotropy xy is the
-    /// direction in tangent space.
-    fn value(self, e: &MaterialExtensions, textures: [Option<Vec4>; 2], folds_ior: bool) -> Vec4 {
+    /// direction in tangent space. `folds_ior` has the index of refraction in the specular colour.
+    pub fn value(self, e: &MaterialExtensions, textures: [Option<Vec4>; 2], folds_ior: bool) -> Vec4 {
         let [one, two] = textures.map(|t| t.unwrap_or(Vec4::ONE));
         let tinted = |color: [f32; 3], texture: Vec4| Vec3::from(color) * texture.truncate();
         match self {
@@ -172,7 +177,6 @@ impl ExtensionSource {
     ) -> Vec4 {
         let e = &self.materials[mesh.triangle_materials[triangle] as usize].extensions;
         let corners = mesh.triangles[triangle].map(|i| i as usize);
-        let colors = matches!(group, Group::Sheen | Group::DiffuseTransmission | Group::Specular);
         let fetch = |slot: TextureSlot, is_color: bool| -> Option<Vec4> {
             let key = (slot.image, is_color, slot.wrap);
             let (_, pyramid) = self.pyramids.iter().find(|(k, _)| *k == key)?;
@@ -184,7 +188,7 @@ impl ExtensionSource {
             Some(Vec4::from(pyramid.fetch(interpolate(uvs, weights), pyramid.lod(along, along))))
         };
         let [one, two] = group.slots(e);
-        let textures = [one.and_then(|s| fetch(s, colors)), two.and_then(|s| fetch(s, false))];
+        let textures = [one.and_then(|s| fetch(s, group.has_colors())), two.and_then(|s| fetch(s, false))];
         let value = group.value(e, textures, folds_ior);
         if group != Group::Anisotropy || mesh.tangents.is_empty() {
             return value;

@@ -18,6 +18,7 @@ pub mod extension_values;
 pub mod frame;
 pub mod gutter;
 pub mod high_poly;
+pub mod joint_extensions;
 mod layer_factors;
 pub mod low_poly;
 pub mod material_sample;

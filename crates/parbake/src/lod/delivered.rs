@@ -48,7 +48,8 @@ pub(crate) fn may_keep_vertices(maker: &Maker, triangles: usize) -> bool {
     let model = maker.model;
     let is_few = (triangles as f64) < LEAST_SHARE * model.mesh.triangles.len() as f64;
     let is_steered = model.parts.is_some() || !maker.high.importances.is_empty();
-    let has_layout = !model.mesh.uvs.is_empty() || model.images.is_empty();
+    // Without a layout nothing is lost by other vertices, and those of a rig that are chosen anew bend better.
+    let has_layout = !model.mesh.uvs.is_empty() || (model.images.is_empty() && model.rig.is_none());
     !is_few && !is_steered && has_layout
 }
 

@@ -74,9 +74,11 @@ pub(crate) fn images_of_extensions(model: &Model) -> Vec<(usize, bool)> {
     let others: Vec<usize> = level_maps(model).iter().map(|map| map.image).collect();
     let mut images: Vec<(usize, bool)> = Vec::new();
     for (slot, is_color) in model.materials.iter().flat_map(|material| material.extensions.textures()) {
-        let is_known = others.contains(&slot.image) || images.iter().any(|(known, _)| *known == slot.image);
-        if !is_known && slot.image < model.images.len() {
-            images.push((slot.image, is_color));
+        match images.iter_mut().find(|(known, _)| *known == slot.image) {
+            // A number in the fourth channel may share the image of a colour.
+            Some((_, known)) => *known |= is_color,
+            None if others.contains(&slot.image) || slot.image >= model.images.len() => {}
+            None => images.push((slot.image, is_color)),
         }
     }
     images

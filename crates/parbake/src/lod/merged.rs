@@ -5,9 +5,9 @@
 //!            └ factors alone: a few equal texels ──┘
 //! ```
 //!
-//! Factors are multiplied into texels, so that materials which differ in nothing else are one: a draw call for each way in which
-//! alpha is understood and light passes. What no map says (extensions, unlit, a cutoff) keeps a material apart, as long as that
-//! leaves at most half of the model's.
+//! Factors are multiplied into texels, those of extensions as well, so that materials which differ in nothing else are one: a draw
+//! call for each way in which alpha is understood and light passes. What no map says (unlit, a cutoff, the inside of
+//! glass) keeps a material apart, as long as that leaves at most half of the model's.
 //!
 //! Contract: vertices, normals and tangents stay. Where a model has no tangents none are made up, so that each viewer makes up
 //! the same for the level as for the model. Texels of a texture that keeps its scale are the same numbers, but for the factors.
@@ -21,6 +21,8 @@ use parbake_image::{FloatImage, MapKind};
 use parbake_model::glam::{DVec2, Vec2, Vec4};
 use parbake_model::{AlphaMode, Image, Material, MaterialExtensions, Model, TextureSlot, Wrap};
 use parbake_views::extension_maps::ExtensionMaps;
+use parbake_views::extension_values::Group;
+use parbake_views::joint_extensions::{agree, joint_extensions};
 use std::collections::BTreeMap;
 
 /// Most texels along a line for each pixel that the surface covers; textures that have more are halved.
@@ -48,7 +50,8 @@ pub(crate) fn with_common_maps(
     let groups = groups(model, &used)?;
     let (sources, uvs) = sources(model, &used, side)?;
     let laid_out = blocks(&sources, &uvs, most_side, most_texels)?;
-    let (maps, strength) = maps(model, &used, &laid_out);
+    let merge = Merge { model, used: &used, laid_out: &laid_out };
+    let (maps, strength) = merge.maps();
     let look = Look {
         kinds: Vec::new(),
         extensions: ExtensionMaps::default(),
@@ -66,7 +69,7 @@ pub(crate) fn with_common_maps(
             alpha_mode: first.alpha_mode,
             alpha_cutoff: first.alpha_cutoff,
             unlit: first.unlit,
-            extensions: extensions(model, &used, members, &laid_out, &mut out.images),
+            extensions: merge.extensions(members, material.normal_texture, &mut out.images),
             double_sided: members.iter().any(|&index| model.materials[index].double_sided),
             ..material.clone()
         };
@@ -80,7 +83,7 @@ pub(crate) fn with_common_maps(
     }
     out.mesh.uvs = laid_out.uvs;
     out.mesh.uvs1.clear();
-    if !material.has_normal_map() {
+    if !out.materials.iter().any(Material::has_normal_map) {
         out.mesh.tangents.clear();
     }
     Some(out)
@@ -101,14 +104,15 @@ fn groups(model: &Model, used: &[usize]) -> Option<Vec<Vec<usize>>> {
         let has_backs = |m: &Material| m.alpha_mode == AlphaMode::Blend || transmits(m);
         layer(a) == layer(b)
             && a.unlit == b.unlit
-            && without_textures(&a.extensions) == without_textures(&b.extensions)
+            && agree(&a.extensions, &b.extensions, transmits(a))
             && (a.alpha_mode != AlphaMode::Mask || a.alpha_cutoff == b.alpha_cutoff)
             && (!has_backs(a) || a.double_sided == b.double_sided)
     };
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for &index in used {
         let own = &model.materials[index];
-        match groups.iter_mut().find(|group| is_one(&model.materials[group[0]], own)) {
+        let is_of = |group: &Vec<usize>| group.iter().all(|&other| is_one(&model.materials[other], own));
+        match groups.iter_mut().find(|group| is_of(group)) {
             Some(group) => group.push(index),
             None => groups.push(vec![index]),
         }
@@ -117,53 +121,6 @@ fn groups(model: &Model, used: &[usize]) -> Option<Vec<Vec<usize>>> {
     layers.sort_unstable();
     layers.dedup();
     (groups.len() <= layers.len().max(used.len() / 2)).then_some(groups)
-}
-
-/// What extensions say beside their textures, of which a missing one is as good as white. Where it is not, whether there is
-/// one remains.
-fn without_textures(extensions: &MaterialExtensions) -> MaterialExtensions {
-    let mut out = extensions.clone();
-    let told = |slot: Option<TextureSlot>| slot.map(|_| TextureSlot::default());
-    let coat = out.clearcoat.map(|coat| told(coat.normal_texture));
-    let brushed = out.anisotropy.map(|brushed| told(brushed.texture));
-    out.textures_mut().into_iter().for_each(|(slot, _)| *slot = None);
-    if let (Some(own), Some(slot)) = (&mut out.clearcoat, coat) {
-        own.normal_texture = slot;
-    }
-    if let (Some(own), Some(slot)) = (&mut out.anisotropy, brushed) {
-        own.texture = slot;
-    }
-    out
-}
-
-/// The extensions of materials that become one, whose textures are added to the images: white where a material has none.
-fn extensions(
-    model: &Model,
-    used: &[usize],
-    members: &[usize],
-    laid_out: &Blocks,
-    images: &mut Vec<Image>,
-) -> MaterialExtensions {
-    let mut out = model.materials[members[0]].extensions.clone();
-    for (place, (slot, is_color)) in out.textures_mut().into_iter().enumerate() {
-        let of = |index: usize| {
-            let mut own = model.materials[index].extensions.clone();
-            let slot = own.textures_mut().into_iter().nth(place).and_then(|(slot, _)| *slot);
-            slot.and_then(|slot| Some((model.images.get(slot.image)?, slot)))
-        };
-        let Some((first, _)) = members.iter().find_map(|&index| of(index)) else { continue };
-        let name = first.name.clone();
-        // Their fourth channel may say something, too: they are read as a base colour is.
-        let texture = |source: usize| {
-            let (image, slot) = members.contains(&used[source]).then(|| of(used[source])).flatten()?;
-            Some((floats(from_image(MapKind::BaseColor, image, is_color)), slot.wrap))
-        };
-        let parts = parts(used.len(), laid_out, texture, |_, block, texture| part(texture, block, Vec4::ONE));
-        let map = joined(laid_out, &parts);
-        *slot = Some(TextureSlot { image: images.len(), ..TextureSlot::default() });
-        images.push(Image { name, ..to_image(MapKind::BaseColor, &map, is_color) });
-    }
-    out
 }
 
 /// A material's own name, or that of the model.
@@ -225,40 +182,137 @@ type Floats = FloatImage<[f32; 4]>;
 /// A texture, and what lies outside of it.
 type Texture = (Floats, [Wrap; 2]);
 
-/// The common maps, those of one value included, and what emission was divided by.
-fn maps(model: &Model, used: &[usize], laid_out: &Blocks) -> (Vec<(MapKind, Image)>, f32) {
-    let emitted = used.iter().map(|&index| factors(&model.materials[index])[MapKind::Emissive].max_element());
-    let strength = emitted.fold(1.0, f32::max);
-    let map = |kind: MapKind| {
-        let texture = |source: usize| {
-            let slot = texture_slot(&model.materials[used[source]], kind)?;
-            Some((floats(from_image(kind, model.images.get(slot.image)?, true)), slot.wrap))
-        };
-        let parts = parts(used.len(), laid_out, texture, |source, block, texture| {
-            let none = if kind == MapKind::Normal { Vec4::Z } else { Vec4::ONE };
-            let mut part = part(texture, block, none);
-            multiply(&mut part, &model.materials[used[source]], kind, strength);
-            part
-        });
-        (kind, to_image(kind, &joined(laid_out, &parts), true))
-    };
-    (MapKind::ALL.into_iter().map(map).collect(), strength)
+/// Materials on their way into a common texture.
+struct Merge<'a> {
+    model: &'a Model,
+    /// Those that triangles have; each is a source of blocks.
+    used: &'a [usize],
+    laid_out: &'a Blocks,
 }
 
-/// The texels of all blocks. A texture is read once for all of its blocks.
-fn parts(
-    sources: usize,
-    laid_out: &Blocks,
-    texture: impl Fn(usize) -> Option<Texture>,
-    of: impl Fn(usize, &Block, Option<&Texture>) -> Floats,
-) -> Vec<(&Block, Floats)> {
-    let mut parts = Vec::new();
-    for source in 0..sources {
-        let texture = texture(source);
-        let own = laid_out.blocks.iter().filter(|block| block.source == source);
-        parts.extend(own.map(|block| (block, of(source, block, texture.as_ref()))));
+impl Merge<'_> {
+    /// The common maps, those of one value included, and what emission was divided by.
+    fn maps(&self) -> (Vec<(MapKind, Image)>, f32) {
+        let Self { model, used, .. } = *self;
+        let emitted =
+            used.iter().map(|&index| factors(&model.materials[index])[MapKind::Emissive].max_element());
+        let strength = emitted.fold(1.0, f32::max);
+        let map = |kind: MapKind| {
+            let texture = |source: usize| {
+                self.texture_of(texture_slot(&model.materials[used[source]], kind)?, kind, true)
+            };
+            let parts = self.parts(texture, |source, block, texture| {
+                let none = if kind == MapKind::Normal { Vec4::Z } else { Vec4::ONE };
+                let mut part = part(texture, block, none);
+                multiply(&mut part, &model.materials[used[source]], kind, strength);
+                part
+            });
+            (kind, to_image(kind, &joined(self.laid_out, &parts), true))
+        };
+        (MapKind::ALL.into_iter().map(map).collect(), strength)
     }
-    parts
+
+    /// The extensions of materials that become one, whose textures are added to the images; `normals` is the common normal map.
+    fn extensions(
+        &self,
+        members: &[usize],
+        normals: Option<TextureSlot>,
+        images: &mut Vec<Image>,
+    ) -> MaterialExtensions {
+        let Self { model, used, laid_out } = *self;
+        let all: Vec<&MaterialExtensions> =
+            members.iter().map(|&index| &model.materials[index].extensions).collect();
+        let values = |group: Group, folds: bool| {
+            let mut texels = vec![None; laid_out.size[0] * laid_out.size[1]];
+            for (source, index) in used.iter().enumerate().filter(|(_, index)| members.contains(index)) {
+                let own = &model.materials[*index].extensions;
+                let [one, two] = group.slots(own);
+                let textures = [(one, group.has_colors()), (two, false)].map(|(slot, is_color)| {
+                    slot.and_then(|slot| self.texture_of(slot, MapKind::BaseColor, is_color))
+                });
+                for block in laid_out.blocks.iter().filter(|block| block.source == source) {
+                    let parts = textures
+                        .each_ref()
+                        .map(|texture| texture.as_ref().map(|texture| part(Some(texture), block, Vec4::ONE)));
+                    for texel in 0..block.size[0] * block.size[1] {
+                        let read =
+                            parts.each_ref().map(|part| part.as_ref().map(|p| Vec4::from(p.texels[texel])));
+                        let (x, y) = (texel % block.size[0], texel / block.size[0]);
+                        let place = (block.place[1] + y) * laid_out.size[0] + block.place[0] + x;
+                        texels[place] = Some(group.value(own, read, folds));
+                    }
+                }
+            }
+            texels
+        };
+        let (mut out, own) = joint_extensions(&all, laid_out.size, images.len(), values);
+        images.extend(own);
+        if let Some(coat) = &mut out.clearcoat {
+            coat.normal_texture = self.coat_normals(members, normals, images);
+        }
+        out
+    }
+
+    /// The normals of the clearcoat of materials that become one: those of the surface below it, where they have these, or a map that is
+    /// added to the images; none where they have none.
+    fn coat_normals(
+        &self,
+        members: &[usize],
+        normals: Option<TextureSlot>,
+        images: &mut Vec<Image>,
+    ) -> Option<TextureSlot> {
+        let Self { model, used, .. } = *self;
+        let materials = members.iter().map(|&index| &model.materials[index]);
+        let coated = materials.filter_map(|material| {
+            let coat = material.extensions.clearcoat.filter(|coat| coat.factor > 0.0)?;
+            Some((
+                coat,
+                coat.normal_texture == material.normal_texture && coat.normal_scale == material.normal_scale,
+            ))
+        });
+        if coated.clone().all(|(coat, _)| coat.normal_texture.is_none()) {
+            return None;
+        }
+        if coated.clone().all(|(_, is_below)| is_below) {
+            return normals;
+        }
+        let coat = |source: usize| {
+            let index = Some(used[source]).filter(|index| members.contains(index))?;
+            model.materials[index].extensions.clearcoat
+        };
+        let texture = |source: usize| self.texture_of(coat(source)?.normal_texture?, MapKind::Normal, false);
+        let parts = self.parts(texture, |source, block, texture| {
+            let mut part = part(texture, block, Vec4::Z);
+            let scale = coat(source).map_or(1.0, |coat| coat.normal_scale);
+            part.texels.iter_mut().flat_map(|texel| &mut texel[..2]).for_each(|x| *x *= scale);
+            part
+        });
+        let image = to_image(MapKind::Normal, &joined(self.laid_out, &parts), false);
+        images.push(Image { name: "clearcoat normal".into(), ..image });
+        Some(TextureSlot { image: images.len() - 1, ..TextureSlot::default() })
+    }
+
+    /// The texels of all blocks. A texture is read once for all of its blocks.
+    fn parts(
+        &self,
+        texture: impl Fn(usize) -> Option<Texture>,
+        of: impl Fn(usize, &Block, Option<&Texture>) -> Floats,
+    ) -> Vec<(&Block, Floats)> {
+        let mut parts = Vec::new();
+        for source in 0..self.used.len() {
+            let texture = texture(source);
+            let own = self.laid_out.blocks.iter().filter(|block| block.source == source);
+            parts.extend(own.map(|block| (block, of(source, block, texture.as_ref()))));
+        }
+        parts
+    }
+
+    /// A texture, read as a kind of map; as a base colour all of its channels.
+    fn texture_of(&self, slot: TextureSlot, kind: MapKind, srgb: bool) -> Option<Texture> {
+        let FloatImage { width, height, texels } = from_image(kind, self.model.images.get(slot.image)?, srgb);
+        let texels = texels.into_iter().map(|t| t.to_array()).collect();
+        Some((FloatImage { width, height, texels }, slot.wrap))
+    }
 }
 
 /// A texture's texels in a block; `none` where there is no texture.
@@ -305,11 +359,6 @@ fn joined(laid_out: &Blocks, parts: &[(&Block, Floats)]) -> FloatImage<Vec4> {
         }
     }
     FloatImage { width, height, texels }
-}
-
-fn floats(map: FloatImage<Vec4>) -> Floats {
-    let FloatImage { width, height, texels } = map;
-    FloatImage { width, height, texels: texels.into_iter().map(|t| t.to_array()).collect() }
 }
 
 #[cfg(test)]

@@ -76,7 +76,10 @@ pub(crate) fn scaled(
     side: f64,
     is_over: &dyn Fn() -> bool,
 ) -> Result<Option<(Model, f64)>, BakeError> {
-    let most = (texels_read(maker.model) / 2).max(PALETTE);
+    let most = match texels_read(maker.model) {
+        0 => PALETTE,
+        texels => texels / 2,
+    };
     let Some(model) = with_common_maps(&coarser.model, side, maker.options.max_texture_size, most) else {
         return Ok(None);
     };

@@ -22,6 +22,10 @@ use std::sync::Arc;
 
 /// Directions that models are seen from.
 const VIEWS: usize = 6;
+/// The same with few samples in small pictures, in which edges that fall between samples make a difference by luck.
+const VIEWS_OF_FEW_PIXELS: usize = 16;
+/// Pixels below which pictures are small.
+const FEW_PIXELS: f64 = 150.0;
 /// Pixels that samples are enough for at small sizes, where thin parts flicker with fewer, and samples along a side of
 /// a pixel at least and at most.
 const SAMPLED: f64 = 480.0;
@@ -47,6 +51,9 @@ pub struct AtSize {
     /// FLIP, 0 to 1, lower is better.
     pub flip: Option<f64>,
 }
+
+/// The grey that viewers show as the number 128 of 255, in linear light: outlines count as they do there.
+const VIEWER_GREY: f32 = 0.2159;
 
 /// A model's pictures at one size.
 pub struct Pictures {
@@ -85,6 +92,11 @@ impl Lineup {
         Ok(if self.viewer_samples.is_some() { studio.as_viewers_do() } else { studio })
     }
 
+    /// What is behind the model, in linear light.
+    fn background(&self) -> [f32; 3] {
+        [if self.viewer_samples.is_some() { VIEWER_GREY } else { GREY }; 3]
+    }
+
     /// Makes a model ready for pictures.
     ///
     /// # Errors
@@ -99,9 +111,10 @@ impl Lineup {
     /// Where the original has no extent.
     pub fn pictures(&self, subject: &Subject, pixels: f64) -> Result<Pictures, BakeError> {
         let studio = self.studio(pixels)?;
-        let views = fibonacci_sphere(VIEWS, 0.0)
+        let is_small = self.viewer_samples.is_some() && pixels < FEW_PIXELS;
+        let views = fibonacci_sphere(if is_small { VIEWS_OF_FEW_PIXELS } else { VIEWS }, 0.0)
             .into_par_iter()
-            .map(|direction| studio.develop(&studio.shot(subject, direction), [GREY; 3]))
+            .map(|direction| studio.develop(&studio.shot(subject, direction), self.background()))
             .collect();
         Ok(Pictures { studio, views })
     }
@@ -109,9 +122,9 @@ impl Lineup {
     /// PSNR in dB of a model against another one's pictures: that of [`Lineup::compare`].
     pub fn psnr(&self, pictures: &Pictures, subject: &Subject) -> f64 {
         let Pictures { studio, views } = pictures;
-        let figures: Vec<f64> = (fibonacci_sphere(VIEWS, 0.0).into_par_iter().zip(views))
+        let figures: Vec<f64> = (fibonacci_sphere(views.len(), 0.0).into_par_iter().zip(views))
             .map(|(direction, other)| {
-                psnr(other, &studio.develop(&studio.shot(subject, direction), [GREY; 3]))
+                psnr(other, &studio.develop(&studio.shot(subject, direction), self.background()))
             })
             .collect();
         figures.iter().sum::<f64>() / figures.len() as f64
