@@ -6,8 +6,7 @@
 //! ```
 //!
 //! Factors are multiplied into texels, those of extensions as well, so that materials which differ in nothing else are one: a draw
-//! call for each way in which alpha is understood and light passes. What no map says (unlit, a cutoff, the inside of
-//! glass) keeps a material apart, as long as that leaves at most half of the model's.
+//! call for each way in which alpha is understood and light passes. What no map says (unlit, the inside of glass) keeps a material apart, as long as that leaves at most half of the model's.
 //!
 //! Contract: vertices, normals and tangents stay. Where a model has no tangents none are made up, so that each viewer makes up
 //! the same for the level as for the model. Texels of a texture that keeps its scale are the same numbers, but for the factors.
@@ -67,7 +66,7 @@ pub(crate) fn with_common_maps(
         let own = Material {
             name: name_of(model, members),
             alpha_mode: first.alpha_mode,
-            alpha_cutoff: first.alpha_cutoff,
+            alpha_cutoff: merge.cutoff(),
             unlit: first.unlit,
             extensions: merge.extensions(members, material.normal_texture, &mut out.images),
             double_sided: members.iter().any(|&index| model.materials[index].double_sided),
@@ -105,7 +104,6 @@ fn groups(model: &Model, used: &[usize]) -> Option<Vec<Vec<usize>>> {
         layer(a) == layer(b)
             && a.unlit == b.unlit
             && agree(&a.extensions, &b.extensions, transmits(a))
-            && (a.alpha_mode != AlphaMode::Mask || a.alpha_cutoff == b.alpha_cutoff)
             && (!has_backs(a) || a.double_sided == b.double_sided)
     };
     let mut groups: Vec<Vec<usize>> = Vec::new();
@@ -148,18 +146,20 @@ fn sources(model: &Model, used: &[usize], side: f64) -> Option<(Vec<Source>, Vec
             sources.push(Source { triangles, texels: None, wrap: Default::default() });
             continue;
         };
-        let reads_alike =
-            |other: TextureSlot| (other.uv_set, other.transform) == (slot.uv_set, slot.transform);
         let set = if slot.uv_set == 1 { &mesh.uvs1 } else { &mesh.uvs };
-        if !material.all_texture_slots().all(reads_alike) || set.is_empty() {
+        if set.is_empty() {
             return None;
         }
+        // How the coordinates of each texture follow from the first one's.
+        let moves: Vec<[DVec2; 2]> =
+            material.all_texture_slots().map(|own| between(slot, own)).collect::<Option<_>>()?;
         for &v in triangles.as_flattened() {
             uvs[v as usize] = slot.transform.apply(set[v as usize]);
         }
-        let images = material.all_texture_slots().filter_map(|slot| model.images.get(slot.image));
-        let texels = images
-            .fold(DVec2::ONE, |most, image| most.max(DVec2::new(image.width as f64, image.height as f64)));
+        let texels = material.all_texture_slots().zip(&moves).fold(DVec2::ONE, |most, (slot, [scale, _])| {
+            let image = model.images.get(slot.image);
+            most.max(image.map_or(DVec2::ONE, |i| DVec2::new(i.width as f64, i.height as f64)) * *scale)
+        });
         let in_texture = |t: usize| {
             let [a, b, c] = mesh.triangles[t].map(|v| uvs[v as usize].as_dvec2());
             (b - a).perp_dot(c - a).abs()
@@ -168,19 +168,39 @@ fn sources(model: &Model, used: &[usize], side: f64) -> Option<(Vec<Source>, Vec
         let shown = of.iter().map(|&t| area(t)).sum::<f64>() * pixels;
         let halvings =
             if shown > 0.0 { (0.5 * (read / shown).log2() - DENSITY.log2()).floor().max(0.0) } else { 0.0 };
-        // Charts move by tiles where every texture repeats.
+        // Charts move by tiles where every texture repeats with the same ones.
+        let is_same = moves.iter().all(|own| *own == UNMOVED);
         let wraps = material.all_texture_slots().map(|slot| slot.wrap);
-        let wrap =
-            wraps.reduce(|all, own| [0, 1].map(|k| if all[k] == own[k] { own[k] } else { Wrap::Clamp }));
-        let wrap = wrap.unwrap_or_default();
+        let wrap = wraps
+            .reduce(|all, own| [0, 1].map(|k| if all[k] == own[k] { own[k] } else { Wrap::Clamp }))
+            .filter(|_| is_same)
+            .unwrap_or([Wrap::Clamp; 2]);
         sources.push(Source { triangles, texels: Some(texels / halvings.exp2()), wrap });
     }
     Some((sources, uvs))
 }
 
+/// Scale and offset of coordinates that are not moved.
+const UNMOVED: [DVec2; 2] = [DVec2::ONE, DVec2::ZERO];
+
+/// Scale and offset by which the coordinates of one texture become those of another one of the same material; none where they are
+/// of another set, turned or mirrored.
+fn between(from: TextureSlot, to: TextureSlot) -> Option<[DVec2; 2]> {
+    if from.uv_set != to.uv_set {
+        return None;
+    }
+    if from.transform == to.transform {
+        return Some(UNMOVED);
+    }
+    let scale = to.transform.scale.as_dvec2() / from.transform.scale.as_dvec2();
+    let is_plain = from.transform.rotation == 0.0 && to.transform.rotation == 0.0;
+    let offset = to.transform.offset.as_dvec2() - from.transform.offset.as_dvec2() * scale;
+    (is_plain && scale.is_finite() && scale.min_element() > 0.0).then_some([scale, offset])
+}
+
 type Floats = FloatImage<[f32; 4]>;
-/// A texture, and what lies outside of it.
-type Texture = (Floats, [Wrap; 2]);
+/// A texture, what lies outside of it, and how its coordinates follow from the source's.
+type Texture = (Floats, [Wrap; 2], [DVec2; 2]);
 
 /// Materials on their way into a common texture.
 struct Merge<'a> {
@@ -199,17 +219,40 @@ impl Merge<'_> {
         let strength = emitted.fold(1.0, f32::max);
         let map = |kind: MapKind| {
             let texture = |source: usize| {
-                self.texture_of(texture_slot(&model.materials[used[source]], kind)?, kind, true)
+                self.texture_of(source, texture_slot(&model.materials[used[source]], kind)?, kind, true)
             };
             let parts = self.parts(texture, |source, block, texture| {
                 let none = if kind == MapKind::Normal { Vec4::Z } else { Vec4::ONE };
                 let mut part = part(texture, block, none);
-                multiply(&mut part, &model.materials[used[source]], kind, strength);
+                let material = &model.materials[used[source]];
+                multiply(&mut part, material, kind, strength);
+                if kind == MapKind::BaseColor {
+                    self.set_alpha(&mut part, material);
+                }
                 part
             });
             (kind, to_image(kind, &joined(self.laid_out, &parts), true))
         };
         (MapKind::ALL.into_iter().map(map).collect(), strength)
+    }
+
+    /// The least cutoff of all that is cut out: alpha that is scaled to it is never more than 1.
+    fn cutoff(&self) -> f32 {
+        let cut = self.used.iter().map(|&index| &self.model.materials[index]);
+        let cutoffs = cut.filter(|own| own.alpha_mode == AlphaMode::Mask).map(|own| own.alpha_cutoff);
+        cutoffs.filter(|&cutoff| cutoff > 0.0).reduce(f32::min).unwrap_or(Material::default().alpha_cutoff)
+    }
+
+    /// Alpha as the common material understands it: outlines stay where they cross their own cutoff.
+    fn set_alpha(&self, part: &mut Floats, material: &Material) {
+        let scale = match material.alpha_mode {
+            AlphaMode::Mask if material.alpha_cutoff > 0.0 => self.cutoff() / material.alpha_cutoff,
+            AlphaMode::Mask | AlphaMode::Opaque => f32::INFINITY,
+            AlphaMode::Blend => return,
+        };
+        for texel in &mut part.texels {
+            texel[3] = if scale.is_finite() { texel[3] * scale } else { 1.0 };
+        }
     }
 
     /// The extensions of materials that become one, whose textures are added to the images; `normals` is the common normal map.
@@ -228,7 +271,7 @@ impl Merge<'_> {
                 let own = &model.materials[*index].extensions;
                 let [one, two] = group.slots(own);
                 let textures = [(one, group.has_colors()), (two, false)].map(|(slot, is_color)| {
-                    slot.and_then(|slot| self.texture_of(slot, MapKind::BaseColor, is_color))
+                    slot.and_then(|slot| self.texture_of(source, slot, MapKind::BaseColor, is_color))
                 });
                 for block in laid_out.blocks.iter().filter(|block| block.source == source) {
                     let parts = textures
@@ -280,7 +323,8 @@ impl Merge<'_> {
             let index = Some(used[source]).filter(|index| members.contains(index))?;
             model.materials[index].extensions.clearcoat
         };
-        let texture = |source: usize| self.texture_of(coat(source)?.normal_texture?, MapKind::Normal, false);
+        let texture =
+            |source: usize| self.texture_of(source, coat(source)?.normal_texture?, MapKind::Normal, false);
         let parts = self.parts(texture, |source, block, texture| {
             let mut part = part(texture, block, Vec4::Z);
             let scale = coat(source).map_or(1.0, |coat| coat.normal_scale);
@@ -308,17 +352,20 @@ impl Merge<'_> {
     }
 
     /// A texture, read as a kind of map; as a base colour all of its channels.
-    fn texture_of(&self, slot: TextureSlot, kind: MapKind, srgb: bool) -> Option<Texture> {
+    fn texture_of(&self, source: usize, slot: TextureSlot, kind: MapKind, srgb: bool) -> Option<Texture> {
+        let first = self.model.materials[self.used[source]].all_texture_slots().next()?;
         let FloatImage { width, height, texels } = from_image(kind, self.model.images.get(slot.image)?, srgb);
         let texels = texels.into_iter().map(|t| t.to_array()).collect();
-        Some((FloatImage { width, height, texels }, slot.wrap))
+        Some((FloatImage { width, height, texels }, slot.wrap, between(first, slot)?))
     }
 }
 
 /// A texture's texels in a block; `none` where there is no texture.
 fn part(texture: Option<&Texture>, block: &Block, none: Vec4) -> Floats {
     match (texture, block.shows) {
-        (Some((texture, wrap)), Some(shows)) => window(texture, *wrap, shows, block.size),
+        (Some((texture, wrap, [scale, offset])), Some(shows)) => {
+            window(texture, *wrap, shows.map(|corner| corner * *scale + *offset), block.size)
+        }
         _ => {
             let [width, height] = block.size;
             FloatImage { width, height, texels: vec![none.to_array(); width * height] }
@@ -337,9 +384,6 @@ fn multiply(part: &mut Floats, material: &Material, kind: MapKind, strength: f32
             MapKind::BaseColor | MapKind::Normal | MapKind::MetallicRoughness => value * factor,
         };
         *texel = value.to_array();
-        if kind == MapKind::BaseColor && material.alpha_mode == AlphaMode::Opaque {
-            texel[3] = 1.0;
-        }
     }
 }
 

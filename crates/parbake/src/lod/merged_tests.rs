@@ -136,6 +136,53 @@ fn textures_of_extensions_go_along() {
     assert_eq!(at(4, normals), [128, 128, 255, 255]);
 }
 
+/// Protects outlines: materials with cutoffs of their own become one, and what was cut out is.
+#[test]
+fn outlines_stay_where_they_were() {
+    let mut model = squares();
+    let ramp = |i: usize| [90, 90, 90, (i % 64 * 4) as u8];
+    model.images[0].pixels = (0..4096).map(ramp).collect();
+    for (index, cutoff) in [(0, 0.7), (1, 0.3), (2, 0.5)] {
+        let base_color_texture = model.materials[0].base_color_texture;
+        let own = Material {
+            alpha_mode: AlphaMode::Mask,
+            alpha_cutoff: cutoff,
+            base_color_texture,
+            ..Material::default()
+        };
+        model.materials[index] = own;
+    }
+    let out = with_common_maps(&model, 100.0, 1024, usize::MAX).unwrap();
+    assert_eq!((out.materials.len(), out.materials[0].alpha_cutoff), (1, 0.3));
+    for triangle in 0..6 {
+        for weights in [[0.2, 0.3, 0.5], [0.1, 0.8, 0.1], [0.6, 0.2, 0.2], [0.3, 0.4, 0.3]] {
+            let above = |model: &Model| {
+                let material = &model.materials[model.mesh.triangle_materials[triangle] as usize];
+                read(model, MapKind::BaseColor, triangle, weights).w / material.alpha_cutoff
+            };
+            let [before, now] = [above(&model), above(&out)];
+            assert!((before - now).abs() < 0.03, "{triangle}: {before} {now}");
+        }
+    }
+}
+
+/// Protects cloth whose weave repeats while its shade does not: each map is read by its own transform.
+#[test]
+fn maps_may_repeat_at_their_own_scale() {
+    let mut model = squares();
+    let base = model.materials[1].base_color_texture.unwrap();
+    let transform = UvTransform { offset: vec2(0.05, 0.1), scale: vec2(1.5, 2.0), ..UvTransform::default() };
+    model.materials[1].normal_texture = None;
+    model.materials[1].metallic_roughness_texture = Some(TextureSlot { image: 0, transform, ..base });
+    let out = with_common_maps(&model, 1000.0, 1024, usize::MAX).unwrap();
+    for weights in [[0.2, 0.3, 0.5], [0.1, 0.8, 0.1], [0.3, 0.35, 0.35]] {
+        for kind in [MapKind::BaseColor, MapKind::MetallicRoughness] {
+            let [before, now] = [&model, &out].map(|model| read(model, kind, 2, weights).truncate());
+            assert!((before - now).abs().max_element() < 0.04, "{kind:?}: {before} {now}");
+        }
+    }
+}
+
 /// Protects layers, coats and glass: what maps do not say keeps materials apart, and where too many would stay, or a
 /// texture cannot be moved, there are no common maps.
 #[test]
@@ -160,7 +207,11 @@ fn what_maps_do_not_say_stays() {
         with_common_maps(&model, 100.0, 1024, usize::MAX).is_none()
     };
     assert!(refused(|model| model.materials[0].unlit = true));
-    assert!(refused(|model| model.materials[1].normal_texture = model.materials[0].base_color_texture));
+    assert!(refused(|model| {
+        model.mesh.uvs1 = model.mesh.uvs.clone();
+        let slot = model.materials[1].normal_texture.unwrap();
+        model.materials[1].normal_texture = Some(TextureSlot { uv_set: 1, ..slot });
+    }));
     assert!(refused(|model| model.mesh.triangles[2][0] = 0));
     assert!(!refused(|_| {}));
 }

@@ -227,7 +227,7 @@ mod tests {
         let pixels = (0..side * side).map(color).collect();
         let images = vec![Image { name: "fields".into(), width: side, height: side, pixels }];
         let slot = TextureSlot { image: 0, ..TextureSlot::default() };
-        let transform = UvTransform { scale: vec2(0.5, 0.5), ..UvTransform::default() };
+        let transform = UvTransform { rotation: 1.0, ..UvTransform::default() };
         let material = Material {
             base_color_texture: Some(slot),
             occlusion_texture: Some(TextureSlot { transform, ..slot }),
