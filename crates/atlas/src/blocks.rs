@@ -8,8 +8,8 @@
 //! it is halved, those of its next mip level. Rectangles that would cover fewer texels together become one. All are scaled by one
 //! factor more, where they fit into half of the texels by that.
 //!
-//! Contract: a rectangle holds its charts and [`AROUND`] texels more on each side; rectangles do not overlap, and begin and end at
-//! multiples of [`STEP`] texels. Deterministic.
+//! Contract: a rectangle holds its charts and two texels more on each side; rectangles do not overlap, and begin and end at
+//! multiples of four texels. Deterministic.
 
 use crunch::{Item, Packer, Rect, Rotation};
 use glam::{DVec2, dvec2};
