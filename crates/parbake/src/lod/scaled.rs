@@ -28,7 +28,7 @@ const INVISIBLE: f64 = 60.0;
 const FREE: usize = 256 * 256;
 /// Texels that a model without textures may get for the colours of its materials.
 const PALETTE: usize = 64 * 64;
-/// A map whose error alone is so many times that of all else is not reduced further.
+/// A map that alone costs so many times the error that may not be seen is not reduced further.
 const HOPELESS: f64 = 10.0;
 
 /// A level without a bake. `side` is how many texels along a line its surface needs, `seconds` are those of [`Draft`].

@@ -1,7 +1,7 @@
 //! Which way a level is made: several are finished, and the one whose pictures show most of the model is taken.
 //!
 //! ```text
-//! its own maps, scaled (delivered.rs) ─ excellent? taken; else ─┐
+//! its own maps, scaled (scaled.rs) ──── excellent? taken; else ─┐
 //! triangles chosen by pictures, new layout ─────────────────────┼─ the best ─ a bake whose maps show? again with finer ones
 //! its own layout, baked (delivered.rs) ─────────────────────────┘
 //! ```
