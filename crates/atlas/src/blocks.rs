@@ -84,12 +84,15 @@ struct Part {
 }
 
 impl Part {
+    /// The corners of the rectangle around both.
+    fn around(&self, other: &Self) -> [[i64; 2]; 2] {
+        let low = [0, 1].map(|k| self.low[k].min(other.low[k]));
+        [low, [0, 1].map(|k| self.high[k].max(other.high[k]))]
+    }
+
     fn with(&self, other: &Self) -> Self {
-        Self {
-            low: [0, 1].map(|k| self.low[k].min(other.low[k])),
-            high: [0, 1].map(|k| self.high[k].max(other.high[k])),
-            charts: [&self.charts[..], &other.charts].concat(),
-        }
+        let [low, high] = self.around(other);
+        Self { low, high, charts: [&self.charts[..], &other.charts].concat() }
     }
 
     fn size(&self) -> [i64; 2] {
@@ -98,6 +101,12 @@ impl Part {
 
     fn area(&self) -> i64 {
         self.size().iter().product()
+    }
+
+    /// Whether one rectangle around both takes no more texels than two.
+    fn is_better_with(&self, other: &Self) -> bool {
+        let [low, high] = self.around(other);
+        (high[0] - low[0]) * (high[1] - low[1]) <= self.area() + other.area()
     }
 }
 
@@ -205,17 +214,15 @@ fn parts_of(source: &Source, charts: &[Chart], factor: f64) -> Option<Vec<Part>>
     if parts.len() > MOST_CHARTS {
         return Some(parts.into_iter().reduce(|a, b| a.with(&b)).into_iter().collect());
     }
-    // Each is united with others as long as that takes no more texels.
+    // All that one rectangle is better for are united, until there are none.
     let mut index = 0;
     while index < parts.len() {
-        let fits = |other: &usize| {
-            *other != index
-                && parts[index].with(&parts[*other]).area() <= parts[index].area() + parts[*other].area()
-        };
-        match (0..parts.len()).find(fits) {
+        let is_joined = |other: &usize| *other != index && parts[index].is_better_with(&parts[*other]);
+        match (0..parts.len()).find(is_joined) {
             Some(other) => {
                 parts[index] = parts[index].with(&parts[other]);
-                parts.swap_remove(other);
+                parts.remove(other);
+                // Those before this one were compared with the smaller rectangle.
                 index = 0;
             }
             None => index += 1,
