@@ -17,6 +17,7 @@
 pub(crate) mod chain;
 mod delivered;
 pub mod document;
+mod face_frames;
 pub mod layout;
 mod maps;
 mod merged;
@@ -46,11 +47,11 @@ use parbake_simplify::start::triangles_within;
 use parbake_simplify::{CoarseSurfaces, LayerReport};
 use parbake_views::high_poly::HighPoly;
 use rayon::prelude::*;
-use see_through::with_blending;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 use switch::{AtSize, Lineup, Subject};
 use target::TargetReport;
+use ways::as_viewers_do;
 use written::as_written;
 
 /// A finished level.
@@ -276,7 +277,7 @@ impl<'a> Maker<'a> {
         let wanted = wanted_triangles(&high, options, least);
         let start = coarse_surfaces(&high, model);
         let viewer = lineup.as_viewers_do(VIEWER_SAMPLES);
-        let viewed = viewer.subject(&with_blending(model))?;
+        let viewed = viewer.subject(&as_viewers_do(model))?;
         Ok(Self { model, high, options, lineup, original, viewer, viewed, least, wanted, start })
     }
 

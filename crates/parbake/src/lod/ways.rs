@@ -15,6 +15,7 @@
 
 use super::chain::Chain;
 use super::delivered::{Coarser, baked_draft, coarser, may_keep_vertices};
+use super::face_frames::with_face_tangents;
 use super::maps::{Reduction, level_maps, with_reductions};
 use super::scaled::{scaled, scaled_draft};
 use super::see_through::with_blending;
@@ -22,6 +23,7 @@ use super::switch::Pictures;
 use super::{Candidate, Draft, Maker, Way, texels_of};
 use crate::error::BakeError;
 use parbake_model::Model;
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::time::Instant;
 
@@ -157,6 +159,11 @@ fn refined(
     }
 }
 
+/// A model for pictures as viewers make them.
+pub(crate) fn as_viewers_do(model: &Model) -> Cow<'_, Model> {
+    with_face_tangents(with_blending(model))
+}
+
 /// Compares ways by their pictures.
 pub(crate) struct Judge<'m> {
     maker: &'m Maker<'m>,
@@ -176,7 +183,7 @@ impl<'m> Judge<'m> {
     /// PSNR in dB, the mean over the sizes.
     pub(crate) fn psnr(&self, model: &Model) -> Result<f64, BakeError> {
         let viewer = &self.maker.viewer;
-        let subject = viewer.subject(&with_blending(model))?;
+        let subject = viewer.subject(&as_viewers_do(model))?;
         let sum: f64 = self.pictures.iter().map(|pictures| viewer.psnr(pictures, &subject)).sum();
         Ok(sum / self.pictures.len() as f64)
     }
