@@ -109,6 +109,7 @@ fn choose_options(triangles: usize, preset: Preset) -> ChooseOptions {
     };
     // Many small triangles are no better for it.
     let sets = if triangles <= 400 { 4 } else { 1 };
+    let attempts = if preset == Preset::Fast { 1 } else { sets };
     let polish = PolishOptions { rounds, sweeps, ..own };
-    ChooseOptions { triangles, least: 0, room, views, sets, view_size, polish, seed: 0 }
+    ChooseOptions { triangles, least: 0, room, views, sets, attempts, view_size, polish, seed: 0 }
 }

@@ -6,6 +6,8 @@
 //!    └ starts (start.rs), the level before ─ surface ─ collapse.rs ─ error ─ best ─ polish.rs ─ mesh
 //! ```
 //!
+//! Few triangles are chosen several times, each time from other views: where a search of single changes ends is a matter of luck.
+//!
 //! What is opaque, cut out, blended or transmits light are layers (`views/alpha_layers.rs`), and each is chosen by
 //! itself: through glass one sees what is behind it, so that nothing of it is hidden. Layers share the triangles as
 //! edge collapses of the whole model share them.
@@ -17,7 +19,7 @@
 
 use crate::collapse::collapse_to;
 use crate::pictures::Pictures;
-use crate::polish::{PolishOptions, polish};
+use crate::polish::{PolishOptions, is_over, polish};
 use crate::start::{CoarseSurfaces, Start, counts_of_parts, with_lost_parts};
 use crate::surface::Surface;
 use crate::target::{BACKGROUNDS, Target};
@@ -45,6 +47,9 @@ pub struct ChooseOptions {
     /// Sets of so many views that points are moved by in turn, 1 or more. With one alone they come to lie where its
     /// pixels do not see what is wrong.
     pub sets: usize,
+    /// Times that collapsing and polishing are done, each time from another one of the sets, 1 to `sets`. The surface with the
+    /// least error in views that none was fitted to is taken.
+    pub attempts: usize,
     /// Side of a view in pixels.
     pub view_size: usize,
     /// What is done with the best start.
@@ -69,7 +74,7 @@ pub struct StartReport {
 pub struct LayerReport {
     /// Triangles.
     pub triangles: usize,
-    /// All starts that were tried; the first is the one that was taken.
+    /// All starts that were tried, by each attempt; the first is the one that was taken.
     pub starts: Vec<StartReport>,
     /// Mean squared display error of its pictures before and after polishing, each background weighed by the
     /// reciprocal of its own error.
@@ -90,6 +95,9 @@ const COLLAPSING: f64 = 0.4;
 
 /// Views that tell one collapse from another well enough.
 const FEW: usize = 24;
+
+/// Views that attempts are compared in.
+const JUDGES: usize = 96;
 
 /// Chooses the triangles; `before` is the level before in the common frame, if there is one. `coarse` is of the
 /// high-poly's mesh; its parts are those that move by themselves, and no triangle of the result lies on two.
@@ -210,40 +218,96 @@ fn layer(
     watcher: &dyn Watcher,
 ) -> (Mesh, LayerReport) {
     let target = |view: &View| Target::new(high, triangles, view.camera, options.view_size);
-    let set =
-        |seed: u64| view_pool(options.views, &high.conventions.rig, seed).par_iter().map(target).collect();
+    let set = |views: usize, seed: u64| -> Vec<Target> {
+        view_pool(views, &high.conventions.rig, seed).par_iter().map(target).collect()
+    };
     let mut sets: Vec<Vec<Target>> =
-        (0..options.sets as u64).map(|index| set(options.seed + index)).collect();
-    let targets = &sets[0];
+        (0..options.sets as u64).map(|index| set(options.views, options.seed + index)).collect();
+    let attempts = options.attempts.min(sets.len());
+    let mut judges = if attempts > 1 { set(JUDGES, options.seed + options.sets as u64) } else { Vec::new() };
+    let starts: Vec<(Start, Surface)> = (starts.into_iter().flatten())
+        .filter(|(_, mesh)| !mesh.triangles.is_empty())
+        .map(|(start, mesh)| {
+            let mut surface = Surface::in_parts(&mesh, parts);
+            surface.keep_of_each_part(options.least);
+            (start, surface)
+        })
+        .collect();
+    let mut best: Option<Attempt> = None;
+    for first in 0..attempts {
+        let part = |k: f64| (first as f64 + k) / attempts as f64;
+        let whole = &Portion::new(watcher, part(0.0)..part(1.0));
+        let (reports, surface) = collapsed(&sets[first], &starts, options.triangles, whole);
+        if best.is_none() {
+            weigh_backgrounds(&mut sets, &mut judges, &surface);
+        } else if is_over(watcher) {
+            // It may have too many triangles still.
+            break;
+        }
+        let mut pictures = Pictures::new(&sets[first], surface);
+        let before = pictures.error();
+        polish(&mut pictures, &sets, first, high, &options.polish, &Portion::new(whole, COLLAPSING..1.0));
+        pictures.look_from(&sets[first]);
+        let error = [before, pictures.error()];
+        let judged = Pictures::new(&judges, pictures.surface.clone()).error();
+        let own = Attempt { surface: pictures.surface, reports, error, judged };
+        best = Some(match best {
+            None => own,
+            Some(best) if own.judged < best.judged => own.after(best),
+            Some(best) => best.after(own),
+        });
+    }
+    watcher.progress(Stage::Simplify, 1, 1);
+    let Attempt { surface, reports, error, .. } = best.unwrap_or_default();
+    let mesh = surface.to_mesh();
+    let report = LayerReport { triangles: mesh.triangles.len(), starts: reports, error };
+    (mesh, report)
+}
+
+/// A polished surface.
+#[derive(Default)]
+struct Attempt {
+    surface: Surface,
+    /// What it started from first.
+    reports: Vec<StartReport>,
+    /// Before and after polishing, in the first of its views.
+    error: [f64; 2],
+    /// In views that no attempt was fitted to.
+    judged: f64,
+}
+
+impl Attempt {
+    /// The same, which also knows what another one started from.
+    fn after(mut self, other: Self) -> Self {
+        self.reports.extend(other.reports);
+        self
+    }
+}
+
+/// The starts with so many triangles: what is told of each, the best first, and the surface of that one.
+fn collapsed(
+    targets: &[Target],
+    starts: &[(Start, Surface)],
+    triangles: usize,
+    watcher: &dyn Watcher,
+) -> (Vec<StartReport>, Surface) {
     let mut tried: Vec<(StartReport, Surface)> = Vec::new();
-    for (k, (start, mesh)) in
-        starts.into_iter().flatten().filter(|(_, m)| !m.triangles.is_empty()).enumerate()
-    {
-        let watcher = &Portion::new(watcher, 0.5 * COLLAPSING * k as f64..0.5 * COLLAPSING * (k + 1) as f64);
-        let mut surface = Surface::in_parts(&mesh, parts);
-        surface.keep_of_each_part(options.least);
-        let mut pictures = Pictures::new(&targets[..targets.len().min(FEW)], surface);
-        collapse_to(&mut pictures, options.triangles, watcher);
-        let report = StartReport { start, triangles: pictures.surface.count(), error: pictures.error() };
-        tried.push((report, pictures.surface));
+    for (k, (start, surface)) in starts.iter().enumerate() {
+        let begun = |k: usize| 0.5 * COLLAPSING * k as f64;
+        let watcher = &Portion::new(watcher, begun(k)..begun(k + 1));
+        let mut pictures = Pictures::new(&targets[..targets.len().min(FEW)], surface.clone());
+        collapse_to(&mut pictures, triangles, watcher);
+        let (triangles, error) = (pictures.surface.count(), pictures.error());
+        tried.push((StartReport { start: *start, triangles, error }, pictures.surface));
     }
     tried.sort_by(|a, b| a.0.error.total_cmp(&b.0.error));
-    let starts = tried.iter().map(|(report, _)| *report).collect();
-    let surface = tried.into_iter().next().map(|(_, surface)| surface).unwrap_or_default();
-    weigh_backgrounds(&mut sets, &surface);
-    let mut pictures = Pictures::new(&sets[0], surface);
-    let before = pictures.error();
-    polish(&mut pictures, &sets, high, &options.polish, &Portion::new(watcher, COLLAPSING..1.0));
-    pictures.look_from(&sets[0]);
-    watcher.progress(Stage::Simplify, 1, 1);
-    let mesh = pictures.surface.to_mesh();
-    let report = LayerReport { triangles: mesh.triangles.len(), starts, error: [before, pictures.error()] };
-    (mesh, report)
+    let (reports, surfaces): (Vec<_>, Vec<_>) = tried.into_iter().unzip();
+    (reports, surfaces.into_iter().next().unwrap_or_default())
 }
 
 /// Lets backgrounds count by the reciprocals of their errors: as people count in decibels, a tenth less is as much on
 /// one as on another.
-fn weigh_backgrounds(sets: &mut [Vec<Target>], surface: &Surface) {
+fn weigh_backgrounds(sets: &mut [Vec<Target>], judges: &mut [Target], surface: &Surface) {
     let mut weights = [0.0; BACKGROUNDS.len()];
     for background in 0..weights.len() {
         let mut only = [0.0; BACKGROUNDS.len()];
@@ -253,7 +317,7 @@ fn weigh_backgrounds(sets: &mut [Vec<Target>], surface: &Surface) {
     }
     let sum: f64 = weights.iter().sum();
     let weights = weights.map(|weight| (weight / sum) as f32);
-    sets.par_iter_mut().flatten().for_each(|target| target.weigh(weights));
+    sets.par_iter_mut().flatten().chain(judges.par_iter_mut()).for_each(|target| target.weigh(weights));
 }
 
 #[cfg(test)]

@@ -41,17 +41,19 @@ impl Default for PolishOptions {
 /// Rounds in a row without a gain after which no more follow.
 const PATIENCE: usize = 3;
 
-/// Polishes a surface. `high` is what new points are put on. Each sweep looks from the next of the `sets` of views.
+/// Polishes a surface. `high` is what new points are put on. Each sweep looks from the next of the `sets` of views; the surface
+/// was looked at from set `first` so far.
 pub fn polish<'a>(
     pictures: &mut Pictures<'a>,
     sets: &'a [Vec<Target>],
+    first: usize,
     high: &HighPoly,
     options: &PolishOptions,
     watcher: &dyn Watcher,
 ) {
     let target = pictures.surface.count();
     let mut steps = Steps::default();
-    let mut sets = Sets { sets, next: 0 };
+    let mut sets = Sets { sets, next: first };
     show(pictures, watcher);
     settle(pictures, &mut sets, &mut steps, 3 * options.sweeps, watcher);
     let mut without = 0;
@@ -102,7 +104,7 @@ impl<'a> Sets<'a> {
 }
 
 /// Whether to go no further: what there is may be kept at any time, so an end of time that is known ends it too.
-fn is_over(watcher: &dyn Watcher) -> bool {
+pub(crate) fn is_over(watcher: &dyn Watcher) -> bool {
     watcher.stopped() || watcher.seconds_left().is_some_and(|left| left <= 0.0)
 }
 

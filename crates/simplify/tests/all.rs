@@ -139,8 +139,17 @@ fn without_time_the_budget_of_triangles_holds() {
     }
     let high = prepared(sphere(8));
     let polish = PolishOptions { rounds: 2, sweeps: 1, ..PolishOptions::default() };
-    let options =
-        ChooseOptions { triangles: 40, least: 0, room: 2, views: 4, sets: 1, view_size: 32, polish, seed: 0 };
+    let options = ChooseOptions {
+        triangles: 40,
+        least: 0,
+        room: 2,
+        views: 4,
+        sets: 1,
+        view_size: 32,
+        polish,
+        attempts: 1,
+        seed: 0,
+    };
     let chosen = choose_triangles(&high, None, &coarse_surfaces(&high), &options, &Late);
     assert!((39..=40).contains(&chosen.mesh.triangles.len()), "{}", chosen.mesh.triangles.len());
     let [before, after] = chosen.layers[0].error;
@@ -177,6 +186,7 @@ fn chosen_triangles_fit_and_are_the_same_for_any_threads() {
         room: 3,
         views: 12,
         sets: 2,
+        attempts: 2,
         view_size: 64,
         polish: PolishOptions { rounds: 2, ..PolishOptions::default() },
         seed: 0,
@@ -193,6 +203,7 @@ fn chosen_triangles_fit_and_are_the_same_for_any_threads() {
     assert!(one.mesh.triangles.len() <= 96 && one.mesh.triangles.len() >= 94);
     let [layer] = &one.layers[..] else { panic!("one layer") };
     assert!(layer.error[1] < layer.error[0]);
+    assert_eq!(layer.starts.len(), 2, "one start for each attempt");
     let test = targets(&high, 10, 96);
     let error = |mesh: &Mesh| Pictures::new(&test, Surface::new(mesh)).error();
     let even = sphere(5);
@@ -213,6 +224,7 @@ fn what_is_behind_glass_is_kept() {
         room: 2,
         views: 6,
         sets: 1,
+        attempts: 1,
         view_size: 48,
         polish: PolishOptions { rounds: 0, sweeps: 1, ..PolishOptions::default() },
         seed: 0,
