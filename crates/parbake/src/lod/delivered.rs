@@ -27,7 +27,7 @@ use std::time::Instant;
 
 /// A level may have a model's own vertices where it keeps at least this share of its triangles.
 const LEAST_SHARE: f64 = 1.0 / 64.0;
-/// Ways to collapse edges.
+/// Ways to collapse edges that are tried first.
 const COLLAPSES: [Collapses; 9] = [
     Collapses { seams: Seams::Kept, normal_weight: 0.5, uv_weight: 0.5, moves: false },
     Collapses { seams: Seams::OfTextures, normal_weight: 0.1, uv_weight: 0.5, moves: false },
@@ -39,6 +39,14 @@ const COLLAPSES: [Collapses; 9] = [
     Collapses { seams: Seams::Crossed, normal_weight: 0.5, uv_weight: 0.5, moves: false },
     Collapses { seams: Seams::Crossed, normal_weight: 0.5, uv_weight: 0.5, moves: true },
 ];
+/// Weights of normals and of texture coordinates that are tried around the best of these.
+const NORMAL_WEIGHTS: [f32; 6] = [0.03, 0.1, 0.2, 0.3, 0.5, 1.0];
+const UV_WEIGHTS: [f32; 4] = [0.05, 0.2, 0.5, 1.0];
+/// Ways that are tried around the best one with the same seams, at most; only where that is at most so many decibels below
+/// the best one of all, and that still shows what it lacks.
+const MOST_SEARCHED: usize = 8;
+const PROMISING: f64 = 2.0;
+const INVISIBLE: f64 = 60.0;
 /// Texels of a map along a line for each pixel that the surface covers, at most.
 const DENSITY: f64 = 4.0;
 
@@ -96,8 +104,9 @@ pub(crate) struct Coarser {
     pub psnr: f64,
 }
 
-/// The model with at most `triangles` triangles and its own layout, by those of [`COLLAPSES`] whose pictures show most; none
-/// where seams leave too many triangles. `side` is how many texels along a line its surface needs.
+/// The model with at most `triangles` triangles and its own layout, by those collapses whose pictures show most: the best of
+/// [`COLLAPSES`], or what a search from there finds. None where seams leave too many triangles. `side` is how many texels
+/// along a line its surface needs.
 pub(crate) fn coarser(
     maker: &Maker,
     judge: &Judge,
@@ -106,27 +115,69 @@ pub(crate) fn coarser(
     is_over: &dyn Fn() -> bool,
 ) -> Result<Option<Coarser>, BakeError> {
     let model = maker.model;
-    let finest = maker.power_of_two(DENSITY * side);
-    let look = with_maps_at_most(model, finest);
+    let look = with_maps_at_most(model, maker.power_of_two(DENSITY * side));
     let mut best: Option<Coarser> = None;
-    // With all triangles there is nothing to choose.
-    let ways = if model.mesh.triangles.len() > triangles { COLLAPSES.len() } else { 1 };
-    for collapses in COLLAPSES.into_iter().take(ways) {
-        if is_over() {
-            break;
-        }
-        let mesh = simplify_in_layout(&model.mesh, triangles, collapses);
+    let mut tried: Vec<(Collapses, f64)> = Vec::new();
+    let mut weigh = |tried: &mut Vec<(Collapses, f64)>, own: Collapses| -> Result<(), BakeError> {
+        let mesh = simplify_in_layout(&model.mesh, triangles, own);
         if mesh.triangles.is_empty() || mesh.triangles.len() > triangles {
-            continue;
+            tried.push((own, f64::NEG_INFINITY));
+            return Ok(());
         }
         let rig = transferred(model, &mesh, &[]);
         let coarse = Model { mesh, rig, ..look.clone() };
         let psnr = judge.psnr(&coarse)?;
+        tried.push((own, psnr));
         if best.as_ref().is_none_or(|best| psnr > best.psnr) {
             best = Some(Coarser { model: coarse, psnr });
         }
+        Ok(())
+    };
+    // With all triangles there is nothing to choose.
+    let has_choice = model.mesh.triangles.len() > triangles;
+    for own in COLLAPSES.into_iter().take(if has_choice { COLLAPSES.len() } else { 1 }) {
+        if is_over() {
+            break;
+        }
+        weigh(&mut tried, own)?;
+    }
+    for seams in [Seams::Kept, Seams::OfTextures, Seams::Crossed].into_iter().filter(|_| has_choice) {
+        for _ in 0..MOST_SEARCHED {
+            let Some(next) = next(&tried, seams).filter(|_| !is_over()) else { break };
+            weigh(&mut tried, next)?;
+        }
     }
     Ok(best)
+}
+
+/// What to try after all that was, with these seams: what is beside the best one. None where others are far better, nothing is left
+/// to be gained, or all beside it were tried.
+fn next(tried: &[(Collapses, f64)], seams: Seams) -> Option<Collapses> {
+    let best =
+        |own: &mut dyn Iterator<Item = &(Collapses, f64)>| own.copied().max_by(|a, b| a.1.total_cmp(&b.1));
+    let (_, most) = best(&mut tried.iter())?;
+    let (own, psnr) = best(&mut tried.iter().filter(|(own, _)| own.seams == seams))?;
+    let is_known = |other: &Collapses| tried.iter().any(|(known, _)| known == other);
+    (psnr >= most - PROMISING && most < INVISIBLE)
+        .then(|| neighbours(own).into_iter().find(|other| !is_known(other)))
+        .flatten()
+}
+
+/// Collapses with the same seams that differ in one thing, by a step.
+fn neighbours(own: Collapses) -> Vec<Collapses> {
+    let moved = Collapses { moves: !own.moves, ..own };
+    let normals = beside(&NORMAL_WEIGHTS, own.normal_weight).into_iter();
+    let uvs = beside(&UV_WEIGHTS, own.uv_weight).into_iter();
+    (uvs.map(|uv_weight| Collapses { uv_weight, ..own }))
+        .chain(normals.map(|normal_weight| Collapses { normal_weight, ..own }))
+        .chain([moved])
+        .collect()
+}
+
+/// The weights beside one of `weights`.
+fn beside(weights: &[f32], own: f32) -> Vec<f32> {
+    let place = weights.iter().position(|&weight| weight == own).unwrap_or(0);
+    (0..weights.len()).filter(|k| k.abs_diff(place) == 1).map(|k| weights[k]).collect()
 }
 
 /// A model's name, materials and maps without its surface; no map has more than `side` texels along a side.
@@ -150,4 +201,39 @@ fn kinds_of_images(materials: &[Material]) -> Vec<(usize, MapKind)> {
         kinds.extend(image.filter(is_new).map(|image| (image, kind)));
     }
     kinds
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects the search: it goes on from the best with the same seams, tries nothing twice, and leaves seams alone that show far
+    /// less; it ends.
+    #[test]
+    fn the_search_climbs_from_the_best_with_the_same_seams() {
+        let mut tried = vec![(COLLAPSES[0], 40.0), (COLLAPSES[2], 45.0), (COLLAPSES[8], 44.0)];
+        assert_eq!(next(&tried, Seams::Kept), None);
+        for (seams, best) in [(Seams::OfTextures, COLLAPSES[2]), (Seams::Crossed, COLLAPSES[8])] {
+            let mut steps = 0;
+            while let Some(found) = next(&tried, seams) {
+                assert!(found.seams == seams && tried.iter().all(|(known, _)| *known != found));
+                assert!(neighbours(best).contains(&found));
+                tried.push((found, 43.5));
+                steps += 1;
+            }
+            assert_eq!(steps, neighbours(best).len());
+        }
+        tried.push((Collapses { uv_weight: 1.0, ..COLLAPSES[8] }, 46.0));
+        assert_eq!(next(&tried, Seams::Crossed).map(|own| own.uv_weight), Some(1.0));
+        tried.push((Collapses { moves: false, ..COLLAPSES[2] }, 61.0));
+        assert_eq!(next(&tried, Seams::OfTextures), None);
+    }
+
+    /// Protects it from weights that lie beside none.
+    #[test]
+    fn first_ways_have_weights_that_are_searched() {
+        for own in COLLAPSES {
+            assert!(NORMAL_WEIGHTS.contains(&own.normal_weight) && UV_WEIGHTS.contains(&own.uv_weight));
+        }
+    }
 }
