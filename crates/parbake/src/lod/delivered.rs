@@ -26,7 +26,7 @@ use parbake_model::{Material, Mesh, Model};
 use std::time::Instant;
 
 /// A level may have a model's own vertices where it keeps at least this share of its triangles.
-const LEAST_SHARE: f64 = 1.0 / 64.0;
+const LEAST_SHARE: f64 = 1.0 / 256.0;
 /// Ways to collapse edges that are tried first.
 const COLLAPSES: [Collapses; 9] = [
     Collapses { seams: Seams::Kept, normal_weight: 0.5, uv_weight: 0.5, moves: false },
