@@ -57,6 +57,10 @@ pub fn low_poly(
         mesh
     });
     let mut options = choose_options(triangles, preset);
+    if watcher.seconds_left().is_some() {
+        // A budget is for the bake as well.
+        options.attempts = 1;
+    }
     if !high.importances.is_empty() {
         // Quadrics do not know what counts: there must be something to choose from.
         options.room = options.room.max(2);

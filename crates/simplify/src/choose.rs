@@ -222,8 +222,8 @@ fn layer(
         view_pool(views, &high.conventions.rig, seed).par_iter().map(target).collect()
     };
     let mut sets: Vec<Vec<Target>> =
-        (0..options.sets as u64).map(|index| set(options.views, options.seed + index)).collect();
-    let attempts = options.attempts.min(sets.len());
+        (0..options.sets.max(1) as u64).map(|index| set(options.views, options.seed + index)).collect();
+    let attempts = options.attempts.clamp(1, sets.len());
     let mut judges = if attempts > 1 { set(JUDGES, options.seed + options.sets as u64) } else { Vec::new() };
     let starts: Vec<(Start, Surface)> = (starts.into_iter().flatten())
         .filter(|(_, mesh)| !mesh.triangles.is_empty())
@@ -235,6 +235,9 @@ fn layer(
         .collect();
     let mut best: Option<Attempt> = None;
     for first in 0..attempts {
+        if best.is_some() && is_over(watcher) {
+            break;
+        }
         let part = |k: f64| (first as f64 + k) / attempts as f64;
         let whole = &Portion::new(watcher, part(0.0)..part(1.0));
         let (reports, surface) = collapsed(&sets[first], &starts, options.triangles, whole);

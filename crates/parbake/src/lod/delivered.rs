@@ -106,12 +106,13 @@ pub(crate) struct Coarser {
 
 /// The model with at most `triangles` triangles and its own layout, by those collapses whose pictures show most: the best of
 /// [`COLLAPSES`], or what a search from there finds. None where seams leave too many triangles. `side` is how many texels
-/// along a line its surface needs.
+/// along a line its surface needs. Without `searches` there is no search.
 pub(crate) fn coarser(
     maker: &Maker,
     judge: &Judge,
     triangles: usize,
     side: f64,
+    searches: bool,
     is_over: &dyn Fn() -> bool,
 ) -> Result<Option<Coarser>, BakeError> {
     let model = maker.model;
@@ -141,7 +142,9 @@ pub(crate) fn coarser(
         }
         weigh(&mut tried, own)?;
     }
-    for seams in [Seams::Kept, Seams::OfTextures, Seams::Crossed].into_iter().filter(|_| has_choice) {
+    for seams in
+        [Seams::Kept, Seams::OfTextures, Seams::Crossed].into_iter().filter(|_| has_choice && searches)
+    {
         for _ in 0..MOST_SEARCHED {
             let Some(next) = next(&tried, seams).filter(|_| !is_over()) else { break };
             weigh(&mut tried, next)?;
@@ -158,7 +161,7 @@ fn next(tried: &[(Collapses, f64)], seams: Seams) -> Option<Collapses> {
     let (_, most) = best(&mut tried.iter())?;
     let (own, psnr) = best(&mut tried.iter().filter(|(own, _)| own.seams == seams))?;
     let is_known = |other: &Collapses| tried.iter().any(|(known, _)| known == other);
-    (psnr >= most - PROMISING && most < INVISIBLE)
+    (psnr.is_finite() && psnr >= most - PROMISING && most < INVISIBLE)
         .then(|| neighbours(own).into_iter().find(|other| !is_known(other)))
         .flatten()
 }
@@ -213,6 +216,7 @@ mod tests {
     fn the_search_climbs_from_the_best_with_the_same_seams() {
         let mut tried = vec![(COLLAPSES[0], 40.0), (COLLAPSES[2], 45.0), (COLLAPSES[8], 44.0)];
         assert_eq!(next(&tried, Seams::Kept), None);
+        assert_eq!(next(&[(COLLAPSES[0], f64::NEG_INFINITY)], Seams::Kept), None);
         for (seams, best) in [(Seams::OfTextures, COLLAPSES[2]), (Seams::Crossed, COLLAPSES[8])] {
             let mut steps = 0;
             while let Some(found) = next(&tried, seams) {

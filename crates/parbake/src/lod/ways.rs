@@ -66,7 +66,11 @@ pub(crate) fn draft(
         is_over
     };
     let side = maker.texels_along(maker.model, maker.options.screen_size[level]);
-    let own = if keeps { coarser(maker, &judge, triangles, side, &|| is_over(chain))? } else { None };
+    let own = if keeps {
+        coarser(maker, &judge, triangles, side, until.is_none(), &|| is_over(chain))?
+    } else {
+        None
+    };
     let maps =
         own.as_ref().map(|own| scaled(maker, &judge, own, side, &|| is_over(chain))).transpose()?.flatten();
     let scaled = maps.map(|(model, psnr)| {
