@@ -111,10 +111,17 @@ impl Part {
 }
 
 /// Puts sources into the smallest texture of at most `most_texels` texels and `most_side` texels along a side that holds
-/// them, all scaled by one factor where that has to be. `uvs` are the V vertices' coordinates as their source reads them.
+/// them, all scaled by one factor where that has to be. `uvs` are the V vertices' coordinates as their source reads them. `aspect`
+/// is how many texels along u the texture has for each along v, a power of two; where none is given it is 1 or 2.
 ///
 /// None where a vertex belongs to two sources, coordinates are not finite, or no such texture holds all.
-pub fn blocks(sources: &[Source], uvs: &[Vec2], most_side: usize, most_texels: usize) -> Option<Blocks> {
+pub fn blocks(
+    sources: &[Source],
+    uvs: &[Vec2],
+    most_side: usize,
+    most_texels: usize,
+    aspect: Option<f64>,
+) -> Option<Blocks> {
     let mut owner = vec![usize::MAX; uvs.len()];
     for (index, source) in sources.iter().enumerate() {
         for v in source.triangles.as_flattened() {
@@ -127,7 +134,7 @@ pub fn blocks(sources: &[Source], uvs: &[Vec2], most_side: usize, most_texels: u
     }
     let charts: Vec<Vec<Chart>> = sources.iter().map(|source| charts_of(source, uvs)).collect();
     let at = |factor: f64, size: [usize; 2]| packed(sources, &charts, factor, size);
-    let sizes = sizes(most_side, most_texels);
+    let sizes = sizes(most_side, most_texels, aspect);
     let (last, _) = sizes.split_last()?;
     for &size in &sizes {
         let least = if size == *last { SMALLEST_FACTOR } else { LEAST_FACTOR };
@@ -150,11 +157,13 @@ pub fn blocks(sources: &[Source], uvs: &[Vec2], most_side: usize, most_texels: u
     None
 }
 
-/// Sizes from small to large: squares, and rectangles twice as wide as high.
-fn sizes(most_side: usize, most_texels: usize) -> Vec<[usize; 2]> {
-    let squares = (3..usize::BITS - 1).map(|k| 1usize << k).take_while(|&side| side <= most_side);
-    let both = squares.flat_map(|side| [[side, side], [2 * side, side]]);
-    both.filter(|[w, h]| *w <= most_side && w * h <= most_texels).collect()
+/// Sizes from small to large: squares, and rectangles twice as wide as high, or those of one aspect.
+fn sizes(most_side: usize, most_texels: usize, aspect: Option<f64>) -> Vec<[usize; 2]> {
+    let heights = (3..usize::BITS - 1).map(|k| 1usize << k).take_while(|&side| side <= most_side);
+    let aspects = aspect.map_or(vec![1.0, 2.0], |aspect| vec![aspect]);
+    let all = heights.flat_map(|h| aspects.iter().map(move |aspect| [(aspect * h as f64) as usize, h]));
+    let fits = |w: usize, h: usize| w.is_power_of_two() && w >= 8 && w <= most_side && w * h <= most_texels;
+    all.filter(|[w, h]| fits(*w, *h)).collect()
 }
 
 /// Charts: triangles that share a vertex, or coordinates, are of one.
@@ -314,7 +323,7 @@ mod tests {
         ]
         .concat();
         let plain = Source { texels: None, ..source(4, 0.0) };
-        let out = blocks(&[source(0, 64.0), source(4, 64.0)], &uvs, 1024, usize::MAX).unwrap();
+        let out = blocks(&[source(0, 64.0), source(4, 64.0)], &uvs, 1024, usize::MAX, None).unwrap();
         assert_eq!(out.size, [64, 64]);
         let texels = |uv: Vec2| uv * 64.0;
         for (first, block) in [0usize, 4].into_iter().zip(0..2usize) {
@@ -328,7 +337,7 @@ mod tests {
             assert!(all.map(|(now, before)| texels(*now) - *before * 64.0).all(|own| own == moved));
             assert_eq!(moved.fract(), Vec2::ZERO);
         }
-        let out = blocks(&[source(0, 64.0), plain], &uvs, 1024, usize::MAX).unwrap();
+        let out = blocks(&[source(0, 64.0), plain], &uvs, 1024, usize::MAX, None).unwrap();
         let block = out.blocks.iter().find(|b| b.source == 1).unwrap();
         assert_eq!((block.shows, block.size), (None, [8, 8]));
         let middle = (vec2(block.place[0] as f32, block.place[1] as f32) + 4.0)
@@ -341,24 +350,34 @@ mod tests {
     fn a_little_scale_is_given_for_half_of_the_texels() {
         let uvs = [corners(Vec2::ZERO, Vec2::ONE), corners(Vec2::ZERO, Vec2::ONE)].concat();
         let plain = Source { texels: None, ..source(4, 0.0) };
-        let out = blocks(&[source(0, 512.0), plain], &uvs, 1024, usize::MAX).unwrap();
+        let out = blocks(&[source(0, 512.0), plain], &uvs, 1024, usize::MAX, None).unwrap();
         assert_eq!(out.size, [512, 512]);
         let share = out.uvs[2].x - out.uvs[0].x;
         assert!((0.9..1.0).contains(&share), "{share}");
         // With too few texels all the same.
-        let out = blocks(&[source(0, 512.0), source(4, 512.0)], &uvs, 1024, 128 * 128).unwrap();
+        let out = blocks(&[source(0, 512.0), source(4, 512.0)], &uvs, 1024, 128 * 128, None).unwrap();
         assert_eq!(out.size, [128, 128]);
+    }
+
+    /// Protects relief where viewers make up tangents: a texture of a given aspect scales all coordinates alike.
+    #[test]
+    fn an_aspect_is_kept() {
+        let uvs = [corners(Vec2::ZERO, Vec2::ONE), corners(Vec2::ZERO, Vec2::ONE)].concat();
+        let sources = [source(0, 64.0), source(4, 64.0)];
+        let of = |aspect| blocks(&sources, &uvs, 1024, usize::MAX, aspect).unwrap().size;
+        assert_eq!((of(None), of(Some(1.0)), of(Some(0.5))), ([128, 64], [128, 128], [64, 128]));
+        assert!(blocks(&sources, &uvs, 1024, usize::MAX, Some(1.0 / 256.0)).is_none());
     }
 
     /// Protects from textures that no vertex can read.
     #[test]
     fn what_cannot_be_moved_is_refused() {
         let uvs = corners(Vec2::ZERO, Vec2::ONE);
-        assert!(blocks(&[source(0, 64.0), source(0, 64.0)], &uvs, 1024, usize::MAX).is_none());
+        assert!(blocks(&[source(0, 64.0), source(0, 64.0)], &uvs, 1024, usize::MAX, None).is_none());
         let mut broken = uvs;
         broken[2].x = f32::NAN;
-        assert!(blocks(&[source(0, 64.0)], &broken, 1024, usize::MAX).is_none());
-        assert!(blocks(&[source(0, 64.0)], &uvs, 4, usize::MAX).is_none());
+        assert!(blocks(&[source(0, 64.0)], &broken, 1024, usize::MAX, None).is_none());
+        assert!(blocks(&[source(0, 64.0)], &uvs, 4, usize::MAX, None).is_none());
     }
 
     proptest! {
@@ -373,7 +392,7 @@ mod tests {
                 wrap: [[Wrap::Repeat; 2], [Wrap::Mirror, Wrap::Clamp], [Wrap::Repeat; 2]][k],
             };
             let sources: Vec<Source> = (0..3).map(of).collect();
-            let out = blocks(&sources, &uvs, 1024, 1 << 18).unwrap();
+            let out = blocks(&sources, &uvs, 1024, 1 << 18, None).unwrap();
             prop_assert!(out.size[0] * out.size[1] <= 1 << 18);
             for (i, a) in out.blocks.iter().enumerate() {
                 prop_assert!((0..2).all(|k| a.place[k] + a.size[k] <= out.size[k]));

@@ -65,7 +65,8 @@ pub struct StartReport {
     pub start: Start,
     /// Triangles it came to.
     pub triangles: usize,
-    /// Mean squared display error of its pictures as far as it can be told without a texture, all backgrounds alike.
+    /// Mean squared display error of its pictures as far as it can be told without a texture. All backgrounds count alike in the
+    /// first attempt, as in [`LayerReport::error`] in later ones.
     pub error: f64,
 }
 

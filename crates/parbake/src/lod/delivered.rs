@@ -125,8 +125,7 @@ pub(crate) fn coarser(
             tried.push((own, f64::NEG_INFINITY));
             return Ok(());
         }
-        let rig = transferred(model, &mesh, &[]);
-        let coarse = Model { mesh, rig, ..look.clone() };
+        let coarse = Model { mesh, ..look.clone() };
         let psnr = judge.psnr(&coarse)?;
         tried.push((own, psnr));
         if best.as_ref().is_none_or(|best| psnr > best.psnr) {
@@ -150,7 +149,11 @@ pub(crate) fn coarser(
             weigh(&mut tried, next)?;
         }
     }
-    Ok(best)
+    // Pictures are of the model at rest.
+    Ok(best.map(|own| {
+        let rig = transferred(model, &own.model.mesh, &[]);
+        Coarser { model: Model { rig, ..own.model }, ..own }
+    }))
 }
 
 /// What to try after all that was, with these seams: what is beside the best one. None where others are far better, nothing is left

@@ -48,7 +48,8 @@ pub(crate) fn with_common_maps(
     }
     let groups = groups(model, &used)?;
     let (sources, uvs) = sources(model, &used, side)?;
-    let laid_out = blocks(&sources, &uvs, most_side, most_texels)?;
+    let aspect = aspect_of_relief(model, &used, &sources);
+    let laid_out = blocks(&sources, &uvs, most_side, most_texels, aspect)?;
     let merge = Merge { model, used: &used, laid_out: &laid_out };
     let (maps, strength) = merge.maps();
     let look = Look {
@@ -178,6 +179,19 @@ fn sources(model: &Model, used: &[usize], side: f64) -> Option<(Vec<Source>, Vec
         sources.push(Source { triangles, texels: Some(texels / halvings.exp2()), wrap });
     }
     Some((sources, uvs))
+}
+
+/// The aspect of textures with which viewers that make up tangents show the same relief: they take directions and strength of a normal
+/// map from coordinates (`face_frames.rs`), which have to be scaled alike along u and v. None where a model has tangents or no
+/// normal maps, or where textures differ.
+fn aspect_of_relief(model: &Model, used: &[usize], sources: &[Source]) -> Option<f64> {
+    if !model.mesh.tangents.is_empty() {
+        return None;
+    }
+    let relief = used.iter().zip(sources).filter(|(index, _)| model.materials[**index].has_normal_map());
+    let mut aspects = relief.filter_map(|(_, source)| source.texels).map(|texels| texels.x / texels.y);
+    let first = aspects.next()?;
+    (first.log2().fract() == 0.0 && aspects.all(|other| other == first)).then_some(first)
 }
 
 /// Scale and offset of coordinates that are not moved.

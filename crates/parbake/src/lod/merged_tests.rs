@@ -215,3 +215,23 @@ fn what_maps_do_not_say_stays() {
     assert!(refused(|model| model.mesh.triangles[2][0] = 0));
     assert!(!refused(|_| {}));
 }
+
+/// Protects relief of models without tangents: viewers make frames of coordinates, which are scaled alike along u and v then. Two
+/// textures side by side would fit into an oblong one.
+#[test]
+fn relief_keeps_its_aspect() {
+    let mut model = squares();
+    model.materials.iter_mut().for_each(|material| material.base_color_texture = None);
+    model.materials[0].normal_texture = Some(TextureSlot { image: 1, ..TextureSlot::default() });
+    model.materials[1].normal_texture = Some(TextureSlot { image: 0, ..TextureSlot::default() });
+    model.mesh.uvs[..4].copy_from_slice(&[vec2(0.0, 0.0), vec2(1.0, 0.0), vec2(1.0, 1.0), vec2(0.0, 1.0)]);
+    let size = |model: &Model| {
+        let image = with_common_maps(model, 1e3, 1024, usize::MAX).unwrap().images.remove(0);
+        [image.width, image.height]
+    };
+    let [width, height] = size(&model);
+    assert_eq!(width, height);
+    model.mesh.tangents = vec![Vec4::X + Vec4::W; 12];
+    let [width, height] = size(&model);
+    assert_eq!(width, 2 * height);
+}

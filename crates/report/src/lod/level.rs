@@ -112,7 +112,9 @@ fn triangles(report: &LevelReport) -> String {
     for (place, layer) in report.low_poly.iter().enumerate() {
         let LayerReport { triangles, starts, error } = layer;
         let start = |start: Option<&StartReport>| start.map_or(NOTHING.into(), |s| decibels(s.error));
-        let other = match starts.get(1) {
+        // Later attempts begin with the same kinds again.
+        let is_other = |other: &&StartReport| starts.first().is_some_and(|won| won.start != other.start);
+        let other = match starts.iter().find(is_other) {
             Some(other) => format!("{} ({})", decibels(other.error), name(other.start)),
             None => NOTHING.into(),
         };
