@@ -105,17 +105,11 @@ pub fn bake_to_triangles(
     let begin = Instant::now();
     let kept = with_kept_parts(high, &options.keep_parts)?;
     let high = &*with_parted_materials(&kept);
-    let prepared = prepare(high, options)?;
+    // Several attempts at the triangles share their views.
+    let prepared = prepare(high, options)?.keeping_views();
     check_triangles(&prepared, high, triangles)?;
-    let (low, _) = low_poly(
-        &prepared,
-        high,
-        &coarse_surfaces(&prepared, high),
-        None,
-        triangles,
-        options.preset,
-        watcher,
-    );
+    let start = coarse_surfaces(&prepared, high);
+    let (low, _) = low_poly(&prepared, high, &start, None, triangles, options, watcher)?;
     run(&prepared, &low, Work::Level, options, watcher, begin)
 }
 

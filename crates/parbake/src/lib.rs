@@ -55,6 +55,7 @@ mod raycast;
 mod raycast_options;
 mod report;
 mod rigs;
+mod shortlist;
 mod snapshots;
 mod stats;
 pub mod studio;

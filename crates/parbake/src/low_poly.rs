@@ -1,14 +1,18 @@
-//! A low-poly for a high-poly: triangles chosen by its pictures (`parbake-simplify`).
+//! A low-poly for a high-poly: triangles chosen by its pictures (`parbake-simplify`). Of several attempts at few triangles brief
+//! bakes tell the best (`shortlist.rs`).
 
 use crate::error::BakeError;
-use crate::options::Preset;
+use crate::options::{BakeOptions, Preset};
 use crate::parts::{kept_parts_of, parts_of_materials};
 use crate::rigs::transferred;
+use crate::shortlist::best_baked;
 use crate::snapshots::of_surface;
 use parbake_model::{AlphaMode, Material, MaterialExtensions, Model};
 use parbake_progress::{Showing, Watcher};
 use parbake_simplify::polish::PolishOptions;
-use parbake_simplify::{ChooseOptions, CoarseSurfaces, LayerReport, choose_triangles, least_triangles};
+use parbake_simplify::{
+    ChooseOptions, Chosen, CoarseSurfaces, LayerReport, choose_triangles, least_triangles,
+};
 use parbake_views::high_poly::HighPoly;
 
 /// Triangles that a part which stays apart keeps at least, in each layer.
@@ -39,10 +43,30 @@ pub fn coarse_surfaces(high: &HighPoly, model: &Model) -> CoarseSurfaces {
     CoarseSurfaces::new(high.scene.mesh(), &parts_of_materials(model))
 }
 
-/// A low-poly of at most so many triangles, without texture coordinates, in the high-poly's own space. `model` is
-/// what the high-poly was prepared from, `start` is what `coarse_surfaces` makes of both; `before` is a finer low-poly that it may start from. Also returns how the
-/// triangles of each layer were found. It moves as the model does, and has its parts.
+/// A low-poly, and how the triangles of each layer were found.
+pub type CoarseModel = (Model, Vec<LayerReport>);
+
+/// A low-poly of at most so many triangles, without texture coordinates, in the high-poly's own space; it moves as the
+/// model does, and has its parts. `model` is what the high-poly was prepared from, `start` is what `coarse_surfaces` makes of
+/// both; `before` is a finer low-poly that it may start from; `options` are those of the bake that it is for.
+///
+/// # Errors
+/// An option out of range; a model without extent.
 pub fn low_poly(
+    high: &HighPoly,
+    model: &Model,
+    start: &CoarseSurfaces,
+    before: Option<&Model>,
+    triangles: usize,
+    options: &BakeOptions,
+    watcher: &dyn Watcher,
+) -> Result<CoarseModel, BakeError> {
+    let attempts = attempts(high, model, start, before, triangles, options.preset, watcher);
+    best_baked(high, model, attempts, options, watcher)
+}
+
+/// Low-polys by several attempts, the best first as far as that can be told without a texture.
+fn attempts(
     high: &HighPoly,
     model: &Model,
     start: &CoarseSurfaces,
@@ -50,7 +74,7 @@ pub fn low_poly(
     triangles: usize,
     preset: Preset,
     watcher: &dyn Watcher,
-) -> (Model, Vec<LayerReport>) {
+) -> Vec<CoarseModel> {
     let before = before.map(|low| {
         let mut mesh = low.mesh.clone();
         high.frame.apply(&mut mesh);
@@ -71,14 +95,17 @@ pub fn low_poly(
     let parts = &start.parts;
     let watcher = &Showing::new(watcher, |snapshot| Some(of_surface(&model.name, high, snapshot)));
     let chosen = choose_triangles(high, before.as_ref(), start, &options, watcher);
-    let mut mesh = chosen.mesh;
-    for point in &mut mesh.positions {
-        *point = *point / high.frame.scale + high.frame.centre;
-    }
-    let materials = model.materials.iter().map(layer_only).collect();
-    let rig = transferred(model, &mesh, parts);
-    let parts = kept_parts_of(model, &mesh, parts);
-    (Model { name: model.name.clone(), mesh, materials, rig, parts, ..Model::default() }, chosen.layers)
+    let materials: Vec<Material> = model.materials.iter().map(layer_only).collect();
+    let coarse = |Chosen { mut mesh, layers }: Chosen| {
+        for point in &mut mesh.positions {
+            *point = *point / high.frame.scale + high.frame.centre;
+        }
+        let rig = transferred(model, &mesh, parts);
+        let parts = kept_parts_of(model, &mesh, parts);
+        let (name, materials) = (model.name.clone(), materials.clone());
+        (Model { name, mesh, materials, rig, parts, ..Model::default() }, layers)
+    };
+    chosen.into_iter().map(coarse).collect()
 }
 
 /// Of a material what says in which layer it is drawn.

@@ -7,6 +7,7 @@
 //! ```
 //!
 //! Few triangles are chosen several times, each time from other views: where a search of single changes ends is a matter of luck.
+//! Which of them is best, only a bake can tell: with a texture others win than without one.
 //!
 //! What is opaque, cut out, blended or transmits light are layers (`views/alpha_layers.rs`), and each is chosen by
 //! itself: through glass one sees what is behind it, so that nothing of it is hidden. Layers share the triangles as
@@ -22,7 +23,7 @@ use crate::pictures::Pictures;
 use crate::polish::{PolishOptions, is_over, polish};
 use crate::start::{CoarseSurfaces, Start, counts_of_parts, with_lost_parts};
 use crate::surface::Surface;
-use crate::target::{BACKGROUNDS, Target};
+use crate::target::{BACKGROUNDS, EQUAL, Target};
 use parbake_mesh::smooth_normals;
 use parbake_model::Mesh;
 use parbake_progress::{Portion, Showing, Snapshot, Stage, Watcher};
@@ -47,8 +48,8 @@ pub struct ChooseOptions {
     /// Sets of so many views that points are moved by in turn, 1 or more. With one alone they come to lie where its
     /// pixels do not see what is wrong.
     pub sets: usize,
-    /// Times that collapsing and polishing are done, each time from another one of the sets, 1 to `sets`. The surface with the
-    /// least error in views that none was fitted to is taken.
+    /// Times that collapsing and polishing are done, each time from another one of the sets, 1 to `sets`. They are ordered by
+    /// their errors in views that none was fitted to.
     pub attempts: usize,
     /// Side of a view in pixels.
     pub view_size: usize,
@@ -65,8 +66,7 @@ pub struct StartReport {
     pub start: Start,
     /// Triangles it came to.
     pub triangles: usize,
-    /// Mean squared display error of its pictures as far as it can be told without a texture. All backgrounds count alike in the
-    /// first attempt, as in [`LayerReport::error`] in later ones.
+    /// Mean squared display error of its pictures as far as it can be told without a texture, all backgrounds alike.
     pub error: f64,
 }
 
@@ -75,7 +75,7 @@ pub struct StartReport {
 pub struct LayerReport {
     /// Triangles.
     pub triangles: usize,
-    /// All starts that were tried, by each attempt; the first is the one that was taken.
+    /// All starts that were tried, by each attempt; the first is the one that it has.
     pub starts: Vec<StartReport>,
     /// Mean squared display error of its pictures before and after polishing, each background weighed by the
     /// reciprocal of its own error.
@@ -83,7 +83,7 @@ pub struct LayerReport {
 }
 
 /// What was chosen.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Chosen {
     /// In the common frame.
     pub mesh: Mesh,
@@ -101,24 +101,26 @@ const FEW: usize = 24;
 const JUDGES: usize = 96;
 
 /// Chooses the triangles; `before` is the level before in the common frame, if there is one. `coarse` is of the
-/// high-poly's mesh; its parts are those that move by themselves, and no triangle of the result lies on two.
+/// high-poly's mesh; its parts are those that move by themselves, and no triangle of the result lies on two. Where there
+/// is one layer, all attempts are returned, that first whose pictures without a texture show most; else one, of the best of each layer.
+/// Never empty.
 pub fn choose_triangles(
     high: &HighPoly,
     before: Option<&Mesh>,
     coarse: &CoarseSurfaces,
     options: &ChooseOptions,
     watcher: &dyn Watcher,
-) -> Chosen {
+) -> Vec<Chosen> {
     let (mesh, parts) = (high.scene.mesh(), &coarse.parts[..]);
     let start = coarse.collapsed_to(options.room * options.triangles);
     let whole = |start: Mesh, own: &Mesh| with_lost_parts(start, own, parts, options.least);
     let layers = high_layers(high);
-    let mut chosen = Chosen { mesh: Mesh::default(), layers: Vec::new() };
+    let mut chosen = Chosen::default();
     if let [_] = layers[..] {
         let start = whole(start, mesh);
         let starts = [Some((Start::Quadrics, start)), before.map(|mesh| (Start::Level, mesh.clone()))];
-        chosen.add(layer(high, None, parts, starts, options, watcher));
-        return chosen;
+        let attempts = layer(high, None, parts, starts, options, watcher);
+        return attempts.into_iter().map(Chosen::of_one_layer).collect();
     }
     let kind_of_material = kinds_of_materials(high, &layers);
     let own = |mesh: &Mesh, kind: usize| of_kind(mesh, kind, &kind_of_material);
@@ -136,9 +138,9 @@ pub fn choose_triangles(
         let own = Portion::new(watcher, part(kind)..part(kind + 1));
         let own = Showing::new(&own, |snapshot| Some(joined(&chosen.mesh, snapshot)));
         let found = layer(high, Some(triangles), parts, starts, &options, &own);
-        chosen.add(found);
+        found.into_iter().take(1).for_each(|best| chosen.add(best));
     }
-    chosen
+    vec![chosen]
 }
 
 /// A layer that is being chosen beside those that are.
@@ -198,6 +200,12 @@ fn of_kind(mesh: &Mesh, kind: usize, kind_of_material: &[usize]) -> Mesh {
 }
 
 impl Chosen {
+    fn of_one_layer(own: (Mesh, LayerReport)) -> Self {
+        let mut chosen = Self::default();
+        chosen.add(own);
+        chosen
+    }
+
     fn add(&mut self, (mesh, report): (Mesh, LayerReport)) {
         let first = self.mesh.positions.len() as u32;
         // Smooth within the layer alone: a pane does not bend with its frame.
@@ -209,7 +217,7 @@ impl Chosen {
     }
 }
 
-/// Chooses the triangles of one layer, the high-poly's `triangles`, or of all.
+/// Chooses the triangles of one layer, the high-poly's `triangles`, or of all: all attempts, the best first.
 fn layer(
     high: &HighPoly,
     triangles: Option<&[u32]>,
@@ -217,7 +225,7 @@ fn layer(
     starts: [Option<(Start, Mesh)>; 2],
     options: &ChooseOptions,
     watcher: &dyn Watcher,
-) -> (Mesh, LayerReport) {
+) -> Vec<(Mesh, LayerReport)> {
     let target = |view: &View| Target::new(high, triangles, view.camera, options.view_size);
     let set = |views: usize, seed: u64| -> Vec<Target> {
         view_pool(views, &high.conventions.rig, seed).par_iter().map(target).collect()
@@ -234,19 +242,24 @@ fn layer(
             (start, surface)
         })
         .collect();
-    let mut best: Option<Attempt> = None;
+    let mut tried: Vec<Attempt> = Vec::new();
     for first in 0..attempts {
-        if best.is_some() && is_over(watcher) {
+        if !tried.is_empty() && is_over(watcher) {
             break;
         }
         let part = |k: f64| (first as f64 + k) / attempts as f64;
         let whole = &Portion::new(watcher, part(0.0)..part(1.0));
+        sets.iter_mut().for_each(|set| weigh(set, EQUAL));
         let (reports, surface) = collapsed(&sets[first], &starts, options.triangles, whole);
-        if best.is_none() {
-            weigh_backgrounds(&mut sets, &mut judges, &surface);
-        } else if is_over(watcher) {
+        if !tried.is_empty() && is_over(watcher) {
             // It may have too many triangles still.
             break;
+        }
+        // Its own: what is alike ends alike, and the more attempts differ, the better is the best of them.
+        let weights = reciprocal_errors(&mut sets[0], &surface);
+        sets.iter_mut().for_each(|set| weigh(set, weights));
+        if tried.is_empty() {
+            weigh(&mut judges, weights);
         }
         let mut pictures = Pictures::new(&sets[first], surface);
         let before = pictures.error();
@@ -254,22 +267,24 @@ fn layer(
         pictures.look_from(&sets[first]);
         let error = [before, pictures.error()];
         let judged = Pictures::new(&judges, pictures.surface.clone()).error();
-        let own = Attempt { surface: pictures.surface, reports, error, judged };
-        best = Some(match best {
-            None => own,
-            Some(best) if own.judged < best.judged => own.after(best),
-            Some(best) => best.after(own),
-        });
+        tried.push(Attempt { surface: pictures.surface, reports, error, judged });
     }
     watcher.progress(Stage::Simplify, 1, 1);
-    let Attempt { surface, reports, error, .. } = best.unwrap_or_default();
+    tried.sort_by(|a, b| a.judged.total_cmp(&b.judged));
+    (0..tried.len()).map(|own| finished(&tried, own)).collect()
+}
+
+/// An attempt with its report, which tells first what it began with.
+fn finished(tried: &[Attempt], own: usize) -> (Mesh, LayerReport) {
+    let Attempt { surface, error, .. } = &tried[own];
+    let others = (0..tried.len()).filter(|&other| other != own);
+    let starts = std::iter::once(own).chain(others).flat_map(|k| tried[k].reports.clone()).collect();
     let mesh = surface.to_mesh();
-    let report = LayerReport { triangles: mesh.triangles.len(), starts: reports, error };
+    let report = LayerReport { triangles: mesh.triangles.len(), starts, error: *error };
     (mesh, report)
 }
 
 /// A polished surface.
-#[derive(Default)]
 struct Attempt {
     surface: Surface,
     /// What it started from first.
@@ -278,14 +293,6 @@ struct Attempt {
     error: [f64; 2],
     /// In views that no attempt was fitted to.
     judged: f64,
-}
-
-impl Attempt {
-    /// The same, which also knows what another one started from.
-    fn after(mut self, other: Self) -> Self {
-        self.reports.extend(other.reports);
-        self
-    }
 }
 
 /// The starts with so many triangles: what is told of each, the best first, and the surface of that one.
@@ -309,19 +316,22 @@ fn collapsed(
     (reports, surfaces.into_iter().next().unwrap_or_default())
 }
 
-/// Lets backgrounds count by the reciprocals of their errors: as people count in decibels, a tenth less is as much on
+/// Weights of backgrounds by the reciprocals of a surface's errors: as people count in decibels, a tenth less is as much on
 /// one as on another.
-fn weigh_backgrounds(sets: &mut [Vec<Target>], judges: &mut [Target], surface: &Surface) {
-    let mut weights = [0.0; BACKGROUNDS.len()];
-    for background in 0..weights.len() {
+fn reciprocal_errors(targets: &mut [Target], surface: &Surface) -> [f32; BACKGROUNDS.len()] {
+    let errors: [f64; BACKGROUNDS.len()] = std::array::from_fn(|background| {
         let mut only = [0.0; BACKGROUNDS.len()];
         only[background] = 1.0;
-        sets[0].par_iter_mut().for_each(|target| target.weigh(only));
-        weights[background] = 1.0 / Pictures::new(&sets[0], surface.clone()).error().max(1e-9);
-    }
-    let sum: f64 = weights.iter().sum();
-    let weights = weights.map(|weight| (weight / sum) as f32);
-    sets.par_iter_mut().flatten().chain(judges.par_iter_mut()).for_each(|target| target.weigh(weights));
+        weigh(targets, only);
+        Pictures::new(targets, surface.clone()).error().max(1e-9)
+    });
+    let sum: f64 = errors.iter().map(|error| 1.0 / error).sum();
+    errors.map(|error| (1.0 / error / sum) as f32)
+}
+
+/// Lets backgrounds count so much.
+fn weigh(targets: &mut [Target], weights: [f32; BACKGROUNDS.len()]) {
+    targets.par_iter_mut().for_each(|target| target.weigh(weights));
 }
 
 #[cfg(test)]

@@ -41,6 +41,8 @@ const LEAST_OTHER_SIDE: f32 = 0.01;
 const LEAST_SHIFT: f32 = 0.08;
 /// Display values of what may lie behind: black, grey and white.
 pub const BACKGROUNDS: [f32; 3] = [0.0, 0.735, 1.0];
+/// Weights of backgrounds that count alike.
+pub const EQUAL: [f32; BACKGROUNDS.len()] = [1.0 / BACKGROUNDS.len() as f32; BACKGROUNDS.len()];
 
 /// What one pixel shows of the high-poly.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,7 +122,7 @@ impl Target {
         };
         let pixels = inside(&looks, size);
         let mut target = Self { camera, size, pixels, outlines: outlines(&looks) };
-        target.weigh([1.0 / BACKGROUNDS.len() as f32; BACKGROUNDS.len()]);
+        target.weigh(EQUAL);
         target
     }
 

@@ -293,8 +293,9 @@ impl<'a> Maker<'a> {
     ) -> Result<Option<Draft>, BakeError> {
         let begin = Instant::now();
         let watcher = chain.bake(level, bake, until);
+        let options = self.options.bake(self.options.max_texture_size);
         let (low, layers) =
-            low_poly(&self.high, self.model, &self.start, finer, triangles, self.options.preset, &watcher);
+            low_poly(&self.high, self.model, &self.start, finer, triangles, &options, &watcher)?;
         if watcher.stopped() {
             // There may be too many triangles still.
             return Ok(None);
