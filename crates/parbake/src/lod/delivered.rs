@@ -23,10 +23,12 @@ use parbake_image::material_maps::texture_slot;
 use parbake_image::reduced::reduced;
 use parbake_mesh::{Collapses, Seams, simplify_in_layout};
 use parbake_model::{Material, Mesh, Model};
+use std::borrow::Cow;
 use std::time::Instant;
 
-/// A level may have a model's own vertices where it keeps at least this share of its triangles.
-const LEAST_SHARE: f64 = 1.0 / 256.0;
+/// Of a model with more than so many times the wanted triangles, all ways begin with a mesh of a quarter of that, to save time;
+/// it costs up to half a decibel.
+const MANY: usize = 256;
 /// Ways to collapse edges that are tried first.
 const COLLAPSES: [Collapses; 9] = [
     Collapses { seams: Seams::Kept, normal_weight: 0.5, uv_weight: 0.5, moves: false },
@@ -50,15 +52,14 @@ const INVISIBLE: f64 = 60.0;
 /// Texels of a map along a line for each pixel that the surface covers, at most.
 const DENSITY: f64 = 4.0;
 
-/// Whether a level of so many triangles may have the model's own vertices: the model has a layout or needs none, the level keeps
-/// a good part of its triangles, and no option says where triangles have to go.
-pub(crate) fn may_keep_vertices(maker: &Maker, triangles: usize) -> bool {
+/// Whether levels may have the model's own vertices: it has a layout or needs none, and no option says where triangles have
+/// to go.
+pub(crate) fn may_keep_vertices(maker: &Maker) -> bool {
     let model = maker.model;
-    let is_few = (triangles as f64) < LEAST_SHARE * model.mesh.triangles.len() as f64;
     let is_steered = model.parts.is_some() || !maker.high.importances.is_empty();
     // Without a layout nothing is lost by other vertices, and those of a rig that are chosen anew bend better.
     let has_layout = !model.mesh.uvs.is_empty() || (model.images.is_empty() && model.rig.is_none());
-    !is_few && !is_steered && has_layout
+    !is_steered && has_layout
 }
 
 /// A bake of the model onto its own vertices, fewer of them; the texture's size follows the level's where none is given.
@@ -117,10 +118,11 @@ pub(crate) fn coarser(
 ) -> Result<Option<Coarser>, BakeError> {
     let model = maker.model;
     let look = with_maps_at_most(model, maker.power_of_two(DENSITY * side));
+    let fine = begun(&model.mesh, triangles);
     let mut best: Option<Coarser> = None;
     let mut tried: Vec<(Collapses, f64)> = Vec::new();
     let mut weigh = |tried: &mut Vec<(Collapses, f64)>, own: Collapses| -> Result<(), BakeError> {
-        let mesh = simplify_in_layout(&model.mesh, triangles, own);
+        let mesh = simplify_in_layout(&fine, triangles, own);
         if mesh.triangles.is_empty() || mesh.triangles.len() > triangles {
             tried.push((own, f64::NEG_INFINITY));
             return Ok(());
@@ -154,6 +156,15 @@ pub(crate) fn coarser(
         let rig = transferred(model, &own.model.mesh, &[]);
         Coarser { model: Model { rig, ..own.model }, ..own }
     }))
+}
+
+/// What all ways to collapse a mesh to so many triangles begin with.
+fn begun(mesh: &Mesh, triangles: usize) -> Cow<'_, Mesh> {
+    if mesh.triangles.len() <= MANY * triangles {
+        return Cow::Borrowed(mesh);
+    }
+    let coarser = simplify_in_layout(mesh, MANY / 4 * triangles, COLLAPSES[4]);
+    if coarser.triangles.is_empty() { Cow::Borrowed(mesh) } else { Cow::Owned(coarser) }
 }
 
 /// What to try after all that was, with these seams: what is beside the best one. None where others are far better, nothing is left
@@ -212,6 +223,7 @@ fn kinds_of_images(materials: &[Material]) -> Vec<(usize, MapKind)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use parbake_model::glam::{vec2, vec3};
 
     /// Protects the search: it goes on from the best with the same seams, tries nothing twice, and leaves seams alone that show far
     /// less; it ends.
@@ -234,6 +246,26 @@ mod tests {
         assert_eq!(next(&tried, Seams::Crossed).map(|own| own.uv_weight), Some(1.0));
         tried.push((Collapses { moves: false, ..COLLAPSES[2] }, 61.0));
         assert_eq!(next(&tried, Seams::OfTextures), None);
+    }
+
+    /// Protects time: ways to collapse a large mesh share what they begin with, which still leaves much to choose from.
+    #[test]
+    fn large_meshes_are_collapsed_once_for_all_ways() {
+        let (cells, mut mesh) = (40u32, Mesh::default());
+        for (row, column) in (0..=cells).flat_map(|row| (0..=cells).map(move |column| (row, column))) {
+            let (x, y) = (column as f32 / cells as f32, row as f32 / cells as f32);
+            mesh.positions.push(vec3(x, y, 0.1 * (9.0 * x).sin() * (7.0 * y).cos()));
+            mesh.uvs.push(vec2(x, y));
+        }
+        for (row, column) in (0..cells).flat_map(|row| (0..cells).map(move |column| (row, column))) {
+            let a = row * (cells + 1) + column;
+            mesh.triangles.extend([[a, a + 1, a + cells + 2], [a, a + cells + 2, a + cells + 1]]);
+        }
+        mesh.triangle_materials = vec![0; mesh.triangles.len()];
+        mesh.normals = parbake_mesh::smooth_normals(&mesh);
+        assert!(matches!(begun(&mesh, mesh.triangles.len().div_ceil(MANY)), Cow::Borrowed(_)));
+        let few = begun(&mesh, 10).triangles.len();
+        assert!((320..=640).contains(&few), "{few}");
     }
 
     /// Protects it from weights that lie beside none.

@@ -183,8 +183,8 @@ pub fn make_levels<E: From<BakeError>>(
         };
         let Some((draft, write, target)) = made else { break };
         let begin = Instant::now();
-        let subject =
-            maker.lineup.subject(&as_written(&draft.baked.model, &write, options.normal_y)?.model)?;
+        let written = as_written(&draft.baked.model, &write, options.normal_y)?.model;
+        let subject = maker.lineup.subject(&as_viewers_do(&written))?;
         let figures = maker.figures(index, &subject, before.as_ref().map(|(_, subject)| subject))?;
         let Draft { low, layers, baked, way, candidates, seconds: [chosen, fitted, compared] } = draft;
         let mip = baked.report.options.smallest_mip.unwrap_or(0.0);
@@ -217,21 +217,15 @@ pub fn make_levels<E: From<BakeError>>(
     Ok(count)
 }
 
-/// Samples along a side of a pixel, each shaded.
-const VIEWER_SAMPLES: usize = 2;
-
 /// What all levels are made of.
 pub(crate) struct Maker<'a> {
     pub model: &'a Model,
     pub high: HighPoly,
     pub options: &'a LodOptions,
-    pub lineup: Lineup,
-    /// The model, ready for its pictures.
-    pub original: Subject,
     /// Pictures as viewers make them.
-    pub viewer: Lineup,
+    pub lineup: Lineup,
     /// The model, ready for these.
-    pub viewed: Subject,
+    pub original: Subject,
     /// The fewest triangles that a level may have.
     pub least: usize,
     /// Triangles of each level, as its size or an option says.
@@ -272,13 +266,11 @@ impl<'a> Maker<'a> {
         let high = prepare_high_poly(model, &options.bake(options.max_texture_size))?;
         options.triangles.iter().try_for_each(|&count| check_triangles(&high, model, count))?;
         let least = least_of(&high, model);
-        let lineup = Lineup::new(model, options.shading);
-        let original = lineup.subject(model)?;
+        let lineup = Lineup::new(model);
+        let original = lineup.subject(&as_viewers_do(model))?;
         let wanted = wanted_triangles(&high, options, least);
         let start = coarse_surfaces(&high, model);
-        let viewer = lineup.as_viewers_do(VIEWER_SAMPLES);
-        let viewed = viewer.subject(&as_viewers_do(model))?;
-        Ok(Self { model, high, options, lineup, original, viewer, viewed, least, wanted, start })
+        Ok(Self { model, high, options, lineup, original, least, wanted, start })
     }
 
     /// Chooses so many triangles and bakes, to be finished by `until`; the texture's size follows the level's where
@@ -359,12 +351,11 @@ impl<'a> Maker<'a> {
         before: Option<&Subject>,
     ) -> Result<Figures, BakeError> {
         let (lineup, screen_size) = (&self.lineup, self.options.screen_size[level]);
-        let at_screen_size = lineup.compare(&self.original, subject, screen_size, true)?;
+        let at_screen_size = lineup.compare(&self.original, subject, screen_size)?;
         let others: Vec<&Subject> = [Some(&self.original), before].into_iter().flatten().collect();
         let switch_pixels = lineup.largest_same(subject, &others, screen_size, self.options.switch_psnr)?;
         let last = others[others.len() - 1];
-        let against_before =
-            switch_pixels.map(|pixels| lineup.compare(last, subject, pixels, true)).transpose()?;
+        let against_before = switch_pixels.map(|pixels| lineup.compare(last, subject, pixels)).transpose()?;
         Ok(Figures { at_screen_size, switch_pixels, against_before })
     }
 

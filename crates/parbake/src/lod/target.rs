@@ -12,6 +12,7 @@ use super::maps::{LevelMap, Reduction, level_maps, size_of, with_reductions};
 use super::options::LodOptions;
 use super::search::{Baking, Choice, Measured, Plan, Search, Step, Verdict, error_of};
 use super::switch::{Lineup, Pictures};
+use super::ways::as_viewers_do;
 use super::written::{AsWritten, as_written};
 use super::{Draft, Maker};
 use crate::error::BakeError;
@@ -227,8 +228,9 @@ impl Tried {
         plan: Plan,
     ) -> Result<(Baking, Vec<Measured>), BakeError> {
         let model = &self.draft.baked.model;
-        let psnr =
-            |model: &Model| -> Result<f64, BakeError> { Ok(lineup.psnr(original, &lineup.subject(model)?)) };
+        let psnr = |model: &Model| -> Result<f64, BakeError> {
+            Ok(lineup.psnr(original, &lineup.subject(&as_viewers_do(model))?))
+        };
         let whole = error_of(psnr(model)?);
         let all = as_written(model, &self.write, self.normal_y)?.bytes;
         let bytes = self.bytes_of_maps(all)?;

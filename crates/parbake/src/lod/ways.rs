@@ -40,8 +40,8 @@ const GAINED_BY_MAPS: f64 = 0.5;
 const TRYING: f64 = 0.2;
 
 /// The level as that way makes it which shows most of the model. Ways are left out where they cannot win: a new layout
-/// where scaled maps are excellent, the delivered layout where its own vertices with maps of nearly all texels would show
-/// less. `before` is the low-poly of the level before. None where the watcher said stop before there was a level.
+/// where scaled maps are excellent, the delivered layout where its own vertices show less, even with maps of nearly all
+/// texels. `before` is the low-poly of the level before. None where the watcher said stop before there was a level.
 pub(crate) fn draft(
     maker: &Maker,
     chain: &mut Chain,
@@ -50,7 +50,7 @@ pub(crate) fn draft(
     triangles: usize,
     until: Option<Instant>,
 ) -> Result<Option<Draft>, BakeError> {
-    let keeps = may_keep_vertices(maker, triangles);
+    let keeps = may_keep_vertices(maker);
     // Nothing to compare: one bake, whose maps cannot grow either.
     if !keeps && (until.is_some() || texels_of(maker.model) == 0) {
         return maker.draft(chain, (level, 0), before, (triangles, None), until);
@@ -105,10 +105,12 @@ pub(crate) fn draft(
     // A budget is for one bake.
     let may_bake =
         |chain: &Chain, best: &Tried| until.is_none() && best.1.psnr < EXCELLENT && !chain.stopped();
-    if let Some(own) = own.as_ref().filter(|own| own.psnr > best.1.psnr + WORTHWHILE)
+    let is_promising = |own: &&Coarser| best.1.way == Way::Scaled || own.psnr > best.1.psnr + WORTHWHILE;
+    if let Some(own) = own.as_ref().filter(is_promising)
         && may_bake(chain, &best)
     {
-        let baked = baked_draft(maker, chain, level, own, None)?;
+        let size = (best.1.way == Way::Scaled).then(|| within_half(maker, side));
+        let baked = baked_draft(maker, chain, level, own, size)?;
         if !chain.stopped() {
             weigh(&mut best, judge.tried(baked)?, WORTHWHILE, &mut candidates);
         }
@@ -120,6 +122,15 @@ pub(crate) fn draft(
         weigh(&mut best, judge.tried(refined)?, GAINED_BY_MAPS, &mut candidates);
     }
     finished(chain, best.0, candidates)
+}
+
+/// Texels along a side of a bake of the delivered layout whose two maps have at most half of the model's texels.
+fn within_half(maker: &Maker, side: f64) -> usize {
+    let usual = maker.power_of_two(side);
+    let fits = |&size: &usize| 4 * size * size <= texels_of(maker.model);
+    std::iter::successors(Some(usual), |size| Some(size / 2).filter(|size| *size >= 32))
+        .find(fits)
+        .unwrap_or(usual)
 }
 
 /// A level, and what its pictures say.
@@ -180,15 +191,15 @@ impl<'m> Judge<'m> {
     fn new(maker: &'m Maker<'m>, pixels: f64) -> Result<Self, BakeError> {
         let sizes = [pixels, (2.0 * pixels).min(LARGEST)];
         let sizes = sizes.into_iter().enumerate().filter(|&(k, size)| k == 0 || size > pixels);
-        let pictures = sizes.map(|(_, size)| maker.viewer.pictures(&maker.viewed, size));
+        let pictures = sizes.map(|(_, size)| maker.lineup.pictures(&maker.original, size));
         Ok(Self { maker, pictures: pictures.collect::<Result<_, _>>()? })
     }
 
     /// PSNR in dB, the mean over the sizes.
     pub(crate) fn psnr(&self, model: &Model) -> Result<f64, BakeError> {
-        let viewer = &self.maker.viewer;
-        let subject = viewer.subject(&as_viewers_do(model))?;
-        let sum: f64 = self.pictures.iter().map(|pictures| viewer.psnr(pictures, &subject)).sum();
+        let lineup = &self.maker.lineup;
+        let subject = lineup.subject(&as_viewers_do(model))?;
+        let sum: f64 = self.pictures.iter().map(|pictures| lineup.psnr(pictures, &subject)).sum();
         Ok(sum / self.pictures.len() as f64)
     }
 
