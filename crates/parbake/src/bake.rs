@@ -105,8 +105,7 @@ pub fn bake_to_triangles(
     let begin = Instant::now();
     let kept = with_kept_parts(high, &options.keep_parts)?;
     let high = &*with_parted_materials(&kept);
-    // Several attempts at the triangles share their views.
-    let prepared = prepare(high, options)?.keeping_views();
+    let prepared = prepare(high, options)?;
     check_triangles(&prepared, high, triangles)?;
     let start = coarse_surfaces(&prepared, high);
     let (low, _) = low_poly(&prepared, high, &start, None, triangles, options, watcher)?;

@@ -5,10 +5,10 @@ use crate::error::BakeError;
 use crate::options::{BakeOptions, Preset};
 use crate::parts::{kept_parts_of, parts_of_materials};
 use crate::rigs::transferred;
-use crate::shortlist::best_baked;
+use crate::shortlist::{ATTEMPTS, best_baked};
 use crate::snapshots::of_surface;
 use parbake_model::{AlphaMode, Material, MaterialExtensions, Model};
-use parbake_progress::{Showing, Watcher};
+use parbake_progress::{Portion, Showing, Watcher};
 use parbake_simplify::polish::PolishOptions;
 use parbake_simplify::{
     ChooseOptions, Chosen, CoarseSurfaces, LayerReport, choose_triangles, least_triangles,
@@ -94,6 +94,8 @@ fn attempts(
     }
     let parts = &start.parts;
     let watcher = &Showing::new(watcher, |snapshot| Some(of_surface(&model.name, high, snapshot)));
+    let share = if options.attempts > 1 { ATTEMPTS } else { 1.0 };
+    let watcher = &Portion::new(watcher, 0.0..share);
     let chosen = choose_triangles(high, before.as_ref(), start, &options, watcher);
     let materials: Vec<Material> = model.materials.iter().map(layer_only).collect();
     let coarse = |Chosen { mut mesh, layers }: Chosen| {

@@ -1,4 +1,4 @@
-//! Which of several low-polys of a model a bake makes most of: each is baked briefly, and pictures decide.
+//! Which of several low-polys of a model is best once it is baked: each is baked briefly, and pictures decide.
 //!
 //! Choosing triangles compares surfaces without a texture, in which what a texture can hide counts as much as what it
 //! cannot. With few triangles, attempts that look alike without one differ by half a decibel once they are baked.
@@ -15,7 +15,7 @@ use crate::studio::{Studio, Subject};
 use parbake_metric::{mean_squared_error, psnr_from_mse};
 use parbake_model::Model;
 use parbake_model::glam::Vec3;
-use parbake_progress::{Message, Stage, Watcher};
+use parbake_progress::{Message, Portion, Stage, Watcher};
 use parbake_render::camera::fibonacci_sphere;
 use parbake_views::high_poly::HighPoly;
 use rayon::prelude::*;
@@ -26,11 +26,18 @@ const TRAINING_VIEWS: usize = 96;
 /// Views that decide, and pixels along a side of each.
 const VIEWS: usize = 24;
 const RESOLUTION: usize = 256;
-/// What is behind the model: as good on all of them is good before any other.
+/// What is behind the model, in linear light.
 const BACKGROUNDS: [[f32; 3]; 3] = [[0.0; 3], [GREY; 3], [1.0; 3]];
 
-/// The low-poly of which a brief bake shows most of `model`; the first one where there is no other, where parts of the model
-/// count differently, which pictures do not know, or where the watcher says stop. `low_polys` is not empty.
+/// Share of the time for triangles that attempts take where brief bakes follow, about.
+pub(crate) const ATTEMPTS: f64 = 0.5;
+
+/// The low-poly whose brief bake comes closest to `model` in pictures: PSNR in dB, the mean over views and backgrounds. The first
+/// one where there is no other, and where importances weigh the surface, which these pictures do not; the best so far where the
+/// watcher says stop. `low_polys` is not empty.
+///
+/// # Errors
+/// An option out of range; a model without extent. A brief bake that fails only leaves its low-poly out.
 pub(crate) fn best_baked(
     high: &HighPoly,
     model: &Model,
@@ -43,8 +50,9 @@ pub(crate) fn best_baked(
         let brief = brief(options);
         let judge = Judge::new(model, options)?;
         let mut most = f64::NEG_INFINITY;
+        let rest = Portion::new(watcher, ATTEMPTS..1.0);
         for (k, (low, _)) in low_polys.iter().enumerate() {
-            watcher.progress(Stage::Simplify, k, low_polys.len());
+            rest.progress(Stage::Simplify, k, low_polys.len());
             // Charts that have no room in fewer texels may have it in all.
             let Ok(baked) = bake_as(Work::Level, high, low, &brief, &Silent(watcher)) else { continue };
             if watcher.stopped() {
@@ -65,8 +73,6 @@ fn brief(options: &BakeOptions) -> BakeOptions {
         preset: Preset::Fast,
         texture_size: options.texture_size.min(TEXELS),
         parallax: Parallax::None,
-        no_cutout: false,
-        fallback_size: None,
         gutter: None,
         smallest_mip: None,
         uv_steps: None,
@@ -77,7 +83,7 @@ fn brief(options: &BakeOptions) -> BakeOptions {
     }
 }
 
-/// Compares models with one in pictures.
+/// Compares baked models with the original in pictures.
 struct Judge {
     studio: Studio,
     directions: Vec<Vec3>,
@@ -113,7 +119,7 @@ impl Judge {
     }
 }
 
-/// Passes on nothing of a brief bake but whether to stop.
+/// Hides the messages of a brief bake, and passes on whether to stop.
 struct Silent<'a>(&'a dyn Watcher);
 
 impl Watcher for Silent<'_> {

@@ -26,8 +26,8 @@ use parbake_model::{Material, Mesh, Model};
 use std::borrow::Cow;
 use std::time::Instant;
 
-/// Of a model with more than so many times the wanted triangles, all ways begin with a mesh of a quarter of that, to save time;
-/// it costs up to half a decibel.
+/// A model with more than so many triangles for each wanted one is first collapsed to a quarter of that number, once for all ways.
+/// This saves time. What it costs: from 16 for each wanted one up to half a decibel was lost, from 64 it was not measured.
 const MANY: usize = 256;
 /// Ways to collapse edges that are tried first.
 const COLLAPSES: [Collapses; 9] = [
@@ -158,7 +158,7 @@ pub(crate) fn coarser(
     }))
 }
 
-/// What all ways to collapse a mesh to so many triangles begin with.
+/// The mesh that all ways to collapse to so many triangles begin with: `mesh`, or a coarser one ([`MANY`]).
 fn begun(mesh: &Mesh, triangles: usize) -> Cow<'_, Mesh> {
     if mesh.triangles.len() <= MANY * triangles {
         return Cow::Borrowed(mesh);

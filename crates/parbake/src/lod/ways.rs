@@ -109,9 +109,11 @@ pub(crate) fn draft(
     if let Some(own) = own.as_ref().filter(is_promising)
         && may_bake(chain, &best)
     {
-        let size = (best.1.way == Way::Scaled).then(|| within_half(maker, side));
+        let is_beside_scaled = best.1.way == Way::Scaled;
+        let size = is_beside_scaled.then(|| within_half(maker, side));
         let baked = baked_draft(maker, chain, level, own, size)?;
-        if !chain.stopped() {
+        let fits = !is_beside_scaled || 2 * texels_of(&baked.baked.model) <= texels_of(maker.model);
+        if fits && !chain.stopped() {
             weigh(&mut best, judge.tried(baked)?, WORTHWHILE, &mut candidates);
         }
     }
@@ -124,7 +126,8 @@ pub(crate) fn draft(
     finished(chain, best.0, candidates)
 }
 
-/// Texels along a side of a bake of the delivered layout whose two maps have at most half of the model's texels.
+/// Texels along a side of a bake of the delivered layout of which two maps, the fewest that it has, would have at most half of the
+/// model's texels; 32 or more.
 fn within_half(maker: &Maker, side: f64) -> usize {
     let usual = maker.power_of_two(side);
     let fits = |&size: &usize| 4 * size * size <= texels_of(maker.model);
