@@ -144,10 +144,12 @@ pub fn fit_parallax<B: Brdf, M: ShiftMap, K: Backend>(
     options: &ParallaxOptions,
     watcher: &dyn Watcher,
 ) -> Vec<f64> {
-    for_each_count!(state.maps, descend(backend, views, state, brdf, display, options, watcher))
+    for_each_count!(state.maps, fit_parallax_of(backend, views, state, brdf, display, options, watcher))
 }
 
-fn descend<B: Brdf, M: ShiftMap, K: Backend, const N: usize>(
+/// As [`fit_parallax`] for the first N maps; the others stay. For callers that know how many there are: this one
+/// number alone is compiled.
+pub fn fit_parallax_of<B: Brdf, M: ShiftMap, K: Backend, const N: usize>(
     backend: &K,
     views: &[Vec<ViewSample>],
     state: &mut State<M>,

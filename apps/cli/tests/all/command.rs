@@ -46,7 +46,7 @@ fn formats_are_options_and_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     demo_pair(folder);
-    let formats = r#"{"texture_format": "ktx2-etc1s", "texture_quality": 80, "mesh_compression": "meshopt"}"#;
+    let formats = r#"{"texture_format": "ktx2-etc1s", "texture_quality": 80, "mesh_compression": "meshopt", "uv": "repair", "shape": "keep"}"#;
     fs::write(folder.join("formats.json"), formats).unwrap();
     let bake = |name: &str, more: &[&str]| {
         let arguments = ["bake", "demo_high.glb", "demo_low.glb", "-o", name];

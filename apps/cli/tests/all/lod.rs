@@ -70,8 +70,8 @@ fn a_level_is_the_smallest_file_of_a_psnr() {
     demo_pair(folder);
     // Bakes are many, and those that reach for a target in vain have as many triangles as there are.
     run(folder, &["simplify", "demo_high.glb", "-t", "60", "-o", "model.glb"]);
-    run(folder, &["simplify", "demo_high.glb", "-t", "24", "-o", "coarse.glb"]);
-    let small = ["--screen-size", "24", "--max-texture-size", "32"];
+    run(folder, &["simplify", "demo_high.glb", "-t", "12", "-o", "coarse.glb"]);
+    let small = ["--screen-size", "24", "--max-texture-size", "24"];
     let level = |model: &str, output: &str, code: i32, more: &[&str]| {
         let ended = parbake(folder)
             .args(["lod", model])

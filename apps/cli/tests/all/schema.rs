@@ -93,6 +93,7 @@ fn outputs_keep_to_the_schema() {
     let folder = folder.path();
     demo_pair(folder);
     run(folder, &["simplify", "demo_high.glb", "-o", "few.glb", "--triangles", "300", "-q"]);
+    let few = ["few.glb", "demo_low.glb", "--shape", "keep", "--uv", "repair"];
     let picture = parbake::Picture {
         name: "checks".into(),
         width: 32,
@@ -105,10 +106,10 @@ fn outputs_keep_to_the_schema() {
     let runs: [(&str, Vec<&str>); 10] = [
         ("bake", [&pair[..], &SMALL].concat()),
         ("bake", [&["demo_high.glb", "--triangles", "2600"], &SMALL[..]].concat()),
-        ("bake", [&pair[..], &SMALL, &["--parallax", "sh"]].concat()),
-        ("bake", [&pair[..], &SMALL, &small_file].concat()),
+        ("bake", [&few[..], &SMALL, &["--parallax", "sh"]].concat()),
+        ("bake", [&few[..], &SMALL, &small_file].concat()),
         ("raycast", [&pair[..], &["--texture-size", "32", "--maps", "height,occlusion"]].concat()),
-        ("compress", vec!["few.glb", "--texture-size", "32", "--uv-steps", "2"]),
+        ("compress", [&["few.glb", "--uv-steps", "2", "--gutter", "1"], &SMALL[..8]].concat()),
         ("image", vec!["checks.png", "--texture-size", "16", "--grid", "8"]),
         ("eval", [&pair[..], &["--views", "2", "--resolution", "64"]].concat()),
         ("stats", pair[..1].to_vec()),

@@ -162,7 +162,8 @@ fn levels_move_as_the_original() {
     // The bend is real: at rest the arm reaches up to 2.
     let arm = &original.mesh.positions[..(ARM.0 * ARM.1) as usize];
     assert!(arm.iter().map(|p| p.y).fold(0.0, f32::max) < 1.4);
-    let small = ["--screen-size", "48,24", "--triangles", "500,250", "--max-texture-size", "32"];
+    // A budget that is long spent: levels move whatever way they are made.
+    let small = ["--screen-size", "32,16", "--triangles", "500,250", "--time-budget", "2"];
     run(folder, &[&["lod", "arm.gltf", "-o", "lods", "--mesh-compression", "meshopt"], &small[..]].concat());
     for (file, most) in [("arm_lod0.glb", 0.06), ("arm_lod1.glb", 0.2), ("arm_lods.glb", 0.06)] {
         let level = at_the_end(&folder.join("lods").join(file));
@@ -178,7 +179,7 @@ fn levels_move_as_the_original() {
         ["--texture-size", "32", "--views", "12", "--view-size", "64", "--rounds", "1", "--preset", "fast"];
     run(folder, &["simplify", "arm.gltf", "-t", "400", "-o", "low.obj"]);
     run(folder, &[&["bake", "arm.gltf", "low.obj", "-o", "baked.glb"], &bake[..]].concat());
-    run(folder, &[&["bake", "low.obj", "simple.glb", "-o", "own.glb"], &bake[..]].concat());
+    run(folder, &[&["bake", "low.obj", "simple.glb", "-o", "own.glb", "--shape", "keep"], &bake[..]].concat());
     for file in ["baked.glb", "own.glb"] {
         let found = apart(&original, &at_the_end(&folder.join(file)));
         assert!(found < 0.2, "{file}: {found}");

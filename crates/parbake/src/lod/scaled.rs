@@ -180,10 +180,10 @@ mod tests {
     use parbake_model::glam::{Vec2, Vec3, vec2};
     use parbake_model::{Material, Mesh, TextureSlot, Wrap};
 
-    /// A wavy sheet with a checkerboard of 32² fields on a texture of 64² texels: no other layout with fewer texels shows
+    /// A wavy sheet with a checkerboard of 16² fields on a texture of 32² texels: no other layout with fewer texels shows
     /// them as they are.
     fn checkered() -> Model {
-        let (cells, mut mesh) = (24u32, Mesh::default());
+        let (cells, mut mesh) = (16u32, Mesh::default());
         for (row, column) in (0..=cells).flat_map(|row| (0..=cells).map(move |column| (row, column))) {
             let (x, y) = (column as f32 / cells as f32, row as f32 / cells as f32);
             mesh.positions.push(Vec3::new(2.0 * x, 2.0 * y, 0.1 * (5.0 * x).sin() * (4.0 * y).cos()));
@@ -195,13 +195,13 @@ mod tests {
         }
         mesh.triangle_materials = vec![0; mesh.triangles.len()];
         let field = |i: u32| {
-            if (i % 64 / 2 + i / 64 / 2).is_multiple_of(2) { [200, 30, 20, 255] } else { [20, 60, 190, 255] }
+            if (i % 32 / 2 + i / 32 / 2).is_multiple_of(2) { [200, 30, 20, 255] } else { [20, 60, 190, 255] }
         };
         let images = vec![Image {
             name: "fields".into(),
-            width: 64,
-            height: 64,
-            pixels: (0..4096).map(field).collect(),
+            width: 32,
+            height: 32,
+            pixels: (0..1024).map(field).collect(),
         }];
         let slot = TextureSlot { image: 0, wrap: [Wrap::Clamp; 2], ..TextureSlot::default() };
         let materials =
@@ -211,7 +211,7 @@ mod tests {
 
     fn levels(model: &Model, triangles: usize) -> Vec<Level> {
         let options =
-            LodOptions { screen_size: vec![64.0], triangles: vec![triangles], ..LodOptions::default() };
+            LodOptions { screen_size: vec![32.0], triangles: vec![triangles], ..LodOptions::default() };
         let mut levels = Vec::new();
         make_levels::<BakeError>(model, &options, &(), |level| {
             levels.push(level);
@@ -225,9 +225,9 @@ mod tests {
     /// never has more triangles than were asked for.
     #[test]
     fn the_best_way_is_taken() {
-        let [level] = &levels(&checkered(), 400)[..] else { panic!("one level") };
+        let [level] = &levels(&checkered(), 180)[..] else { panic!("one level") };
         let Level { report, baked, .. } = level;
-        assert!(report.triangles <= 400 && report.triangles == baked.model.mesh.triangles.len());
+        assert!(report.triangles <= 180 && report.triangles == baked.model.mesh.triangles.len());
         let best = report.candidates.iter().map(|c| c.psnr).fold(0.0, f64::max);
         let taken = report
             .candidates
@@ -244,15 +244,15 @@ mod tests {
     #[test]
     fn large_maps_are_scaled() {
         let mut model = checkered();
-        // The same fields with 32² texels each.
-        let enlarged = |i: usize| model.images[0].pixels[i / 1024 / 16 * 64 + i % 1024 / 16];
+        // The same fields with 64² texels each.
+        let enlarged = |i: usize| model.images[0].pixels[i / 1024 / 32 * 32 + i % 1024 / 32];
         let pixels = (0..1024 * 1024).map(enlarged).collect();
         model.images[0] = Image { name: "fields".into(), width: 1024, height: 1024, pixels };
-        let [level] = &levels(&model, 1100)[..] else { panic!("one level") };
+        let [level] = &levels(&model, 500)[..] else { panic!("one level") };
         let Level { report, baked, .. } = level;
         assert_eq!(report.way, Way::Scaled, "{:?}", report.candidates);
         assert_eq!(report.candidates.len(), 1);
-        assert!(report.texels <= 512 * 512 && report.texels >= 64 * 64, "{}", report.texels);
+        assert!(report.texels <= 512 * 512 && report.texels >= 32 * 32, "{}", report.texels);
         let mesh = &baked.model.mesh;
         let is_own = |(uv, p): (&Vec2, &Vec3)| (*uv - 0.5 * p.truncate()).length() < 0.01;
         assert!(mesh.uvs.iter().zip(&mesh.positions).all(is_own));

@@ -26,7 +26,7 @@ fn quick(parallax: Parallax) -> BakeOptions {
         parallax,
         parallax_size: 16,
         cutout_size: 32,
-        views: Some(48),
+        views: Some(24),
         view_size: Some(64),
         rounds: Some(2),
         ..BakeOptions::default()

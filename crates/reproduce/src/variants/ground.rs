@@ -11,7 +11,7 @@ use parbake::evaluate::{compare, mean};
 use parbake::studio::shown;
 use parbake::{BakeError, Message, Watcher};
 use parbake_fit::backend::Cpu;
-use parbake_fit::parallax::{State, fit_parallax};
+use parbake_fit::parallax::{State, fit_parallax_of};
 use parbake_fit::schedule::{Comparison, Fitted, fit_textures};
 use parbake_image::MapSet;
 use parbake_image::display_table::DisplayTable;
@@ -46,6 +46,8 @@ const SIDES: [([f32; 2], f32); 2] = [([25.0, 12.0], 0.36), ([62.0, 24.0], 0.17)]
 const PICTURE: (usize, usize) = (384, 2);
 /// Before dark grey, as in the report of a bake; linear light.
 const GREY: [f32; 3] = [0.04; 3];
+/// Maps that are fitted along with a variant: base colour and normal, which [`Look`] shows.
+const FITTED: usize = 2;
 /// Steps at either end whose mean the report gives.
 const REPORTED: usize = 10;
 
@@ -195,7 +197,7 @@ impl<'a> Ground<'a> {
         let mut state = State { map, maps: self.begin.clone() };
         let losses = match stays || state.map.parameters().is_empty() {
             true => Vec::new(),
-            false => fit_parallax(
+            false => fit_parallax_of::<_, _, _, FITTED>(
                 &Cpu,
                 &self.views,
                 &mut state,
