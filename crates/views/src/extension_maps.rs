@@ -10,16 +10,18 @@
 
 use crate::alpha_layers::{AlphaLayer, LayerKind, alpha_layers};
 use crate::backs::shows_backs;
-use crate::extension_values::Group;
+use crate::coat_normals::coat_normals;
+use crate::extension_values::{Group, tangent_frame};
 use crate::gutter;
 use crate::high_poly::HighPoly;
 use crate::layer_factors::{Part, Said, Shares, set};
 use crate::low_poly::LowPoly;
+use crate::projection::texel_width;
 use parbake_image::FloatImage;
 use parbake_image::display::encode_srgb;
 use parbake_mesh::{HighSurface, SurfacePoint};
 use parbake_model::glam::{Vec2, Vec3, Vec4, vec4};
-use parbake_model::{Image, MaterialExtensions, Mesh};
+use parbake_model::{Image, MaterialExtensions, Mesh, TextureSlot};
 use parbake_render::interpolate::interpolate;
 use rayon::prelude::*;
 
@@ -41,7 +43,8 @@ pub struct LayerLook {
     pub kind: LayerKind,
     /// Factors, and textures by their indices in [`ExtensionMaps::images`].
     pub extensions: MaterialExtensions,
-    /// Whether the clearcoat has the normals of the surface below it, which are yet to be fitted.
+    /// Whether the clearcoat has the normals of the surface below it, which are yet to be fitted. Else those that it
+    /// has are among the extensions, if the mesh's do not do.
     pub coats_normals: bool,
     /// Whether the materials of most of its area show their backs.
     pub double_sided: bool,
@@ -128,6 +131,21 @@ pub fn extension_maps(low: &LowPoly, kinds: &[LayerKind], high: &HighPoly) -> Ex
             out.images.push(painted(group, &canvas, largest));
         }
     }
+    let coated: Vec<bool> = (out.layers.iter())
+        .map(|look| !look.coats_normals && look.extensions.clearcoat.is_some_and(|coat| coat.factor > 0.0))
+        .collect();
+    if coated.contains(&true) {
+        let points = points.get_or_insert_with(|| project(low, &layers, high));
+        let of_triangle = places(&layers, low.placed.triangles.len());
+        let is_coated = |triangle: usize| of_triangle.get(triangle).is_some_and(|&layer| coated[layer]);
+        if let Some(normals) = coat_normals(low, high, points, is_coated) {
+            let slot = TextureSlot { image: out.images.len(), ..TextureSlot::default() };
+            out.images.push(normals);
+            for (look, _) in out.layers.iter_mut().zip(coated).filter(|(_, is_coated)| *is_coated) {
+                look.extensions.clearcoat.iter_mut().for_each(|coat| coat.normal_texture = Some(slot));
+            }
+        }
+    }
     out
 }
 
@@ -176,7 +194,7 @@ fn project(low: &LowPoly, layers: &[AlphaLayer], high: &HighPoly) -> Vec<Option<
     (0..texels).into_par_iter().map(point).collect()
 }
 
-fn weights([second, third]: [f32; 2]) -> [f32; 3] {
+pub(crate) fn weights([second, third]: [f32; 2]) -> [f32; 3] {
     [1.0 - second - third, second, third]
 }
 
@@ -204,22 +222,17 @@ impl<F: Fn(usize) -> bool + Sync> Values<'_, F> {
             if !self.varying[layer] {
                 return None;
             }
-            let [a, b, c] = low.corner_uvs(triangle);
-            let texels = (b - a).perp_dot(c - a).abs() * (size * size) as f32;
-            let width = (low.area_normal(triangle).length() / texels.max(1e-6)).sqrt();
+            let width = texel_width(low, triangle, size);
             let own = weights(hit.barycentric);
             let source = &self.high.extensions;
             let value = source.at(group, mesh, hit.triangle as usize, own, width, folds[layer]);
             if group != Group::Anisotropy {
                 return Some(value);
             }
-            let corners = low.triangles[triangle].map(|i| i as usize);
-            let weights = weights(self.low.map.barycentric[texel]);
-            let normal: Vec3 = interpolate(corners.map(|i| low.normals[i]), weights);
-            let tangent: Vec3 = interpolate(corners.map(|i| low.tangents[i].truncate()), weights);
-            let bitangent = normal.cross(tangent) * low.tangents[corners[0]].w;
+            let frame = tangent_frame(low, triangle, weights(self.low.map.barycentric[texel]));
             let found = value.truncate();
-            let direction = Vec2::new(found.dot(tangent), found.dot(bitangent)).normalize_or(Vec2::X);
+            let along = Vec2::new(found.dot(frame.x_axis), found.dot(frame.y_axis));
+            let direction = along.normalize_or(Vec2::X);
             Some(vec4(direction.x, direction.y, 0.0, value.w))
         };
         (0..size * size).into_par_iter().map(value).collect()

@@ -25,6 +25,10 @@ fn squares(materials: Vec<Material>, images: Vec<Image>) -> Model {
 }
 
 fn maps_of(model: &Model) -> ExtensionMaps {
+    maps_on(model, model)
+}
+
+fn maps_on(low: &Model, model: &Model) -> ExtensionMaps {
     let conventions = Conventions {
         interpretation: Interpretation::default(),
         display: Display { gain: 1.0, curve: Curve::Srgb },
@@ -34,8 +38,8 @@ fn maps_of(model: &Model) -> ExtensionMaps {
     };
     let high = HighPoly::new(model, conventions).expect("it has an extent");
     assert!(high.is_whole_material, "extensions ask for whole materials");
-    let low = LowPoly::new(model, &high.frame, 16).expect("it has coordinates");
-    extension_maps(&low, &layer_kinds(&low.placed, model, &high), &high)
+    let placed = LowPoly::new(low, &high.frame, 16).expect("it has coordinates");
+    extension_maps(&placed, &layer_kinds(&placed.placed, low, &high), &high)
 }
 
 fn material(change: impl FnOnce(&mut MaterialExtensions)) -> Material {
@@ -137,4 +141,36 @@ fn stretched_highlights_keep_their_direction() {
     // Along the bitangent, all of it.
     let [x, y, strength, _] = maps.images[0].pixels[8 * 16 + 3];
     assert!(x.abs_diff(128) <= 1 && y == 255 && strength == 255, "{x} {y} {strength}");
+}
+
+/// Protects reflections of a coat above a normal map: where the low-poly's mesh has other normals than the high-poly's, or
+/// the coat has a map of its own, an image turns them back; else there is none.
+#[test]
+fn a_coat_keeps_its_own_normals() {
+    let slot = |image| Some(TextureSlot { image, ..TextureSlot::default() });
+    let coated = |normal_texture| {
+        let mut own = material(|e| {
+            e.clearcoat = Some(Clearcoat { factor: 1.0, normal_texture, ..Clearcoat::default() });
+        });
+        own.normal_texture = slot(0);
+        let images = vec![
+            Image::solid("rough", 2, 2, [80, 128, 240, 255]),
+            Image::solid("coat", 2, 2, [204, 128, 230, 255]),
+        ];
+        squares(vec![own.clone(), own], images)
+    };
+    let normals_of = |maps: &ExtensionMaps| {
+        assert!(maps.lost.is_empty(), "{:?}", maps.lost);
+        let [layer] = &maps.layers[..] else { panic!("one layer") };
+        let slot = layer.extensions.clearcoat.expect("a coat").normal_texture?;
+        Some(maps.images[slot.image].pixels[8 * 16 + 3])
+    };
+    let smooth = coated(None);
+    assert_eq!(normals_of(&maps_of(&smooth)), None);
+    let mut tilted = smooth.clone();
+    tilted.mesh.normals.fill(Vec3::new(0.6, 0.0, 0.8));
+    let [x, y, z, _] = normals_of(&maps_on(&smooth, &tilted)).expect("they differ");
+    assert!(x.abs_diff(204) <= 1 && y.abs_diff(128) <= 1 && z.abs_diff(230) <= 1, "{x} {y} {z}");
+    let [x, y, z, _] = normals_of(&maps_of(&coated(slot(1)))).expect("a map of its own");
+    assert!(x.abs_diff(204) <= 2 && y.abs_diff(128) <= 2 && z.abs_diff(230) <= 2, "{x} {y} {z}");
 }

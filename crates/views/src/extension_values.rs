@@ -9,7 +9,7 @@
 use parbake_image::FloatImage;
 use parbake_image::display::decode_srgb;
 use parbake_image::pyramid::Pyramid;
-use parbake_model::glam::{Vec2, Vec3, Vec4, vec4};
+use parbake_model::glam::{Mat3, Vec2, Vec3, Vec4, vec4};
 use parbake_model::{Image, Material, MaterialExtensions, Mesh, TextureSlot, Wrap};
 use parbake_render::interpolate::interpolate;
 use rayon::prelude::*;
@@ -128,6 +128,9 @@ fn reflection(ior: Option<f32>) -> f32 {
     }
 }
 
+/// Strength from which on a clearcoat is one.
+const NO_COAT: f32 = 0.01;
+
 /// How an image is read: its index, whether it holds colours, wrap modes.
 type Key = (usize, bool, [Wrap; 2]);
 
@@ -176,27 +179,54 @@ impl ExtensionSource {
         folds_ior: bool,
     ) -> Vec4 {
         let e = &self.materials[mesh.triangle_materials[triangle] as usize].extensions;
-        let corners = mesh.triangles[triangle].map(|i| i as usize);
-        let fetch = |slot: TextureSlot, is_color: bool| -> Option<Vec4> {
-            let key = (slot.image, is_color, slot.wrap);
-            let (_, pyramid) = self.pyramids.iter().find(|(k, _)| *k == key)?;
-            let set = if slot.uv_set == 1 { &mesh.uvs1 } else { &mesh.uvs };
-            let uvs = corners.map(|i| slot.transform.apply(set.get(i).copied().unwrap_or_default()));
-            let area = mesh.area_normal(triangle).length().max(1e-20);
-            let density = ((uvs[1] - uvs[0]).perp_dot(uvs[2] - uvs[0]).abs() / area).sqrt();
-            let along = Vec2::new(density * width, 0.0);
-            Some(Vec4::from(pyramid.fetch(interpolate(uvs, weights), pyramid.lod(along, along))))
-        };
+        let fetch = |slot, is_color| self.fetch(slot, is_color, mesh, triangle, weights, width);
         let [one, two] = group.slots(e);
         let textures = [one.and_then(|s| fetch(s, group.has_colors())), two.and_then(|s| fetch(s, false))];
         let value = group.value(e, textures, folds_ior);
         if group != Group::Anisotropy || mesh.tangents.is_empty() {
             return value;
         }
-        let normal: Vec3 = interpolate(corners.map(|i| mesh.normals[i]), weights);
-        let tangent: Vec3 = interpolate(corners.map(|i| mesh.tangents[i].truncate()), weights);
-        let bitangent = normal.cross(tangent) * mesh.tangents[corners[0]].w;
-        (tangent * value.x + bitangent * value.y).normalize_or_zero().extend(value.w)
+        let frame = tangent_frame(mesh, triangle, weights);
+        (frame.x_axis * value.x + frame.y_axis * value.y).normalize_or_zero().extend(value.w)
+    }
+
+    /// The unit normal of the clearcoat at a point of a triangle: that of its own map, else the mesh's. Averaged as
+    /// [`ExtensionSource::at`]; none where there is no coat.
+    pub fn coat_normal(&self, mesh: &Mesh, triangle: usize, weights: [f32; 3], width: f32) -> Option<Vec3> {
+        let coat = self.materials[mesh.triangle_materials[triangle] as usize].extensions.clearcoat?;
+        let fetch = |slot| self.fetch(slot, false, mesh, triangle, weights, width);
+        if coat.factor * coat.texture.and_then(fetch).map_or(1.0, |strength| strength.x) < NO_COAT {
+            return None;
+        }
+        let normals = mesh.triangles[triangle].map(|i| mesh.normals[i as usize]);
+        let normal: Vec3 = interpolate(normals, weights);
+        let map = coat.normal_texture.filter(|_| !mesh.tangents.is_empty()).and_then(fetch);
+        let turned = map.map_or(normal, |stored| {
+            let slope = coat.normal_scale * (2.0 * stored.truncate().truncate() - 1.0);
+            tangent_frame(mesh, triangle, weights) * slope.extend(2.0 * stored.z - 1.0)
+        });
+        Some(turned.normalize_or(Vec3::Z))
+    }
+
+    /// What a texture of an extension has at a point of a triangle; none where there is no such image.
+    fn fetch(
+        &self,
+        slot: TextureSlot,
+        is_color: bool,
+        mesh: &Mesh,
+        triangle: usize,
+        weights: [f32; 3],
+        width: f32,
+    ) -> Option<Vec4> {
+        let key = (slot.image, is_color, slot.wrap);
+        let (_, pyramid) = self.pyramids.iter().find(|(k, _)| *k == key)?;
+        let set = if slot.uv_set == 1 { &mesh.uvs1 } else { &mesh.uvs };
+        let corners = mesh.triangles[triangle].map(|i| i as usize);
+        let uvs = corners.map(|i| slot.transform.apply(set.get(i).copied().unwrap_or_default()));
+        let area = mesh.area_normal(triangle).length().max(1e-20);
+        let density = ((uvs[1] - uvs[0]).perp_dot(uvs[2] - uvs[0]).abs() / area).sqrt();
+        let along = Vec2::new(density * width, 0.0);
+        Some(Vec4::from(pyramid.fetch(interpolate(uvs, weights), pyramid.lod(along, along))))
     }
 
     /// Whether the clearcoat of a material has the normals that the surface below it has.
@@ -204,6 +234,14 @@ impl ExtensionSource {
         let material = &self.materials[material];
         material.extensions.clearcoat.is_some_and(|c| c.normal_texture == material.normal_texture)
     }
+}
+
+/// Tangent, bitangent and normal of a mesh at a point of a triangle, interpolated and not of unit length.
+pub(crate) fn tangent_frame(mesh: &Mesh, triangle: usize, weights: [f32; 3]) -> Mat3 {
+    let corners = mesh.triangles[triangle].map(|i| i as usize);
+    let normal: Vec3 = interpolate(corners.map(|i| mesh.normals[i]), weights);
+    let tangent: Vec3 = interpolate(corners.map(|i| mesh.tangents[i].truncate()), weights);
+    Mat3::from_cols(tangent, normal.cross(tangent) * mesh.tangents[corners[0]].w, normal)
 }
 
 fn unpack(image: &Image, is_color: bool) -> FloatImage<[f32; 4]> {

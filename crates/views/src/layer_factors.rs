@@ -183,11 +183,11 @@ impl Shares {
         self.most(self.materials(high).map(|(m, area)| (m.double_sided, area))).unwrap_or(true)
     }
 
-    /// Whether the clearcoat mostly has the normals of the surface below it.
+    /// Whether all clearcoats have the normals of the surface below them.
     pub fn coats_normals(&self, high: &HighPoly) -> bool {
-        let coated =
-            self.0.iter().filter(|(m, _)| high.extensions.materials()[*m].extensions.clearcoat.is_some());
-        self.most(coated.map(|&(m, area)| (high.extensions.coats_normals(m), area))).unwrap_or(false)
+        let coat = |m: usize| high.extensions.materials()[m].extensions.clearcoat;
+        let mut coated = self.0.iter().filter(|(m, _)| coat(*m).is_some_and(|coat| coat.factor > 0.0));
+        coated.all(|&(m, _)| high.extensions.coats_normals(m))
     }
 
     /// The value that has most of the area.
@@ -245,13 +245,5 @@ impl Shares {
         let film =
             choose("KHR_materials_iridescence", "the index of refraction of iridescence", films.collect());
         out.iridescence = film.map(|ior| Iridescence { ior: ior[0], ..Iridescence::default() });
-        let coats =
-            self.materials(high).filter_map(|(m, _)| m.extensions.clearcoat.map(|c| (c, m.normal_texture)));
-        let has_own = |(coat, normal): (Clearcoat, Option<TextureSlot>)| {
-            coat.factor > 0.0 && coat.normal_texture.is_some() && coat.normal_texture != normal
-        };
-        if coats.into_iter().any(has_own) {
-            lost.push("KHR_materials_clearcoat: the clearcoat's own normal map is lost".into());
-        }
     }
 }

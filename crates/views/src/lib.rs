@@ -12,6 +12,7 @@
 pub mod alpha_layers;
 mod backs;
 pub mod chart_labels;
+mod coat_normals;
 mod error;
 pub mod extension_maps;
 pub mod extension_values;

@@ -9,6 +9,7 @@
 //! This is also what an ordinary ray-cast baker would deliver: the fit reports how
 //! far it gets beyond it.
 
+use crate::extension_values::tangent_frame;
 use crate::gutter;
 use crate::high_poly::HighPoly;
 use crate::low_poly::LowPoly;
@@ -113,9 +114,7 @@ impl<'a> Projector<'a> {
         if found.dot(normal) < 0.0 {
             found = -found;
         }
-        let tangent = interpolate(corners.map(|i| low.tangents[i].truncate()), weights);
-        let bitangent = normal.cross(tangent) * low.tangents[corners[0]].w;
-        let frame = Mat3::from_cols(tangent, bitangent, normal);
+        let frame = tangent_frame(low, triangle, weights);
         values[MapKind::Normal] = in_frame(&frame, found).extend(0.0);
         Some(Found { point, direction, frame, hit, normal: found, values })
     }
@@ -177,11 +176,12 @@ pub fn finished(
 
 /// How wide one texel is on each triangle, in the common frame.
 fn texel_widths(low: &Mesh, size: usize) -> Vec<f32> {
-    (0..low.triangles.len())
-        .map(|t| {
-            let [a, b, c] = low.corner_uvs(t);
-            let texels = (b - a).perp_dot(c - a).abs() * (size * size) as f32;
-            (low.area_normal(t).length() / texels.max(1e-6)).sqrt()
-        })
-        .collect()
+    (0..low.triangles.len()).map(|triangle| texel_width(low, triangle, size)).collect()
+}
+
+/// How wide one texel is on a triangle, in the common frame.
+pub(crate) fn texel_width(low: &Mesh, triangle: usize, size: usize) -> f32 {
+    let [a, b, c] = low.corner_uvs(triangle);
+    let texels = (b - a).perp_dot(c - a).abs() * (size * size) as f32;
+    (low.area_normal(triangle).length() / texels.max(1e-6)).sqrt()
 }

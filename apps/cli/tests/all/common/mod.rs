@@ -69,8 +69,22 @@ pub fn psnr(folder: &Path, high: &Path, low: &Path) -> f64 {
     let arguments = ["eval", high.to_str().unwrap(), low.to_str().unwrap()];
     let output = run(
         folder,
-        &[&arguments[..], &["--convention", "paper", "--views", "12", "--resolution", "256", "--no-flip", "--json", "-", "-q"]]
-            .concat(),
+        &[
+            &arguments[..],
+            &[
+                "--convention",
+                "paper",
+                "--views",
+                "12",
+                "--resolution",
+                "256",
+                "--no-flip",
+                "--json",
+                "-",
+                "-q",
+            ],
+        ]
+        .concat(),
     );
     let evaluation: Value = serde_json::from_slice(&output.stdout).unwrap();
     evaluation["mean"]["psnr"].as_f64().unwrap()
