@@ -24,6 +24,7 @@ pub mod bisect;
 mod bvh;
 pub mod charts;
 mod corner_vertices;
+pub mod creases;
 pub mod demo;
 pub mod deviation;
 pub mod distance;

@@ -19,12 +19,12 @@
 //! ends early, but collapsing goes on down to the wanted number. Only a watcher that says stop leaves more triangles.
 
 use crate::collapse::collapse_to;
+use crate::creases::with_normals;
 use crate::pictures::Pictures;
 use crate::polish::{PolishOptions, is_over, polish};
 use crate::start::{CoarseSurfaces, Start, counts_of_parts, with_lost_parts};
 use crate::surface::Surface;
 use crate::target::{BACKGROUNDS, EQUAL, Target};
-use parbake_mesh::smooth_normals;
 use parbake_model::Mesh;
 use parbake_progress::{Portion, Showing, Snapshot, Stage, Watcher};
 use parbake_views::alpha_layers::{LayerKind, high_layers};
@@ -120,7 +120,7 @@ pub fn choose_triangles(
         let start = whole(start, mesh);
         let starts = [Some((Start::Quadrics, start)), before.map(|mesh| (Start::Level, mesh.clone()))];
         let attempts = layer(high, None, parts, starts, options, watcher);
-        return attempts.into_iter().map(Chosen::of_one_layer).collect();
+        return attempts.into_iter().map(|own| Chosen::of_one_layer(own, high)).collect();
     }
     let kind_of_material = kinds_of_materials(high, &layers);
     let own = |mesh: &Mesh, kind: usize| of_kind(mesh, kind, &kind_of_material);
@@ -138,7 +138,7 @@ pub fn choose_triangles(
         let own = Portion::new(watcher, part(kind)..part(kind + 1));
         let own = Showing::new(&own, |snapshot| Some(joined(&chosen.mesh, snapshot)));
         let found = layer(high, Some(triangles), parts, starts, &options, &own);
-        found.into_iter().take(1).for_each(|best| chosen.add(best));
+        found.into_iter().take(1).for_each(|best| chosen.add(best, high));
     }
     vec![chosen]
 }
@@ -200,16 +200,17 @@ fn of_kind(mesh: &Mesh, kind: usize, kind_of_material: &[usize]) -> Mesh {
 }
 
 impl Chosen {
-    fn of_one_layer(own: (Mesh, LayerReport)) -> Self {
+    fn of_one_layer(own: (Mesh, LayerReport), high: &HighPoly) -> Self {
         let mut chosen = Self::default();
-        chosen.add(own);
+        chosen.add(own, high);
         chosen
     }
 
-    fn add(&mut self, (mesh, report): (Mesh, LayerReport)) {
+    fn add(&mut self, (mesh, report): (Mesh, LayerReport), high: &HighPoly) {
         let first = self.mesh.positions.len() as u32;
         // Smooth within the layer alone: a pane does not bend with its frame.
-        self.mesh.normals.extend(smooth_normals(&mesh));
+        let mesh = with_normals(&mesh, high);
+        self.mesh.normals.extend(mesh.normals);
         self.mesh.positions.extend(mesh.positions);
         self.mesh.triangles.extend(mesh.triangles.iter().map(|t| t.map(|v| v + first)));
         self.mesh.triangle_materials.extend(mesh.triangle_materials);

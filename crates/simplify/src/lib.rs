@@ -5,6 +5,7 @@
 pub mod change;
 pub mod choose;
 pub mod collapse;
+mod creases;
 pub mod pictures;
 pub mod polish;
 pub mod raster;
