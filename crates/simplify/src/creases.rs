@@ -9,10 +9,10 @@ use parbake_model::Mesh;
 use parbake_model::glam::Vec3;
 use parbake_views::high_poly::HighPoly;
 
-/// Angle between two triangles below which an edge is never hard, in radians: 35°.
-const LEAST: f32 = 0.61;
+/// Angle between two triangles below which an edge is never hard, in radians: 55°.
+const LEAST: f32 = 0.96;
 /// Share of that angle by which the high-poly's normals have to differ.
-const SHARE: f32 = 0.6;
+const SHARE: f32 = 0.75;
 /// How far from the edge it is looked at: share of the way to the opposite corner.
 const BESIDE: f32 = 0.15;
 
