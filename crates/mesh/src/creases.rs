@@ -1,16 +1,16 @@
 //! Hard edges: vertices are split along them, and normals are smooth between them alone.
 //!
 //! Around a vertex, triangles that meet at edges that are not hard belong together. Each such group has a vertex of its own,
-//! whose normal is the mean of the group's faces, weighted by their angles ([`smooth_normals`]). A hard edge that ends
+//! whose normal is the mean of the group's faces, weighted by their angles (`normals.rs`). A hard edge that ends
 //! at a vertex splits nothing there, since its two sides meet around the vertex.
 //!
 //! Contract: for meshes without attributes other than positions, triangles and materials; triangles and their order stay, and
 //! where no edge is hard so do the vertices.
 
-use crate::normals::{corner_angle, smooth_normals};
+use crate::normals::group_normals;
 use crate::union_find::UnionFind;
+use crate::weld::weld_by_position;
 use parbake_model::Mesh;
-use parbake_model::glam::{DVec3, Vec3};
 use std::collections::BTreeMap;
 
 /// The mesh with unit normals, its vertices split where `is_hard` says so of an edge's two triangles and its two vertices.
@@ -40,42 +40,41 @@ pub fn split_at_hard_edges(mesh: &Mesh, is_hard: impl Fn([usize; 2], [u32; 2]) -
             }
         }
     }
-    let mut out = Mesh { normals: smooth_normals(mesh), ..mesh.clone() };
-    let mut sums = vec![DVec3::ZERO; mesh.positions.len()];
+    let mut out = mesh.clone();
+    // Elsewhere vertices at one position have one normal.
+    let welded = weld_by_position(&mesh.positions);
+    let stands_for =
+        |(v, &first): (usize, &u32)| if has_hard_edge[first as usize] { v as u32 } else { first };
+    let mut groups: Vec<u32> = welded.iter().enumerate().map(stands_for).collect();
     // The first group of a vertex keeps it.
     let mut owners: Vec<Option<u32>> = vec![None; mesh.positions.len()];
     let mut others: BTreeMap<u32, u32> = BTreeMap::new();
-    for (index, triangle) in mesh.triangles.iter().enumerate() {
-        let [a, b, c] = mesh.corners(index).map(Vec3::as_dvec3);
-        let face = (b - a).cross(c - a).normalize_or_zero();
-        for (k, &own) in triangle.iter().enumerate() {
-            let vertex = own as usize;
+    for (index, triangle) in out.triangles.iter_mut().enumerate() {
+        for (k, own) in triangle.iter_mut().enumerate() {
+            let vertex = *own as usize;
             if !has_hard_edge[vertex] {
                 continue;
             }
+            groups[vertex] = *own;
             let group = corners.find((3 * index + k) as u32);
-            let own = match *owners[vertex].get_or_insert(group) == group {
-                true => own,
-                false => *others.entry(group).or_insert_with(|| {
+            if *owners[vertex].get_or_insert(group) != group {
+                *own = *others.entry(group).or_insert_with(|| {
                     out.positions.push(mesh.positions[vertex]);
-                    out.normals.push(Vec3::Y);
-                    sums.push(DVec3::ZERO);
-                    (sums.len() - 1) as u32
-                }),
-            };
-            out.triangles[index][k] = own;
-            sums[own as usize] += face * corner_angle(mesh, index, k);
+                    groups.push(groups.len() as u32);
+                    groups.len() as u32 - 1
+                });
+            }
         }
     }
-    for (normal, sum) in out.normals.iter_mut().zip(&sums) {
-        *normal = sum.try_normalize().map_or(*normal, |own| own.as_vec3());
-    }
+    out.normals = group_normals(&out, &groups);
     out
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::smooth_normals;
+    use parbake_model::glam::Vec3;
 
     /// Two squares that meet at a right angle: x from 0 to 1 at z = 0, and z from 0 to 1 at x = 0.
     fn bent() -> Mesh {

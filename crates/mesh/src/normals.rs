@@ -13,16 +13,20 @@ use parbake_model::glam::{DVec3, Vec3};
 
 /// V smooth unit normals, the same for all vertices at one position.
 pub fn smooth_normals(mesh: &Mesh) -> Vec<Vec3> {
-    let welded = weld_by_position(&mesh.positions);
+    group_normals(mesh, &weld_by_position(&mesh.positions))
+}
+
+/// V unit normals, the same for all vertices of a group; `groups` has for each vertex one that stands for its group.
+pub(crate) fn group_normals(mesh: &Mesh, groups: &[u32]) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; mesh.positions.len()];
     for (index, triangle) in mesh.triangles.iter().enumerate() {
         let corners = mesh.corners(index).map(|p| p.as_dvec3());
         let face = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
         for k in 0..3 {
-            sums[welded[triangle[k] as usize] as usize] += face * corner_angle(mesh, index, k);
+            sums[groups[triangle[k] as usize] as usize] += face * corner_angle(mesh, index, k);
         }
     }
-    welded.iter().map(|&v| sums[v as usize].normalize_or(DVec3::Y).as_vec3()).collect()
+    groups.iter().map(|&v| sums[v as usize].normalize_or(DVec3::Y).as_vec3()).collect()
 }
 
 /// A triangle's angle at its corner `k`, in radians.

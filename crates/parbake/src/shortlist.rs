@@ -162,7 +162,7 @@ mod tests {
         }
     }
 
-    /// Protects the choice: pictures of bakes decide; a signal ends it, and leaves a low-poly.
+    /// Protects the choice: pictures of bakes decide, wherever a low-poly stands; a signal ends it, and leaves a low-poly.
     #[test]
     fn pictures_of_bakes_decide() {
         let model = sphere(3);
@@ -178,7 +178,7 @@ mod tests {
             let low_polys = counts.map(|times| (sphere(times), Vec::new())).to_vec();
             best_baked(&high, &model, low_polys, &options, watcher).unwrap().0.mesh.triangles.len()
         };
-        assert_eq!(found([0, 1], &()), 32);
+        assert_eq!([found([0, 1], &()), found([1, 0], &())], [32; 2]);
         assert_eq!(found([0, 1], &Stopped), 8);
     }
 }

@@ -7,6 +7,7 @@
 use parbake_mesh::creases::split_at_hard_edges;
 use parbake_model::Mesh;
 use parbake_model::glam::Vec3;
+use parbake_render::interpolate::interpolate;
 use parbake_views::high_poly::HighPoly;
 
 /// Angle between two triangles below which an edge is never hard, in radians: 55°.
@@ -37,7 +38,6 @@ fn normal_beside(mesh: &Mesh, high: &HighPoly, triangle: usize, edge: [u32; 2]) 
     let surface = high.scene.mesh();
     let [second, third] = hit.barycentric;
     let corners = surface.triangles[hit.triangle as usize].map(|v| surface.normals[v as usize]);
-    let normal = corners[0] * (1.0 - second - third) + corners[1] * second + corners[2] * third;
-    let normal = normal.try_normalize()?;
+    let normal = interpolate(corners, [1.0 - second - third, second, third]).try_normalize()?;
     Some(if normal.dot(face) < 0.0 { -normal } else { normal })
 }

@@ -1,7 +1,7 @@
 //! The normals of clearcoats for the low-poly.
 //!
-//! A coat without a normal map has the normals of the mesh, and those of a coarse mesh mirror the surroundings elsewhere
-//! than a fine one's. So each texel takes the coat's normal `N` at the high-poly's point that it shows, be it a map's or
+//! A coat without a normal map has the normals of the mesh. A coarse mesh has other normals than a fine one, so reflections
+//! move. Therefore each texel takes the coat's normal `N` at the high-poly's point that it shows, be it a map's or
 //! the mesh's, into the low-poly's tangent frame `F`: `m = F⁻¹ N`, as `projection.rs` does for the surface below.
 //!
 //! Contract: an image of unit normals on the low-poly's own coordinates, or none where the low-poly's mesh has about the same.
@@ -16,13 +16,14 @@ use parbake_image::quantise::to_image;
 use parbake_image::{FloatImage, MapKind};
 use parbake_mesh::SurfacePoint;
 use parbake_model::Image;
-use parbake_model::glam::Vec4;
+use parbake_model::glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
 /// Mean of 1 − cos of the angle to the mesh's normals below which these do: about one degree.
 const ALIKE: f32 = 1.5e-4;
 
-/// The normals of the coat of triangles of the low-poly; `points` says what each texel shows.
+/// The normals of the coat of those triangles of the low-poly that have one; `points` has the high-poly's point for each of
+/// size² texels.
 pub(crate) fn coat_normals(
     low: &LowPoly,
     high: &HighPoly,
@@ -40,7 +41,7 @@ pub(crate) fn coat_normals(
         if found.dot(frame.z_axis) < 0.0 {
             found = -found;
         }
-        Some(in_frame(&frame, found).normalize_or(parbake_model::glam::Vec3::Z).extend(0.0))
+        Some(in_frame(&frame, found).normalize_or(Vec3::Z).extend(0.0))
     };
     let found: Vec<Option<Vec4>> = (0..size * size).into_par_iter().map(normal).collect();
     let known: Vec<bool> = found.iter().map(Option::is_some).collect();
