@@ -18,7 +18,7 @@ fn a_coarse_level_reaches_its_figures() {
     let Some(data) = real_models() else { return };
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let (name, floor, gain) = ("lego_figure", 24.2, 1.5);
+    let (name, floor, gain) = ("lego_figure", 25.3, 2.5);
     let pair = data.join("pairs").join(name);
     let (high, low) = (pair.join("high/hp.obj"), obj_in(&pair.join("low_simplygon50")));
     let bake = |output: &str, more: &[&str]| {
