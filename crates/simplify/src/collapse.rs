@@ -116,13 +116,15 @@ pub fn collapse_to(pictures: &mut Pictures, target: usize, watcher: &dyn Watcher
                 queue.extend(evaluate(pictures, candidates(&pictures.surface), &versions));
                 continue;
             };
-            if let Some((change, _)) = best(pictures, &part, &mut Scratch::default()) {
+            let ways = ways(&pictures.surface, &part).into_iter();
+            if let Some((_, change)) = pictures.best_of_on_all_cores(ways) {
                 pictures.apply(&change);
             }
             continue;
         };
         if version(&pictures.surface, &top.candidate, &versions) == top.version {
-            let Some((change, _)) = best(pictures, &top.candidate, &mut Scratch::default()) else { continue };
+            let ways = ways(&pictures.surface, &top.candidate).into_iter();
+            let Some((_, change)) = pictures.best_of_on_all_cores(ways) else { continue };
             let excess = pictures.surface.count() - target;
             if change.added.is_empty() && change.removed.len() > excess + 1 {
                 too_large.push(top.candidate);
@@ -185,29 +187,33 @@ fn evaluate(pictures: &Pictures, candidates: Vec<Candidate>, versions: &[u64]) -
     candidates
         .into_par_iter()
         .map_init(Scratch::default, |scratch, candidate| {
-            let (_, cost) = best(pictures, &candidate, scratch)?;
-            let version = version(&pictures.surface, &candidate, versions);
+            let surface = &pictures.surface;
+            let (gain, change) = pictures.best_of(ways(surface, &candidate).into_iter(), scratch)?;
+            let cost = cost(surface, gain, &change);
+            let version = version(surface, &candidate, versions);
             Some(Entry { cost, candidate, version })
         })
         .flatten()
         .collect()
 }
 
-/// The cheapest way to do it, and its cost for each triangle that is saved.
-fn best(pictures: &Pictures, candidate: &Candidate, scratch: &mut Scratch) -> Option<(Change, f64)> {
-    let surface = &pictures.surface;
-    let changes: Vec<Change> = match candidate {
-        Candidate::Part(point) => vec![Change::removal(small_part(surface, *point)?)],
+/// The ways to do it.
+fn ways(surface: &Surface, candidate: &Candidate) -> Vec<Change> {
+    let mut changes: Vec<Change> = match candidate {
+        Candidate::Part(point) => small_part(surface, *point).map(Change::removal).into_iter().collect(),
         Candidate::Edge([a, b]) => {
             let places = places(surface, *a, *b);
             places.into_iter().filter_map(|place| Change::collapse(surface, *b, *a, place)).collect()
         }
     };
-    let (gain, change) = pictures
-        .best_of(changes.into_iter().filter(|change| change.saved() > 0 && surface.may(change)), scratch)?;
+    changes.retain(|change| change.saved() > 0 && surface.may(change));
+    changes
+}
+
+/// What a change costs for each triangle that is saved.
+fn cost(surface: &Surface, gain: f64, change: &Change) -> f64 {
     let lengths: f64 = change.added.iter().map(|t| squared_sides(change.corners(surface, t))).sum();
-    let cost = (LENGTH * lengths - gain) / change.saved() as f64;
-    Some((change, cost))
+    (LENGTH * lengths - gain) / change.saved() as f64
 }
 
 fn squared_sides([a, b, c]: [Vec3; 3]) -> f64 {

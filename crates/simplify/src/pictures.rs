@@ -12,7 +12,7 @@
 //! is applied. Views are summed in order, so results do not depend on the number of threads.
 
 use crate::change::Change;
-use crate::raster::{Edges, Rectangle, nearness_at};
+use crate::raster::{Edges, Rectangle, Span, nearness_at};
 use crate::surface::Surface;
 use crate::target::{Target, projected};
 use glam::Vec3;
@@ -22,6 +22,8 @@ use rayon::prelude::*;
 const TILE: usize = 4;
 /// Of several changes the best is guessed from one view in so many.
 const GUESSED_FROM: usize = 4;
+/// Views that are worth a thread's while.
+const VIEWS_AT_ONCE: usize = 8;
 /// A pixel that was looked at; less than any nearness.
 const DONE: f32 = -1.0;
 /// No triangle is seen.
@@ -58,7 +60,25 @@ pub struct Pictures<'a> {
 /// Memory that evaluations reuse.
 #[derive(Default)]
 pub struct Scratch {
+    triangles: Vec<Flat>,
+    spans: Vec<Span>,
     nearness: Vec<f32>,
+}
+
+/// A triangle on the screen.
+struct Flat {
+    /// Its index, if it is one of the surface.
+    index: u32,
+    /// Column, row and nearness.
+    corners: [[f32; 3]; 3],
+    /// Pixels that it may cover.
+    within: Rectangle,
+}
+
+impl Flat {
+    fn new(index: u32, corners: [[f32; 3]; 3], size: usize) -> Self {
+        Self { index, corners, within: Rectangle::of(&corners, size) }
+    }
 }
 
 impl<'a> Pictures<'a> {
@@ -88,14 +108,17 @@ impl<'a> Pictures<'a> {
 
     /// By how much a change would lessen the error; negative where it grows.
     pub fn gain_of(&self, change: &Change, scratch: &mut Scratch) -> f64 {
-        self.gain_in(1, change, scratch)
+        self.gain(
+            self.views.iter().zip(self.targets).map(|(view, of)| self.growth(view, of, change, scratch)),
+        )
     }
 
-    /// The same, guessed from one view in so many.
-    fn gain_in(&self, every: usize, change: &Change, scratch: &mut Scratch) -> f64 {
-        let views = self.views.iter().zip(self.targets).step_by(every);
-        let sum: f64 = views.map(|(view, target)| view.growth(target, &self.surface, change, scratch)).sum();
-        -sum * every as f64 / self.pixels()
+    fn gain(&self, growths: impl Iterator<Item = f64>) -> f64 {
+        -growths.sum::<f64>() / self.pixels()
+    }
+
+    fn growth(&self, view: &View, target: &Target, change: &Change, scratch: &mut Scratch) -> f64 {
+        view.growth(target, &self.surface, change, scratch)
     }
 
     /// The change that gains most, with its gain. Where there are several, a few views rule out all but one.
@@ -104,12 +127,32 @@ impl<'a> Pictures<'a> {
         changes: impl Iterator<Item = Change>,
         scratch: &mut Scratch,
     ) -> Option<(f64, Change)> {
-        let mut changes: Vec<(f64, Change)> = changes.map(|change| (0.0, change)).collect();
-        if changes.len() > 1 {
-            changes.iter_mut().for_each(|(gain, change)| *gain = self.gain_in(GUESSED_FROM, change, scratch));
+        let mut trials: Vec<Trial> = changes.map(Trial::from).collect();
+        if trials.len() > 1 {
+            trials.iter_mut().for_each(|trial| trial.look(self, scratch));
         }
-        let (_, best) = changes.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
-        Some((self.gain_of(&best, scratch), best))
+        let best = Trial::best(trials)?;
+        let growths = self.views.iter().zip(self.targets).enumerate();
+        let growths = growths.map(|(index, (view, target))| match best.known(index) {
+            Some(growth) => growth,
+            None => self.growth(view, target, &best.change, scratch),
+        });
+        Some((self.gain(growths), best.change))
+    }
+
+    /// The same, on all cores: for a caller that has nothing else to do meanwhile.
+    pub fn best_of_on_all_cores(&self, changes: impl Iterator<Item = Change>) -> Option<(f64, Change)> {
+        let mut trials: Vec<Trial> = changes.map(Trial::from).collect();
+        if trials.len() > 1 {
+            trials.par_iter_mut().for_each_init(Scratch::default, |scratch, trial| trial.look(self, scratch));
+        }
+        let best = Trial::best(trials)?;
+        let views = self.views.par_iter().zip(self.targets).enumerate().with_min_len(VIEWS_AT_ONCE);
+        let growths = views.map_init(Scratch::default, |scratch, (index, (view, target))| {
+            best.known(index).unwrap_or_else(|| self.growth(view, target, &best.change, scratch))
+        });
+        let growths: Vec<f64> = growths.collect();
+        Some((self.gain(growths.into_iter()), best.change))
     }
 
     /// Makes a change.
@@ -133,6 +176,38 @@ impl<'a> Pictures<'a> {
             }
         }
         out
+    }
+}
+
+/// A change that is compared with others.
+struct Trial {
+    change: Change,
+    /// By how much the error grows in every so-manieth view, if it was looked at.
+    growths: Vec<f64>,
+}
+
+impl From<Change> for Trial {
+    fn from(change: Change) -> Self {
+        Self { change, growths: Vec::new() }
+    }
+}
+
+impl Trial {
+    /// Looks at it from a few views.
+    fn look(&mut self, pictures: &Pictures, scratch: &mut Scratch) {
+        let views = pictures.views.iter().zip(pictures.targets).step_by(GUESSED_FROM);
+        self.growths.extend(views.map(|(view, target)| pictures.growth(view, target, &self.change, scratch)));
+    }
+
+    /// What is known of a view.
+    fn known(&self, view: usize) -> Option<f64> {
+        self.growths.get(view / GUESSED_FROM).copied().filter(|_| view.is_multiple_of(GUESSED_FROM))
+    }
+
+    /// The one under which the error grows least, the last of those that are alike.
+    fn best(trials: Vec<Self>) -> Option<Self> {
+        let growth = |trial: &Self| trial.growths.iter().sum::<f64>();
+        trials.into_iter().rev().min_by(|a, b| growth(a).total_cmp(&growth(b)))
     }
 }
 
@@ -213,51 +288,64 @@ impl View {
             Some((own, at)) if own == point => at,
             _ => self.points[point as usize],
         };
-        let removed =
-            || change.removed.iter().filter_map(|&t| Some((t, self.corners(surface.get(t)?.corners))));
-        let added = || change.added.iter().map(|triangle| triangle.corners.map(place));
-        let all = || removed().map(|(_, corners)| corners).chain(added());
-        let within = all().fold(Rectangle::default(), |r, corners| r.around(Rectangle::of(&corners, size)));
-        let nearest = all().flatten().fold(0.0f32, |nearest, [_, _, near]| nearest.max(near));
+        let Scratch { triangles, spans, nearness } = scratch;
+        triangles.clear();
+        let removed = change.removed.iter().filter_map(|&t| surface.get(t).map(|own| (t, own.corners)));
+        triangles.extend(removed.map(|(index, points)| Flat::new(index, self.corners(points), size)));
+        let (added, going) = (change.added.iter().map(|own| own.corners.map(place)), triangles.len());
+        triangles.extend(added.map(|corners| Flat::new(NOTHING, corners, size)));
+        let within = triangles.iter().fold(Rectangle::default(), |all, own| all.around(own.within));
+        let corners = triangles.iter().flat_map(|own| &own.corners);
+        let nearest = corners.fold(0.0f32, |nearest, [_, _, near]| nearest.max(*near));
         if self.is_hidden(within, nearest, size) {
             return 0.0;
         }
         let width = within.width();
-        scratch.nearness.clear();
-        scratch.nearness.resize(width * within.height(), 0.0);
+        nearness.clear();
+        nearness.resize(width * within.height(), 0.0);
         let at = |x: usize, y: usize| (y - within.y0) * width + x - within.x0;
-        for corners in added() {
-            let Some(edges) = Edges::new(&corners) else { continue };
-            edges.each_pixel(Rectangle::of(&corners, size), |x, y, near| {
-                let new = &mut scratch.nearness[at(x, y)];
-                *new = new.max(near);
+        let (removed, added) = triangles.split_at(going);
+        spans.clear();
+        for triangle in added {
+            let Some(edges) = Edges::new(&triangle.corners) else { continue };
+            edges.each_span(triangle.within, |span| {
+                let first = at(span.first, span.row);
+                let news = &mut nearness[first..first + span.end - span.first];
+                for (column, new) in (span.first..).zip(news) {
+                    *new = new.max(edges.nearness_in(&span, column));
+                }
+                spans.push(span);
             });
         }
         let mut sum = 0.0f32;
         // What loses its triangle takes a new one, or what comes to light behind.
-        for (index, corners) in removed() {
-            let Some(edges) = Edges::new(&corners) else { continue };
-            edges.each_pixel(Rectangle::of(&corners, size), |x, y, _| {
-                let pixel = y * size + x;
-                if self.triangle[pixel] == index {
-                    let new = &mut scratch.nearness[at(x, y)];
-                    if *new == 0.0 {
-                        *new = self.behind(surface, size, x, y, &change.removed).1;
+        for triangle in removed {
+            let Some(edges) = Edges::new(&triangle.corners) else { continue };
+            edges.each_span(triangle.within, |span| {
+                for x in span.first..span.end {
+                    let pixel = span.row * size + x;
+                    if self.triangle[pixel] == triangle.index {
+                        let new = &mut nearness[at(x, span.row)];
+                        if *new == 0.0 {
+                            *new = self.behind(surface, size, x, span.row, &change.removed).1;
+                        }
+                        sum += target.pixels[pixel].error(*new) - self.errors[pixel];
+                        *new = DONE;
                     }
-                    sum += target.pixels[pixel].error(*new) - self.errors[pixel];
-                    *new = DONE;
                 }
             });
         }
-        for corners in added() {
-            let Some(edges) = Edges::new(&corners) else { continue };
-            edges.each_pixel(Rectangle::of(&corners, size), |x, y, _| {
-                let (pixel, new) = (y * size + x, &mut scratch.nearness[at(x, y)]);
-                if *new > self.nearness[pixel] {
-                    sum += target.pixels[pixel].error(*new) - self.errors[pixel];
+        for span in spans {
+            let (first, count) = (at(span.first, span.row), span.end - span.first);
+            let pixels = span.row * size + span.first..span.row * size + span.end;
+            let old = self.nearness[pixels.clone()].iter().zip(&self.errors[pixels.clone()]);
+            let news = nearness[first..first + count].iter_mut().zip(&target.pixels[pixels]);
+            for ((new, pixel), (old, error)) in news.zip(old) {
+                if *new > *old {
+                    sum += pixel.error(*new) - error;
                 }
                 *new = DONE;
-            });
+            }
         }
         f64::from(sum)
     }

@@ -190,20 +190,16 @@ fn sweep<T: Sync + Send>(
     places: Vec<T>,
     trials: impl Fn(&Surface, &T) -> Vec<Change> + Sync,
 ) {
-    let best = |place: &T, pictures: &Pictures, scratch: &mut Scratch| {
-        let trials = trials(&pictures.surface, place).into_iter();
-        pictures.best_of(trials, scratch).filter(|(gain, _)| *gain > 0.0)
-    };
     let mut order: Vec<(f64, usize, Change)> = places
         .par_iter()
         .enumerate()
         .map_init(Scratch::default, |scratch, (index, place)| {
-            best(place, pictures, scratch).map(|(gain, change)| (gain, index, change))
+            let best = pictures.best_of(trials(&pictures.surface, place).into_iter(), scratch);
+            best.filter(|(gain, _)| *gain > 0.0).map(|(gain, change)| (gain, index, change))
         })
         .flatten()
         .collect();
     order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    let mut scratch = Scratch::default();
     let mut is_changed = vec![false; pictures.surface.points.len()];
     for (_, index, change) in order {
         let points = |change: &Change, surface: &Surface| -> Vec<u32> {
@@ -213,7 +209,8 @@ fn sweep<T: Sync + Send>(
         let is_stale =
             around.len() < 3 * change.removed.len() || around.iter().any(|&p| is_changed[p as usize]);
         let change = if is_stale {
-            best(&places[index], pictures, &mut scratch).map(|best| best.1)
+            let trials = trials(&pictures.surface, &places[index]).into_iter();
+            pictures.best_of_on_all_cores(trials).filter(|(gain, _)| *gain > 0.0).map(|best| best.1)
         } else {
             Some(change)
         };
@@ -261,15 +258,12 @@ fn split_worst(pictures: &mut Pictures, high: &HighPoly, count: usize) {
             .filter_map(|at| Change::split(surface, a, b, at))
             .collect()
     };
-    let best = |edge: &[u32; 2], pictures: &Pictures, scratch: &mut Scratch| {
-        pictures.best_of(trials(&pictures.surface, edge).into_iter(), scratch)
-    };
     let errors = pictures.errors_by_triangle();
     let mut order: Vec<(f64, usize)> = edges
         .par_iter()
         .enumerate()
         .map_init(Scratch::default, |scratch, (index, edge)| {
-            let (gain, change) = best(edge, pictures, scratch)?;
+            let (gain, change) = pictures.best_of(trials(&pictures.surface, edge).into_iter(), scratch)?;
             // What is wrong there may be mended once the new point has moved.
             let hope: f64 = change.removed.iter().map(|&t| errors[t as usize]).sum();
             Some((gain + 0.1 * hope / pictures.pixels(), index))
@@ -277,7 +271,6 @@ fn split_worst(pictures: &mut Pictures, high: &HighPoly, count: usize) {
         .flatten()
         .collect();
     order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    let mut scratch = Scratch::default();
     let mut added = 0;
     for (_, index) in order {
         if added >= count {
@@ -287,7 +280,8 @@ fn split_worst(pictures: &mut Pictures, high: &HighPoly, count: usize) {
         if pictures.surface.at_edge(a, b).is_empty() {
             continue;
         }
-        if let Some((_, change)) = best(&edges[index], pictures, &mut scratch) {
+        let trials = trials(&pictures.surface, &edges[index]).into_iter();
+        if let Some((_, change)) = pictures.best_of_on_all_cores(trials) {
             added += change.added.len() - change.removed.len();
             pictures.apply(&change);
         }

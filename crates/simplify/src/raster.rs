@@ -76,6 +76,19 @@ pub struct Edges {
     front: u32,
 }
 
+/// The pixels of a triangle in a row.
+#[derive(Clone, Copy, Debug)]
+pub struct Span {
+    /// Which row.
+    pub row: usize,
+    /// First column.
+    pub first: usize,
+    /// Column after the last.
+    pub end: usize,
+    /// The plane of nearness at column 0.
+    base: f32,
+}
+
 /// A nearness with the side that is seen.
 #[inline]
 fn with_side(nearness: f32, front: u32) -> f32 {
@@ -117,6 +130,22 @@ impl Edges {
     /// Calls `visit` with column, row and nearness of each pixel inside, within a rectangle.
     #[inline]
     pub fn each_pixel(&self, within: Rectangle, mut visit: impl FnMut(usize, usize, f32)) {
+        self.each_span(within, |span| {
+            for column in span.first..span.end {
+                visit(column, span.row, self.nearness_in(&span, column));
+            }
+        });
+    }
+
+    /// Nearness at a column of a span of this triangle.
+    #[inline]
+    pub fn nearness_in(&self, span: &Span, column: usize) -> f32 {
+        with_side(self.nearness[0] * column as f32 + span.base, self.front)
+    }
+
+    /// Calls `visit` with the pixels inside of each row, within a rectangle.
+    #[inline]
+    pub fn each_span(&self, within: Rectangle, mut visit: impl FnMut(Span)) {
         for row in within.y0..within.y1 {
             let y = row as f32 + 0.5;
             let (mut from, mut to) = (within.x0 as f32 + 0.5, within.x1 as f32 - 0.5);
@@ -136,10 +165,11 @@ impl Edges {
             }
             // Both are at least 0.5, so that casts round down.
             let (from, to) = (from - 0.5, to - 0.5);
-            let (first, last) = (from as usize + usize::from((from as usize as f32) < from), to as usize);
+            let first = from as usize + usize::from((from as usize as f32) < from);
+            let end = (to as usize + 1).min(within.x1);
             let base = self.nearness[1] * y + self.nearness[2] + 0.5 * self.nearness[0];
-            for column in first..(last + 1).min(within.x1) {
-                visit(column, row, with_side(self.nearness[0] * column as f32 + base, self.front));
+            if first < end {
+                visit(Span { row, first, end, base });
             }
         }
     }

@@ -38,7 +38,8 @@ pub(super) struct Place {
 
 impl Board {
     pub fn new(size: usize) -> Self {
-        let words = size / 64 + 1;
+        // One more than there are cells, so that shifted words need no check.
+        let words = size / 64 + 2;
         let levels = vec![vec![0; words * size]; size.max(1).ilog2() as usize + 1];
         Self { size, words, levels, longest_free: vec![size; size] }
     }
@@ -50,14 +51,15 @@ impl Board {
         }
         let mut best: Option<Place> = None;
         let mut bound = limit;
-        let mut free = vec![0u64; self.words];
+        let mut free = vec![0u64; (self.size - mask.width) / 64 + 1];
+        let mut order: Vec<u32> = (0..mask.runs.len() as u32).collect();
         for y in 0..=self.size - mask.height {
             let lowest = cost(preference, 0, y, mask);
             if lowest >= bound {
                 // Costs grow with y in the first place.
                 break;
             }
-            if let Some(x) = self.first_free(mask, y, &mut free) {
+            if let Some(x) = self.first_free(mask, y, &mut free, &mut order) {
                 let found = cost(preference, x, y, mask);
                 if found < bound {
                     bound = found;
@@ -83,25 +85,34 @@ impl Board {
             })
     }
 
-    /// The leftmost column at which the mask fits in row `y`.
-    fn first_free(&self, mask: &Mask, y: usize, free: &mut [u64]) -> Option<usize> {
+    /// The leftmost column at which the mask fits in row `y`. Runs are tried in the `order` given; the one that leaves
+    /// no column comes first from then on, since it meets the same obstacle in the next row.
+    fn first_free(&self, mask: &Mask, y: usize, free: &mut [u64], order: &mut [u32]) -> Option<usize> {
         // Most rows are ruled out by the longest runs alone.
         if mask.runs.iter().take(32).any(|run| self.longest_free[y + run.row] < run.length) {
             return None;
         }
         free.fill(0);
         set_range(free, 0, self.size - mask.width + 1);
-        let (mut first, mut last) = (0, self.words - 1);
-        for run in &mask.runs {
+        let (mut first, mut last) = (0, free.len() - 1);
+        for place in 0..order.len() {
+            let run = &mask.runs[order[place] as usize];
             let level = run.length.ilog2() as usize;
             let row = (y + run.row) * self.words;
             let taken = &self.levels[level][row..row + self.words];
             let (near, far) = (run.start, run.start + run.length - (1 << level));
-            for (index, word) in free[first..=last].iter_mut().enumerate() {
-                *word &= !(shifted(taken, first + index, near) | shifted(taken, first + index, far));
+            let free_words = &mut free[first..=last];
+            let [near_words, far_words] =
+                [near, far].map(|by| &taken[first + by / 64..first + by / 64 + free_words.len() + 1]);
+            for (index, word) in free_words.iter_mut().enumerate() {
+                let taken = |words: &[u64], by: usize| {
+                    words[index] >> (by % 64) | words[index + 1] << 1 << (63 - by % 64)
+                };
+                *word &= !(taken(near_words, near) | taken(far_words, far));
             }
             while free[first] == 0 {
                 if first == last {
+                    order[..=place].rotate_right(1);
                     return None;
                 }
                 first += 1;
