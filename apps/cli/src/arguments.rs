@@ -16,8 +16,19 @@ use std::path::PathBuf;
 /// Heading of files and messages in `--help`.
 const IO: &str = "Input and output";
 
+/// Heading of those options of `compress` that act on some models alone.
+const MORE_THAN_COLOUR: &str = "Models with more than colour";
+
 /// Options whose defaults in `compress` are not those of a bake.
-const HELP_IN_COMPRESS: [(&str, &str); 3] = [
+const HELP_IN_COMPRESS: [(&str, &str); 7] = [
+    (
+        "time_budget",
+        "Seconds after which the best texture so far is written, 0 to 1e9, reading of files included. \
+Below 8 UVs are only repaired [default: no limit]",
+    ),
+    ("shading", "What of the materials is fitted; pbr is the whole metallic-roughness material"),
+    ("uv", "UV mode: how the model's texture coordinates are treated"),
+    ("method", "UV optimiser; textures are solved the same way"),
     (
         "gutter",
         "Padding between charts (UV islands) in texels, 0 to 64 [default: texture size / 256, at least 1, at most 8]",
@@ -33,20 +44,42 @@ const HELP_IN_COMPRESS: [(&str, &str); 3] = [
     ),
 ];
 
+/// Options of files whose help speaks of parallax maps, for commands that write none.
+const HELP_WITHOUT_PARALLAX: [(&str, &str); 2] = [
+    ("texture_format", "Image format of the textures in a GLB file"),
+    (
+        "texture_quality",
+        "Quality of JPEG, WebP and ETC1S, 1 to 100; in JPEG, normal maps and data maps have at least 95. UASTC files \
+have about the same size at any quality; from 96 on it is encoded with more care",
+    ),
+];
+
+/// Commands that write models without parallax maps.
+const WITHOUT_PARALLAX: [&str; 3] = ["compress", "lod", "raycast"];
+
+/// A command whose options have other help texts where `texts` has some.
+fn with_help(command: Clap, texts: &'static [(&'static str, &'static str)]) -> Clap {
+    command.mut_args(|argument| match texts.iter().find(|(own, _)| argument.get_id() == *own) {
+        Some((_, help)) => argument.help(*help).long_help(*help),
+        None => argument,
+    })
+}
+
 /// The command with its subcommands. `compress` takes the options of a bake, so that options files serve
 /// both, and shows those that act there; `rules` refuses the others.
 pub fn command() -> Clap {
-    Arguments::command().mut_subcommand("compress", |compress| {
-        compress.mut_args(|argument| {
+    let whole = WITHOUT_PARALLAX.into_iter().fold(Arguments::command(), |whole, name| {
+        whole.mut_subcommand(name, |own| with_help(own, &HELP_WITHOUT_PARALLAX))
+    });
+    whole.mut_subcommand("compress", |compress| {
+        with_help(compress, &HELP_IN_COMPRESS).mut_args(|argument| {
             let name = argument.get_id().to_string();
             if NOT_IN_COMPRESS.contains(&name.as_str()) {
                 argument.hide(true)
             } else if name == "more_triangles" {
                 argument.hide(false)
-            } else if let Some((_, help)) = HELP_IN_COMPRESS.iter().find(|(own, _)| *own == name) {
-                argument.help(*help).long_help(*help)
             } else if WITH_NORMAL_MAPS.contains(&name.as_str()) {
-                argument.help_heading("Models with a normal map")
+                argument.help_heading(MORE_THAN_COLOUR)
             } else {
                 argument
             }
@@ -150,7 +183,7 @@ pub struct BakeCommand {
     pub low: Option<PathBuf>,
 
     /// Make the low-poly, of at most so many triangles, 4 or more
-    #[arg(short, long, value_name = "COUNT", conflicts_with = "low", value_parser = clap::value_parser!(u32).range(4..))]
+    #[arg(short, long, value_name = "COUNT", conflicts_with = "low", value_parser = clap::value_parser!(u32).range(4..), help_heading = IO)]
     pub triangles: Option<u32>,
 
     /// File to write: .glb, or .obj with .mtl and .png beside it
@@ -267,8 +300,8 @@ pub struct RaycastCommand {
 /// Arguments of `compress`.
 #[derive(Args, Debug)]
 #[command(
-    after_help = "The surface stays. Options under \"Models with a normal map\" act on those, and on models whose materials \
-have more than colour (metal, roughness, occlusion, emission, opacity): they are baked as a pair is."
+    after_help = "The surface stays. Options under \"Models with more than colour\" act on models whose materials have more than that \
+(a normal map, metal, roughness, occlusion, emission, opacity): they are baked as a pair is."
 )]
 pub struct CompressCommand {
     /// The model with its texture: .obj, .gltf or .glb
@@ -415,11 +448,11 @@ pub struct EvalCommand {
     pub json: Option<PathBuf>,
 
     /// Print the figures of each view
-    #[arg(long)]
+    #[arg(long, help_heading = IO)]
     pub per_view: bool,
 
     /// Number of threads, 0 to 256; 0 is one a core
-    #[arg(long, value_name = "COUNT", default_value_t = 0)]
+    #[arg(long, value_name = "COUNT", default_value_t = 0, help_heading = "Comparison")]
     pub threads: usize,
 
     /// How to compare

@@ -11,7 +11,8 @@ use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;
 use parbake::{
-    BakeReport, Detail, Stage, StageTime, Work, check_budget, compress, with_normal_y, with_threads,
+    BakeReport, Detail, Message, Stage, StageTime, Watcher, Work, check_budget, compress, has_colour_alone,
+    with_normal_y, with_threads,
 };
 use std::path::Path;
 
@@ -32,6 +33,14 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
         let loaded = read(&command.model, &console)?;
         if command.strict {
             check_textures(&loaded.warnings)?;
+        }
+        if has_colour_alone(&loaded.model, &options) {
+            for name in rules::typed_of_views(given) {
+                let text = format!(
+                    "{name} acts on models with a normal map, or more to their materials than colour; here it does nothing"
+                );
+                console.message(Message::Warning(text));
+            }
         }
         let mut baked = compress(&loaded.model, &options, &console)?;
         let begin = console.seconds();

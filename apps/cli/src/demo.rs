@@ -4,7 +4,7 @@ use crate::arguments::{DemoCommand, DemoScene};
 use crate::bake::{Pair, bake_and_write, compare, ending, tell, write_report};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
-use crate::outputs::check_place;
+use crate::outputs::{check_folder, check_place};
 use crate::pictures::write_pictures;
 use crate::progress::Console;
 use crate::rules;
@@ -21,6 +21,7 @@ pub fn run(command: &DemoCommand, given: &ArgMatches) -> Result<Ending, Failure>
     command.bake.check()?;
     check_budget(&command.bake)?;
     let folder = &command.output;
+    check_folder(folder)?;
     make_folder(folder)?;
     check_place(&folder.join("demo.glb"))?;
     if let Some(pictures) = &command.pictures {

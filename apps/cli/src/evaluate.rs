@@ -6,10 +6,13 @@ use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::outputs::{check_json, is_stdout};
 use crate::progress::Console;
+use crate::rules;
+use clap::ArgMatches;
 use parbake::{ViewFigures, evaluate, with_threads};
 
 /// Runs the command.
-pub fn run(command: &EvalCommand) -> Result<Ending, Failure> {
+pub fn run(command: &EvalCommand, given: &ArgMatches) -> Result<Ending, Failure> {
+    rules::check_eval(&command.evaluate, given)?;
     command.evaluate.check()?;
     check_json(command.json.as_ref(), &[&command.high, &command.low])?;
     let console = Console::new(command.talk).confined(command.reading);

@@ -4,8 +4,10 @@ use crate::arguments::LodCommand;
 use crate::bake::read_painted;
 use crate::failure::{Ending, Failure};
 use crate::lod_text::{line, target_lines};
-use crate::outputs::{check_beside, check_not_input};
+use crate::outputs::{check_beside, check_folder, check_not_input};
 use crate::progress::{Console, interrupted};
+use crate::rules;
+use clap::ArgMatches;
 use parbake::lod::document::{LodDocument, coverages};
 use parbake::{
     Level, LevelReport, Model, Verdict, WriteOptions, make_levels, with_normal_y, with_threads, write_file,
@@ -19,9 +21,11 @@ use std::path::Path;
 const DOCUMENT: &str = "lods.json";
 
 /// Runs the command.
-pub fn run(command: &LodCommand) -> Result<Ending, Failure> {
+pub fn run(command: &LodCommand, given: &ArgMatches) -> Result<Ending, Failure> {
     let options = &command.lod;
+    rules::check_lod(options, given)?;
     options.check()?;
+    check_folder(&command.output)?;
     let name =
         command.model.file_stem().map_or_else(|| "model".into(), |stem| stem.to_string_lossy().into_owned());
     make_folder(&command.output)?;

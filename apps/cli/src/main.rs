@@ -32,23 +32,22 @@ mod watch;
 
 use arguments::{Arguments, Command};
 use clap::FromArgMatches;
+use std::error::Error;
+use std::num::{ParseFloatError, ParseIntError};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     leash::heed();
-    let matches = arguments::command().get_matches();
-    let arguments = match Arguments::from_arg_matches(&matches) {
-        Ok(arguments) => arguments,
-        Err(error) => error.exit(),
-    };
+    let matches = arguments::command().try_get_matches().unwrap_or_else(|error| typing_error(&error));
+    let arguments = Arguments::from_arg_matches(&matches).unwrap_or_else(|error| typing_error(&error));
     let given = matches.subcommand().map(|(_, m)| m);
     let outcome = match (&arguments.command, given) {
         (Command::Bake(command), Some(given)) => bake::run(command, given),
         (Command::Demo(command), Some(given)) => demo::run(command, given),
-        (Command::Eval(command), _) => evaluate::run(command),
+        (Command::Eval(command), Some(given)) => evaluate::run(command, given),
         (Command::Raycast(command), Some(given)) => raycast::run(command, given),
         (Command::Compress(command), Some(given)) => compress::run(command, given),
-        (Command::Lod(command), _) => lod::run(command),
+        (Command::Lod(command), Some(given)) => lod::run(command, given),
         (Command::Image(command), Some(given)) => image::run(command, given),
         (Command::Variants(command), _) => variants::run(command),
         (Command::Turntable(command), _) => turntable::run(command),
@@ -67,5 +66,26 @@ fn main() -> ExitCode {
             eprintln!("error: {failure}");
             failure.exit_code()
         }
+    }
+}
+
+/// Says what is wrong with what was typed, and ends. Of what is no number the standard library says how its parser
+/// failed; people are told what to type.
+fn typing_error(error: &clap::Error) -> ! {
+    let Some((source, wanted)) = error.source().and_then(|source| Some((source, number_wanted(source)?)))
+    else {
+        error.exit()
+    };
+    eprint!("{}", error.render().to_string().replace(&source.to_string(), wanted));
+    std::process::exit(2)
+}
+
+fn number_wanted(source: &(dyn Error + 'static)) -> Option<&'static str> {
+    if source.is::<ParseFloatError>() {
+        Some("give a number, such as 0.5")
+    } else if source.is::<ParseIntError>() {
+        Some("give a whole number, such as 8")
+    } else {
+        None
     }
 }

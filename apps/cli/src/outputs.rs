@@ -13,6 +13,14 @@ pub fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
+/// Refuses the name of standard output for a folder of files.
+pub fn check_folder(path: &Path) -> Result<(), Failure> {
+    match is_stdout(path) {
+        false => Ok(()),
+        true => Err(Failure::Usage("several files cannot go to standard output; give a folder".into())),
+    }
+}
+
 /// Refuses a model that cannot be written.
 pub fn check_output(path: &Path) -> Result<(), Failure> {
     check_extension(path, &["glb", "obj"], "the output")?;

@@ -8,8 +8,8 @@ use crate::failure::Failure;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
 use parbake::{
-    BakeOptions, GeometryMap, ImageOptions, Match, Method, Parallax, PictureUv, RaycastOptions,
-    TextureFormat, UvMode, Work,
+    BakeOptions, EvaluateOptions, GeometryMap, ImageOptions, LodOptions, Match, Method, Parallax, PictureUv,
+    RaycastOptions, TextureFormat, UvMode, Work,
 };
 use serde_json::Value;
 use std::path::Path;
@@ -47,6 +47,11 @@ fn typed_name(name: &str) -> String {
     format!("--{}", name.replace('_', "-"))
 }
 
+/// Those of [`WITH_NORMAL_MAPS`] that were typed, as they were typed.
+pub fn typed_of_views(given: &ArgMatches) -> impl Iterator<Item = String> + '_ {
+    WITH_NORMAL_MAPS.iter().filter(|name| is_typed(given, name)).map(|name| typed_name(name))
+}
+
 /// Checks the options of `bake`, `demo` or `compress`; `file` is the options file, if there was one.
 pub fn check(
     work: Work,
@@ -69,6 +74,9 @@ pub fn check(
     };
     if work == Work::Compress {
         refuse(&NOT_IN_COMPRESS, "does nothing in compress, which keeps the surface; leave it out")?;
+        if options.uv != UvMode::Optimize && options.method != Method::Paper {
+            refuse(&["more_triangles"], "does nothing without --uv optimize; choose that or leave it out")?;
+        }
     } else {
         refuse(&["more_triangles"], "acts in compress only; leave it out")?;
     }
@@ -100,14 +108,14 @@ pub fn check(
             refuse(&["uv_steps"], "does nothing without --uv optimize; choose that or leave it out")?;
         }
     }
-    let is_lossless =
-        matches!(options.write.texture_format, TextureFormat::Png | TextureFormat::WebpLossless);
+    if options.rounds == Some(0) {
+        let of_fit = ["keep_normals", "robust_scale"];
+        refuse(&of_fit, "does nothing with --rounds 0, which fits no textures; leave one of the two out")?;
+    }
+    let is_lossless = is_lossless(options.write.texture_format);
     // Textures for viewers without parallax maps are JPEG in either case.
     if is_lossless && !options.has_fallback() {
-        refuse(
-            &["texture_quality"],
-            "does nothing with a lossless --texture-format; choose another or leave it out",
-        )?;
+        refuse(&["texture_quality"], QUALITY_OF_LOSSLESS)?;
     }
     if options.silhouette_weight() == 0.0 {
         refuse(
@@ -118,12 +126,44 @@ pub fn check(
     Ok(())
 }
 
-/// Checks the options of `raycast`.
-pub fn check_raycast(options: &RaycastOptions, given: &ArgMatches) -> Result<(), Failure> {
-    let refuse = |name: &str, why: &str| match is_typed(given, name) {
+const QUALITY_OF_LOSSLESS: &str =
+    "does nothing with a lossless --texture-format; choose another or leave it out";
+
+fn is_lossless(format: TextureFormat) -> bool {
+    matches!(format, TextureFormat::Png | TextureFormat::WebpLossless)
+}
+
+/// Refuses an option that was typed.
+fn refuse_typed(given: &ArgMatches, name: &str, why: &str) -> Result<(), Failure> {
+    match is_typed(given, name) {
         false => Ok(()),
         true => Err(Failure::Usage(format!("{} {why}", typed_name(name)))),
-    };
+    }
+}
+
+/// Checks the options of `lod`.
+pub fn check_lod(options: &LodOptions, given: &ArgMatches) -> Result<(), Failure> {
+    match is_lossless(options.write.texture_format) {
+        true => refuse_typed(given, "texture_quality", QUALITY_OF_LOSSLESS),
+        false => Ok(()),
+    }
+}
+
+/// Checks the options of `eval`.
+pub fn check_eval(options: &EvaluateOptions, given: &ArgMatches) -> Result<(), Failure> {
+    match options.ortho {
+        Some(_) => refuse_typed(
+            given,
+            "fov",
+            "does nothing with --ortho, whose rays are parallel; leave one of the two out",
+        ),
+        None => Ok(()),
+    }
+}
+
+/// Checks the options of `raycast`.
+pub fn check_raycast(options: &RaycastOptions, given: &ArgMatches) -> Result<(), Failure> {
+    let refuse = |name: &str, why: &str| refuse_typed(given, name, why);
     let has = |maps: &[GeometryMap]| maps.iter().any(|map| options.maps.contains(map));
     let sees_sky = has(&[GeometryMap::Occlusion, GeometryMap::BentNormal]) || options.occlusion_texture;
     if !sees_sky {
@@ -138,11 +178,8 @@ pub fn check_raycast(options: &RaycastOptions, given: &ArgMatches) -> Result<(),
     if options.r#match == Match::ClosestPoint {
         refuse("ray_normals", "does nothing with --match closest-point, which casts no rays; leave it out")?;
     }
-    if matches!(options.write.texture_format, TextureFormat::Png | TextureFormat::WebpLossless) {
-        refuse(
-            "texture_quality",
-            "does nothing with a lossless --texture-format; choose another or leave it out",
-        )?;
+    if is_lossless(options.write.texture_format) {
+        refuse("texture_quality", QUALITY_OF_LOSSLESS)?;
     }
     Ok(())
 }

@@ -10,7 +10,7 @@
 //! material samples ─ separate_maps ┘                  maps that do not depend on each other
 //! layers ─ cutout                                     where the low-poly is left out
 //! view samples ─ parallax ─ view_gradient ─ texels    how coordinates shift
-//!              └ territory                            shifts stay within their chart
+//!              └ chart_ownership                      shifts stay within their chart
 //! backend                                             the coarse operations, for a GPU to replace
 //! ```
 //!

@@ -132,7 +132,7 @@ impl FittedMaps {
 const FADE: f32 = 1.0 / 16.0;
 
 /// Texels along a side of the map that says which chart is nearest.
-const TERRITORY: usize = 256;
+const OWNERSHIP_SIZE: usize = 256;
 
 /// Rounds of the solve for the small textures, and views that it is made of: they only have to
 /// begin well. With all 480 views instead of 160 maps are 0.03 dB better, and take a third longer.
@@ -260,8 +260,8 @@ pub fn fit_parallax_maps(
     };
     report.steps = losses.iter().map(Vec::len).sum();
     report.mean_square = losses.iter().map(ends).collect();
-    let LowPoly { placed, map: texels, .. } = LowPoly::for_parallax(low, &high.frame, TERRITORY)?;
-    let chart_ownership = ChartOwnership::new(&Atlas::new(&texels, &charts(&placed), TERRITORY));
+    let LowPoly { placed, map: texels, .. } = LowPoly::for_parallax(low, &high.frame, OWNERSHIP_SIZE)?;
+    let chart_ownership = ChartOwnership::new(&Atlas::new(&texels, &charts(&placed), OWNERSHIP_SIZE));
     report.cross_chart = clamp_to_chart(&views, &chart_ownership, &mut map);
     let parallax = map.as_stored();
     if let Some(maps) = textures {

@@ -58,8 +58,7 @@ pub struct TextureSlot {
     pub transform: UvTransform,
 }
 
-/// How alpha is to be understood (glTF 2.0, section 3.9.4). Parbake bakes opaque surfaces; the
-/// mode is kept so that a warning can say what was set aside.
+/// How alpha is to be understood (glTF 2.0, section 3.9.4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AlphaMode {
     /// Alpha is ignored.

@@ -15,7 +15,7 @@ use crate::fallback::{Fallback, fit_fallback};
 use crate::geometry::{Geometry, move_geometry};
 use crate::importance::importances;
 use crate::look::{Look, add_fallback};
-use crate::lost::lost;
+use crate::lost::{lost, not_judged};
 use crate::low_poly::{check_triangles, coarse_surfaces, low_poly};
 use crate::options::{BakeOptions, Shading, UvMode};
 use crate::parts::{with_kept_parts, with_parted_materials, with_parts};
@@ -148,7 +148,18 @@ pub(crate) fn bake_onto_itself(
 ) -> Result<Baked, BakeError> {
     options.check()?;
     let begin = Instant::now();
-    run(&prepare(model, options)?, model, Work::Compress, options, watcher, begin)
+    bake_prepared_onto_itself(&prepare(model, options)?, model, options, watcher, begin)
+}
+
+/// The same of a model that is prepared already, for several bakes of it; a time budget counts from `begin`.
+pub(crate) fn bake_prepared_onto_itself(
+    prepared: &HighPoly,
+    model: &Model,
+    options: &BakeOptions,
+    watcher: &dyn Watcher,
+    begin: Instant,
+) -> Result<Baked, BakeError> {
+    run(prepared, model, Work::Compress, options, watcher, begin)
 }
 
 pub(crate) fn conventions(options: &BakeOptions) -> Conventions {
@@ -254,7 +265,9 @@ fn run(
     }
     let is_whole = high.is_whole_material;
     let unfit = if is_whole { look.extensions.lost.clone() } else { lost(high.extensions.materials()) };
-    warnings.tell(unfit.into_iter().map(|text| format!("{}: {text}", high.name)));
+    let unjudged = not_judged(high.extensions.materials()).filter(|_| is_whole);
+    let unfit = unfit.into_iter().chain(high.unlit.clone()).chain(unjudged);
+    warnings.tell(unfit.map(|text| format!("{}: {text}", high.name)));
 
     let missed_texels = projected.missed;
     let ray_cast = match other_baseline(delivered, &prepared, work, high, options) {

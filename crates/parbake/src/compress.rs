@@ -16,7 +16,7 @@
 //! kept, or delivered ones that share texels show more and no other layout was asked for. Texels are compared as they are stored, as when a picture is
 //! scaled.
 
-use crate::bake::{Baked, bake_onto_itself};
+use crate::bake::{Baked, bake_onto_itself, bake_prepared_onto_itself, prepare_high_poly};
 use crate::budget::check_budget;
 use crate::error::BakeError;
 use crate::kept;
@@ -36,6 +36,7 @@ use parbake_uv::surface::{
 };
 use parbake_views::PrepareError;
 use parbake_views::frame::{common_frame, placed};
+use std::cell::Cell;
 use std::time::Instant;
 
 /// How far dark colours are brightened before coordinates move for them. Viewers of glTF show stored
@@ -68,9 +69,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> 
     }
     let slack = 0.5 / options.texture_size as f64;
     let keeps_tiles = options.uv == UvMode::Keep && !is_in_the_square(&delivered.mesh, slack);
-    let is_whole = options.shading != Shading::Lambert && options.convention == Convention::Gltf;
-    let is_plain = |m: &Material| m.normal_texture.is_none() && !(is_whole && has_more_than_colour(m));
-    if keeps_tiles || !model.materials.iter().all(is_plain) {
+    if keeps_tiles || !has_colour_alone(model, options) {
         return whole(model, options, watcher);
     }
     // Where no chart is longer than a tile, coordinates can be read in the square.
@@ -87,9 +86,23 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> 
     plain(model, options, watcher)
 }
 
+/// Whether a model's materials have colour and nothing else that is fitted with these options. Its texture is then
+/// solved for on its surface, without views.
+pub fn has_colour_alone(model: &Model, options: &BakeOptions) -> bool {
+    let is_whole = options.shading != Shading::Lambert && options.convention == Convention::Gltf;
+    let is_plain = |m: &Material| m.normal_texture.is_none() && !(is_whole && has_more_than_colour(m));
+    model.materials.iter().all(is_plain)
+}
+
 /// Bakes a model with all its maps onto itself.
 fn whole(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<Baked, BakeError> {
-    kept::weighed(model, options, watcher, |options, watcher| bake_onto_itself(model, options, watcher))
+    let begin = Cell::new(Some(Instant::now()));
+    let prepared = prepare_high_poly(model, options)?;
+    kept::weighed(model, options, watcher, |options, watcher| {
+        // The first bake's time began before the model was prepared.
+        let begin = begin.take().unwrap_or_else(Instant::now);
+        bake_prepared_onto_itself(&prepared, model, options, watcher, begin)
+    })
 }
 
 /// Solves for the texture of a model whose materials have colour alone.

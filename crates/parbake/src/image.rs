@@ -3,7 +3,7 @@
 //! plain into few.
 //!
 //! ```text
-//! picture ─ showings ─┬ shape (coarse grid) ─ refine ─ finer grid ─ refine … ─┬ texture ─ Model
+//! picture ─ scales ───┬ shape (coarse grid) ─ refine ─ finer grid ─ refine … ─┬ texture ─ Model
 //!                     ├ the paper's method, one grid ─────────────────────────┤
 //!                     └ texture for the coordinates as they are (baseline) ───┘
 //! ```

@@ -70,7 +70,7 @@ pub use comparison::{
     BACKGROUNDS, BeforeAndAfter, COMPARED_VIEWS, Comparison, Detail, OnBackground, OnChannel, compare_bake,
     compared_as,
 };
-pub use compress::compress;
+pub use compress::{compress, has_colour_alone};
 pub use error::BakeError;
 pub use evaluate::channels::{Channel, ChannelFigures};
 pub use evaluate::options::EvaluateOptions;

@@ -20,8 +20,6 @@ pub(crate) struct Look {
     pub kinds: Vec<LayerKind>,
     /// What the layers have of the high-poly's material extensions.
     pub extensions: ExtensionMaps,
-    /// Whether the whole metallic-roughness material was fitted.
-    pub is_whole: bool,
     /// What emission was divided by.
     pub emissive_strength: f32,
     /// Whether the high-poly shows its base colour without lights.
@@ -43,7 +41,6 @@ impl Look {
         Self {
             kinds,
             extensions: ExtensionMaps::default(),
-            is_whole: high.is_whole_material,
             emissive_strength: high.emissive_strength,
             is_unlit: high.is_whole_material && high.scene.is_unlit(),
         }
@@ -93,17 +90,6 @@ impl Look {
         Model { name: low.name.clone(), mesh, materials: materials.collect(), images, ..Model::default() }
     }
 
-    /// Gives a material these maps, whose images are added to the model's.
-    pub fn add_maps(&self, material: &mut Material, images: &mut Vec<Image>, maps: Vec<(MapKind, Image)>) {
-        if self.is_whole {
-            return self.add_whole(material, images, maps);
-        }
-        for (kind, image) in maps {
-            set_texture(material, kind, slot(images.len()));
-            images.push(image);
-        }
-    }
-
     /// The material of a layer; the images of extensions begin at `first`.
     fn of_layer(&self, material: &Material, kind: LayerKind, first: usize) -> Material {
         let mut material = Material { alpha_mode: kind.mode, ..material.clone() };
@@ -131,7 +117,8 @@ impl Look {
         material
     }
 
-    fn add_whole(&self, material: &mut Material, images: &mut Vec<Image>, maps: Vec<(MapKind, Image)>) {
+    /// Gives a material these maps, whose images are added to the model's.
+    pub fn add_maps(&self, material: &mut Material, images: &mut Vec<Image>, maps: Vec<(MapKind, Image)>) {
         let mut add = |material: &mut Material, kind: MapKind, image: Image| {
             set_texture(material, kind, slot(images.len()));
             images.push(image);
@@ -249,7 +236,7 @@ mod tests {
     fn whole(modes: Vec<AlphaMode>) -> Look {
         let kinds = modes.into_iter().map(|mode| LayerKind { mode, transmits: false }).collect();
         let extensions = ExtensionMaps::default();
-        Look { kinds, extensions, is_whole: true, emissive_strength: 3.0, is_unlit: false }
+        Look { kinds, extensions, emissive_strength: 3.0, is_unlit: false }
     }
 
     fn image(pixels: [[u8; 4]; 2]) -> Image {

@@ -1,4 +1,5 @@
-//! What of the high-poly's material extensions is lost where only light on a matte surface is fitted.
+//! What of the high-poly's material extensions is lost where only light on a matte surface is fitted, and what no
+//! comparison by Parbake's own renderer shows.
 
 use parbake_model::{Material, MaterialExtensions, Specular};
 
@@ -61,10 +62,24 @@ pub(crate) fn lost(materials: &[Material]) -> Vec<String> {
     LOSSES.iter().filter_map(of).collect()
 }
 
+/// A word about extensions that figures of Parbake's renderer say nothing of, if a material has some.
+pub(crate) fn not_judged<'a>(materials: impl IntoIterator<Item = &'a Material> + Clone) -> Option<String> {
+    let has = |&&(_, _, has): &&Loss| materials.clone().into_iter().any(|material| has(&material.extensions));
+    let names: Vec<&str> = LOSSES.iter().filter(has).map(|(name, ..)| *name).collect();
+    let verb = if names.len() == 1 { "is" } else { "are" };
+    (!names.is_empty()).then(|| {
+        format!(
+            "{} {verb} not shown by the renderer that pictures and figures come from, so they do not judge it; see it \
+             with `parbake view`",
+            names.join(", ")
+        )
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use parbake_model::Sheen;
+    use parbake_model::{Sheen, Transmission};
 
     /// Protects the user from losses without a word, and from words where nothing is lost.
     #[test]
@@ -78,5 +93,15 @@ mod tests {
             told.len() == 1 && told[0].contains("KHR_materials_sheen") && told[0].contains("cloth"),
             "{told:?}"
         );
+    }
+
+    /// Protects whoever reads decibels of glass and cloth: they are told what these leave out.
+    #[test]
+    fn what_figures_leave_out_is_told() {
+        let mut glass = Material::default();
+        assert_eq!(not_judged([&glass]), None);
+        glass.extensions.transmission = Some(Transmission { factor: 1.0, ..Transmission::default() });
+        let told = not_judged([&Material::default(), &glass]);
+        assert!(told.is_some_and(|text| text.starts_with("KHR_materials_transmission is not shown")));
     }
 }

@@ -178,7 +178,8 @@ pub fn raycast(
         true => look.extensions.lost.clone(),
         false => lost(high.extensions.materials()),
     };
-    warnings.tell(unfit.into_iter().map(|text| format!("{}: {text}", high.name)));
+    let unfit = unfit.into_iter().chain(high.unlit.clone());
+    warnings.tell(unfit.map(|text| format!("{}: {text}", high.name)));
     let uv = check_mesh(&prepared.written, size);
     warnings.tell(layout_warning(&low.name, &uv));
     let report = RaycastReport {

@@ -134,7 +134,10 @@ mod tests {
         let high = HighPoly::new(&high, conventions(&BakeOptions::default())).expect("it has extent");
         let look = Look::without_extensions(&high, Vec::new());
         let solid = |side: usize, value: f32| FloatImage::solid(side, Vec4::splat(value));
-        let start = MapSet::of(solid(4, 1.0), FloatImage::solid(4, Vec4::Z));
+        let mut color = solid(4, 1.0);
+        // Of one value it would become a factor.
+        color.texels[15] = Vec4::ZERO;
+        let start = MapSet::of(color, FloatImage::solid(4, Vec4::Z));
         let shown = OfMaps::new(&look, &low, &low.mesh, &start, false);
         let mut maps = MapSet::new(8);
         maps.insert(MapKind::Normal, FloatImage::solid(8, Vec4::X));

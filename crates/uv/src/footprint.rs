@@ -118,7 +118,7 @@ impl OnLevel {
     }
 }
 
-/// The levels that a triangle's samples of one showing touch, with their shares.
+/// The levels that a triangle's samples of one scale touch, with their shares.
 #[inline]
 pub fn shares(level: &Level) -> impl Iterator<Item = (usize, f32)> + use<> {
     let coarse = level.coarse_share as f32;

@@ -3,7 +3,7 @@
 //! With a sample's place known, its colour on level l is `Σ wᵢ Tˡᵢ` over four texels of
 //! `Tˡ = Dˡ T`, the texture halved l times. Minimised is
 //!
-//! `Σ_showings Σₛ ωₛ ((1 − f) |Σ wᵢ Tˡᵢ − yₛ|² + f |Σ wᵢ Tˡ⁺¹ᵢ − yₛ|²) + ε Σ |Tᵢ − Tⱼ|²`,
+//! `Σ_scales Σₛ ωₛ ((1 − f) |Σ wᵢ Tˡᵢ − yₛ|² + f |Σ wᵢ Tˡ⁺¹ᵢ − yₛ|²) + ε Σ |Tᵢ − Tⱼ|²`,
 //!
 //! the blend f of two mip levels taken outside the square: an upper bound of the trilinear
 //! fetch's error (Jensen) whose normal matrix `Σ_l Dˡᵀ Aˡ Dˡ` needs nine points a texel and

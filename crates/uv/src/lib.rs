@@ -1,11 +1,11 @@
 //! Texture coordinates that move to where they show most, and stay sound on the way.
 //!
 //! ```text
-//! signal, runs                        what the surface shall show
+//! signal                              what the surface shall show
 //! footprint, pyramid                  where that falls, on which mip level
 //! normal_matrix, normal_equations,
-//! best_texture, rounding              the best texture for given coordinates, and in bytes
-//! residual, shown                     what it leaves: as minimised, and as seen
+//! least_squares_texture, rounding     the best texture for given coordinates, and in bytes
+//! residual, trilinear_error           what it leaves: as minimised, and as seen
 //! distortion, metric                  energies of triangles; the signal's structure tensors
 //! contact, inversion, region          what keeps a layout bijective
 //! laplacian, curvature,

@@ -60,7 +60,7 @@ fn tensor_in_texture(mapped: &ParameterizedSignal, texture: &FloatImage<Vec4>, t
     sum * ((size * size) as f64 / samples.len() as f64)
 }
 
-/// How steep the texture is where the first showing's samples fall: `Σₛ ωₛ Σ_channels |∇T|²`, Gauss and
+/// How steep the texture is where the first scale's samples fall: `Σₛ ωₛ Σ_channels |∇T|²`, Gauss and
 /// Newton's half of the error's second derivative for a common motion, with the texture held.
 pub fn steepness(mapped: &ParameterizedSignal, texture: &FloatImage<Vec4>) -> f64 {
     let by_triangle: Vec<f64> = (0..mapped.triangles.len())

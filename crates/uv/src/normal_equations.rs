@@ -25,7 +25,7 @@ pub(crate) struct NormalEquations {
 }
 
 impl NormalEquations {
-    /// The sums over all samples of all showings.
+    /// The sums over all samples of all scales.
     pub fn assemble(mapped: &ParameterizedSignal, size: usize, smoothness: f32) -> Self {
         let count = level_count(size);
         let runs: Vec<Vec<Patch>> =

@@ -108,19 +108,19 @@ impl Default for UvOptions {
     }
 }
 
-/// How much each showing counts.
+/// How much each scale counts.
 ///
 /// Minified pictures of moved texture coordinates may look worse than of those at the
 /// start; each counts just so much that it does not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Balance {
-    /// What the start left of each showing with the best texture for the first one.
+    /// What the start left of each scale with the best texture for the first one.
     pub baseline: Vec<f64>,
     /// Weights relative to the baseline; that of the first stays 1.
     pub weights: Vec<f64>,
 }
 
-/// What minified showings weigh before anything is known.
+/// What minified scales weigh before anything is known.
 const FIRST_WEIGHT: f64 = 0.1;
 
 impl Balance {
@@ -158,7 +158,7 @@ impl Balance {
         weighted
     }
 
-    /// Learns from what is left now, relative to the baseline: showings that are about to
+    /// Learns from what is left now, relative to the baseline: scales that are about to
     /// become worse than it count more, those far below less.
     pub fn update(&mut self, relative: &[f64]) {
         const AIM: f64 = 0.85;
@@ -194,7 +194,7 @@ fn tensor_texture_size(signal: &Signal, texture_size: usize) -> usize {
     fine.clamp(texture_size.min(64), 4 * texture_size).max(4)
 }
 
-/// How fast the first showing changes on each triangle of a layout.
+/// How fast the first scale changes on each triangle of a layout.
 pub fn tensors(problem: &Problem, layout: &Layout) -> Vec<DMat2> {
     let signal = &problem.signal_scales[..1];
     let size = tensor_texture_size(&signal[0], problem.texture_size);
@@ -244,13 +244,13 @@ pub fn shape(
 pub struct Refined {
     /// The best texture for the layout and the balance, not clamped.
     pub texture: FloatImage<Vec4>,
-    /// What is left of each showing, relative to its baseline.
+    /// What is left of each scale, relative to its baseline.
     pub relative: Vec<f64>,
     /// The descent.
     pub descent: Descent,
 }
 
-/// Reduces what the best texture leaves of all showings. `texture` is where the first solve
+/// Reduces what the best texture leaves of all scales. `texture` is where the first solve
 /// begins.
 pub fn refine(
     problem: &Problem,

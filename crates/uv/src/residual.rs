@@ -15,7 +15,7 @@ use glam::{DVec2, Vec2, Vec4};
 use parbake_image::FloatImage;
 use rayon::prelude::*;
 
-/// The residual of each showing, and the derivative of their sum, which is added to
+/// The residual of each scale, and the derivative of their sum, which is added to
 /// `gradient`.
 pub fn residual(
     mapped: &ParameterizedSignal,
@@ -23,7 +23,7 @@ pub fn residual(
     gradient: &mut [DVec2],
 ) -> Vec<f64> {
     let pyramid = levels(&texture.texels, texture.width, level_count(texture.width));
-    // For each run the derivatives for its points, and the errors of each showing.
+    // For each run the derivatives for its points, and the errors of each scale.
     let parts: Vec<(Vec<DVec2>, Vec<f64>)> = (0..mapped.runs.count())
         .into_par_iter()
         .map(|run| {
@@ -49,7 +49,7 @@ pub fn residual(
     residuals
 }
 
-/// The residual of all showings by triangle (F).
+/// The residual of all scales by triangle (F).
 pub fn residual_by_triangle(mapped: &ParameterizedSignal, texture: &FloatImage<Vec4>) -> Vec<f64> {
     let pyramid = levels(&texture.texels, texture.width, level_count(texture.width));
     let of = |errors: &mut Vec<f64>, t: usize| {
@@ -61,7 +61,7 @@ pub fn residual_by_triangle(mapped: &ParameterizedSignal, texture: &FloatImage<V
     (0..mapped.triangles.len()).into_par_iter().map_init(room, of).collect()
 }
 
-/// Adds one triangle's share to each showing's error; gives its derivatives for the three corners.
+/// Adds one triangle's share to each scale's error; gives its derivatives for the three corners.
 fn triangle(
     mapped: &ParameterizedSignal,
     pyramid: &[Vec<Vec4>],

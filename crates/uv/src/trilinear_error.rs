@@ -8,7 +8,7 @@ use glam::Vec4;
 use parbake_image::FloatImage;
 use rayon::prelude::*;
 
-/// The weighted squared error of each showing, summed over channels and samples.
+/// The weighted squared error of each scale, summed over channels and samples.
 pub fn trilinear_errors(mapped: &ParameterizedSignal, texture: &FloatImage<Vec4>) -> Vec<f64> {
     let pyramid = levels(&texture.texels, texture.width, level_count(texture.width));
     let parts: Vec<Vec<f64>> = (0..mapped.runs.count())

@@ -14,6 +14,7 @@ use crate::extension_values::ExtensionSource;
 use crate::frame::{common_frame, needs_whole_material, placed};
 use crate::pool::{Rig, View, view_pool};
 use crate::reference::{Reference, Sampling, render_references};
+use crate::unlit::with_unlit_as_emission;
 use parbake_image::MapKind;
 use parbake_image::display::Display;
 use parbake_mesh::HighSurface;
@@ -96,6 +97,8 @@ pub struct HighPoly {
     pub emissive_strength: f32,
     /// What its materials' extensions say.
     pub extensions: ExtensionSource,
+    /// What became of materials without lighting beside lit ones, if there are some.
+    pub unlit: Option<String>,
     /// How much each triangle counts, for texels and for triangles of a low-poly; empty where all count alike.
     pub importances: Vec<f32>,
     /// Rendered view sets that are kept; none where they are not to be.
@@ -110,15 +113,16 @@ impl HighPoly {
     pub fn new(model: &Model, conventions: Conventions) -> Result<Self, PrepareError> {
         let frame = common_frame(model)?;
         let mesh = placed(model, &frame);
+        let (materials, unlit) = with_unlit_as_emission(model);
         let (mut scene, surface) = rayon::join(
-            || Scene::new(mesh.clone(), &model.materials, &model.images, conventions.interpretation),
+            || Scene::new(mesh.clone(), &materials, &model.images, conventions.interpretation),
             || HighSurface::new(&mesh),
         );
         let (name, triangles) = (model.name.clone(), model.mesh.triangles.len());
         let is_whole_material =
             conventions.whole_material.unwrap_or_else(|| conventions.srgb() && needs_whole_material(model));
         let images = if is_whole_material { &model.images[..] } else { &[] };
-        let extensions = ExtensionSource::new(&model.materials, images);
+        let extensions = ExtensionSource::new(&materials, images);
         if is_whole_material {
             scene.leave_out_extensions();
         }
@@ -136,6 +140,7 @@ impl HighPoly {
             is_whole_material,
             emissive_strength,
             extensions,
+            unlit,
             importances: Vec::new(),
             kept: None,
         })

@@ -30,6 +30,7 @@ pub mod projection;
 pub mod reference;
 pub mod samples;
 pub mod sides;
+pub mod unlit;
 pub mod view_sample;
 pub mod view_sampler;
 

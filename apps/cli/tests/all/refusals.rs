@@ -101,7 +101,7 @@ fn help_shows_what_acts() {
         assert!(!all.contains(absent), "{absent}");
     }
     assert!(group(&groups_of_compress, "UV").contains("--more-triangles"));
-    assert!(group(&groups_of_compress, "Models with a normal map").contains("--views"));
+    assert!(group(&groups_of_compress, "Models with more than colour").contains("--views"));
     assert!(group(&groups("image"), "Research").contains("--method"));
 }
 
@@ -115,7 +115,18 @@ fn options_without_effect_are_refused() {
     let bake = ["bake", "high.glb", "low.glb", "-o", "never.glb"];
     let compress = ["compress", "model.glb", "-o", "never.glb"];
     let image = ["image", "picture.png", "-o", "never.glb"];
-    let cases: [(&[&str], &[&str], &str); 20] = [
+    let lod = ["lod", "model.glb", "-o", "never"];
+    let eval = ["eval", "high.glb", "low.glb"];
+    let cases: [(&[&str], &[&str], &str); 25] = [
+        (
+            &compress,
+            &["--uv", "repair", "--more-triangles", "3"],
+            "--more-triangles does nothing without --uv optimize",
+        ),
+        (&bake, &["--rounds", "0", "--keep-normals"], "--keep-normals does nothing with --rounds 0"),
+        (&lod, &["--texture-quality", "50"], "--texture-quality does nothing with a lossless"),
+        (&eval, &["--ortho", "1", "--fov", "40"], "--fov does nothing with --ortho"),
+        (&bake, &["--gutter", "x"], "for '--gutter <TEXELS>': give a number, such as 0.5"),
         (&bake, &["--parallax-order", "2"], "--parallax-order does nothing without --parallax"),
         (&bake, &["--parallax-size", "64"], "--parallax-size does nothing without --parallax"),
         (&bake, &["--no-cutout"], "--no-cutout does nothing without --parallax"),
@@ -165,6 +176,8 @@ fn wrong_values_get_sentences() {
         (vec!["eval", "demo_high.glb", "-"], "standard input is not supported"),
         (bake(&["--options", "-"]), "standard input is not supported"),
         (bake(&["--report", "-"]), "cannot go to standard output"),
+        (vec!["lod", "demo_high.glb", "-o", "-"], "several files cannot go to standard output"),
+        (vec!["demo", "-o", "-"], "several files cannot go to standard output"),
         (bake(&["--texture-size", "huge"]), "such as 512, or 1k"),
         (bake(&["--texture-size", "16k"]), "16 to 8192"),
         (bake(&["--options", "text.json"]), "text.json: line 1, column 2: this is not JSON"),

@@ -11,6 +11,8 @@ use super::json_extensions::{
 };
 use super::json_texture::TextureInfo;
 use serde::Deserialize;
+use serde::de::IgnoredAny;
+use std::collections::BTreeMap;
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
@@ -70,6 +72,9 @@ pub(super) struct MaterialExtensions {
     pub ior: Option<Ior>,
     #[serde(rename = "KHR_materials_dispersion")]
     pub dispersion: Option<Dispersion>,
+    /// All others, by name.
+    #[serde(flatten)]
+    pub others: BTreeMap<String, IgnoredAny>,
 }
 
 impl MaterialExtensions {

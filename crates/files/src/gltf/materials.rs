@@ -15,6 +15,9 @@ use super::uv_sets::UvSets;
 use crate::FileError;
 use parbake_model::{AlphaMode, Image, Material};
 
+/// Extensions that say nothing of a material's look.
+const SILENT: [&str; 2] = ["KHR_xmp", "KHR_xmp_json_ld"];
+
 /// The document's materials of these indices (`None`: the default), and their images.
 /// `scales` says of each by how much nodes enlarge what has it, `turned` whether a node turns or
 /// stretches it.
@@ -82,6 +85,10 @@ fn material(
     let strength = json.extensions.emissive_strength.as_ref().and_then(|e| e.emissive_strength);
     material.emissive_strength = from_zero(strength, material.emissive_strength);
     material.extensions = material_extensions::read(textures, &json.extensions, &here, scale)?;
+    for name in json.extensions.others.keys().filter(|name| !SILENT.contains(&name.as_str())) {
+        let text = "is not known: what it adds to the look of materials is left out";
+        textures.buffers.context.warn(format!("the extension {name} {text}"));
+    }
     material.parallax = parallax::read(textures, &json.extensions, &here, &material.name);
     Ok(material)
 }

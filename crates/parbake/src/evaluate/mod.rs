@@ -5,6 +5,7 @@ pub mod channels;
 pub mod options;
 
 use crate::error::BakeError;
+use crate::lost::not_judged;
 use crate::options::Shading;
 use crate::studio::{Shot, Studio, Subject};
 use channels::{Channel, ChannelFigures};
@@ -72,6 +73,8 @@ pub fn evaluate_on(
     backgrounds: &[&str],
     watcher: &dyn Watcher,
 ) -> Result<Vec<Evaluation>, BakeError> {
+    let unjudged = not_judged(high.materials.iter().chain(&low.materials));
+    unjudged.into_iter().for_each(|text| watcher.message(Message::Warning(text)));
     let Compared { shading, channels, views } =
         evaluate_each(high, &[low], options, backgrounds, true, watcher)?;
     let of_channel = |(k, &channel): (usize, &Channel)| {

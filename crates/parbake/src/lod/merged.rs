@@ -55,7 +55,6 @@ pub(crate) fn with_common_maps(
     let look = Look {
         kinds: Vec::new(),
         extensions: ExtensionMaps::default(),
-        is_whole: true,
         emissive_strength: strength,
         is_unlit: used.iter().all(|&index| model.materials[index].unlit),
     };

@@ -3,7 +3,7 @@
 
 use crate::page::text::escape;
 use parbake::Work;
-use parbake::{BakeOptions, BakeReport};
+use parbake::{BakeOptions, BakeReport, UvMode};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -88,6 +88,7 @@ pub fn settings(options: &BakeOptions, work: Work, used: Used) -> String {
             "views" => Some(of_at_most(used.views, plan.views)),
             "view_size" => Some(plan.reference.size.to_string()),
             "rounds" => Some(plan.schedule.rounds.to_string()),
+            "gutter" if options.uv == UvMode::Keep && used.gutter.is_none() => Some("as delivered".into()),
             "gutter" => Some(format!(
                 "{} texels",
                 plain(&used.gutter.unwrap_or_else(|| options.gutter_texels()).into())

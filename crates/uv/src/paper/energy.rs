@@ -44,7 +44,7 @@ pub(super) struct StepEnergy<'a> {
 }
 
 impl<'a> Problem<'a> {
-    /// `mapped` has one showing, `signal`, without mip levels.
+    /// `mapped` has one scale, `signal`, without mip levels.
     pub fn new(
         mapped: ParameterizedSignal<'a>,
         signal: &'a Signal,

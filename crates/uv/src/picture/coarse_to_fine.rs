@@ -15,7 +15,7 @@ use parbake_image::FloatImage;
 use parbake_model::glam::{DVec2, Vec2};
 use parbake_progress::{Message, Stage, Watcher};
 
-/// Samples of a showing that texture coordinates are moved for, relative to the texels: more settle
+/// Samples of a scale that texture coordinates are moved for, relative to the texels: more settle
 /// details that the texture cannot hold anyway. With a quarter of them on the coarse grids
 /// pictures at 256² gain 0.6 dB less.
 const SAMPLES_PER_TEXEL: usize = 16;

@@ -57,7 +57,7 @@ fn halving(side: usize) -> Vec<(usize, [f32; 3])> {
 /// Sizes at which a picture is shown, relative to its own: 1, ½, ¼.
 const SIZES: usize = 3;
 
-/// The picture at its three sizes, as samples of the plane; each showing's weights sum
+/// The picture at its three sizes, as samples of the plane; each scale's weights sum
 /// to 1. Sizes with more than `most` samples are sampled at a lower resolution, but
 /// minified as their own size says.
 pub fn signal_scales(picture: &Picture, plane: Plane, most: usize) -> Vec<Signal> {

@@ -18,7 +18,7 @@ pub struct LayoutScore<'a> {
     pub own: bool,
     /// The gutter in texels that a layout must have, where one was asked for.
     pub gutter: Option<f64>,
-    /// The given layout's error by showing: at full size, half and so on.
+    /// The given layout's error by scale: at full size, half and so on.
     pub kept: Vec<f64>,
 }
 

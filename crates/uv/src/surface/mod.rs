@@ -308,7 +308,7 @@ fn contact(asked: &UvStageOptions, activation_texels: f64) -> ContactOptions {
     }
 }
 
-/// What 8-bit texels leave of each showing, with a texture that is about the one that will be
+/// What 8-bit texels leave of each scale, with a texture that is about the one that will be
 /// solved for: for all sizes at once where `all_sizes` says so, else for the full one.
 fn errors(problem: &Problem, layout: &Layout, all_sizes: bool) -> Vec<f64> {
     let solved = if all_sizes { problem.signal_scales } else { &problem.signal_scales[..1] };

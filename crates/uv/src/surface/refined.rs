@@ -4,7 +4,7 @@
 //! turn ─ more triangles where errors are largest ─ turn ─ turn
 //! ```
 //!
-//! After each turn showings are weighted anew. A model's own coordinates go from coarse to fine:
+//! After each turn scales are weighted anew. A model's own coordinates go from coarse to fine:
 //! where triangles are many from the beginning, moves of whole regions take too many steps, and
 //! end up to 0.6 dB lower.
 //!
@@ -22,7 +22,7 @@ use parbake_atlas::Layout;
 use parbake_image::FloatImage;
 use parbake_model::glam::{DVec2, Vec2};
 
-/// Turns; in between showings are weighted anew.
+/// Turns; in between scales are weighted anew.
 const TURNS: usize = 3;
 /// The turn before which a model gets more triangles: with one more turn before it ends 0.02 dB higher,
 /// with none 0.1 dB lower.
@@ -125,7 +125,7 @@ impl Best {
 
 /// What errors as shares of those of the start may be.
 struct Limits {
-    /// Those of minified showings.
+    /// Those of minified scales.
     minified: f64,
     /// Those after which there is no hope.
     hopeless: f64,
