@@ -7,9 +7,9 @@
 
 use crate::bake::bake_as;
 use crate::error::BakeError;
-use crate::evaluate::options::{EvaluateOptions, GREY};
+use crate::evaluate::options::EvaluateOptions;
 use crate::low_poly::CoarseModel;
-use crate::options::{BakeOptions, Parallax, Preset};
+use crate::options::{BakeOptions, GREY, Parallax, Preset};
 use crate::report::Work;
 use crate::studio::{Studio, Subject};
 use parbake_metric::{mean_squared_error, psnr_from_mse};
