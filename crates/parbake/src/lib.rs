@@ -63,6 +63,7 @@ mod texels;
 mod textures;
 mod threads;
 mod warnings;
+mod work;
 
 pub use bake::{Baked, bake, bake_prepared, bake_to_triangles, prepare_high_poly};
 pub use budget::check_budget;
@@ -115,13 +116,14 @@ pub use raycast::{
     Match, RayNormals, Raycast, RaycastOptions, RaycastReport, RaycastUv, ShapeMapReport, ShapePicture,
     raycast,
 };
-pub use report::{BakeReport, LossStep, Work};
+pub use report::{BakeReport, LossStep};
 pub use stats::{
     FileStats, LayoutStats, ModelStats, StatsOptions, TexelDensity, TextureStats, model_distance, model_stats,
 };
 pub use studio::{Shot, Studio, Subject};
 pub use texels::parse_texels;
 pub use threads::{MOST_THREADS, join, with_threads};
+pub use work::Work;
 
 /// The README's example, compiled as it is pasted.
 #[cfg(doctest)]

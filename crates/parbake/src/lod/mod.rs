@@ -36,7 +36,7 @@ use crate::error::BakeError;
 use crate::low_poly::{check_triangles, coarse_surfaces, least_of, low_poly};
 use crate::options::{BakeOptions, ShapeMode};
 use crate::parts::{PartReport, draw_calls, part_reports, with_kept_parts, with_parted_materials};
-use crate::report::Work;
+use crate::work::Work;
 use chain::{Chain, LevelWatcher, hurried};
 use options::LodOptions;
 use parbake_atlas::AtlasError;

@@ -17,7 +17,8 @@ use super::{Draft, Maker, Way, largest_texture};
 use crate::bake::Baked;
 use crate::error::BakeError;
 use crate::options::BakeOptions;
-use crate::report::{BakeReport, Work};
+use crate::report::BakeReport;
+use crate::work::Work;
 use parbake_atlas::check_mesh;
 use parbake_model::{Image, Model};
 
