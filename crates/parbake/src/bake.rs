@@ -17,7 +17,9 @@ use crate::importance::importances;
 use crate::look::{Look, add_fallback};
 use crate::lost::lost;
 use crate::low_poly::{check_triangles, coarse_surfaces, low_poly};
+use crate::map_images::images;
 use crate::options::{BakeOptions, Shading, UvMode};
+use crate::order::Order;
 use crate::parts::{with_kept_parts, with_parted_materials, with_parts};
 use crate::plan::Plan;
 use crate::report::{BakeReport, layout_warning};
@@ -27,9 +29,7 @@ use crate::textures::{FittedTextures, Subject, fit_views, training_views};
 use crate::warnings::{Warnings, swapped, unseen};
 use crate::work::Work;
 use parbake_atlas::check_mesh;
-use parbake_image::quantise::to_image;
-use parbake_image::{MapKind, MapSet};
-use parbake_model::{Image, Model};
+use parbake_model::Model;
 use parbake_progress::{Clock, Message, ProgressScope, Stage, Watcher};
 use parbake_render::camera::Projection;
 use parbake_uv::moves::UvMoves;
@@ -171,15 +171,6 @@ fn prepare(high: &Model, options: &BakeOptions) -> Result<HighPoly, BakeError> {
     Ok(prepared)
 }
 
-/// What is to be done.
-#[derive(Clone, Copy)]
-pub(crate) struct Order<'a> {
-    pub high: &'a HighPoly,
-    pub plan: &'a Plan,
-    pub options: &'a BakeOptions,
-    pub work: Work,
-}
-
 fn run(
     high: &HighPoly,
     low: &Model,
@@ -307,9 +298,4 @@ fn run(
         report,
         uv_moves: uv_stage.and_then(|u| u.moves),
     })
-}
-
-/// Maps as files hold them.
-pub(crate) fn images(maps: &MapSet, srgb: bool) -> Vec<(MapKind, Image)> {
-    maps.iter().map(|(kind, map)| (kind, to_image(kind, map, srgb))).collect()
 }

@@ -5,10 +5,10 @@
 //! what a headlight shows of normals does not tell left from right, so normals that are fitted to its light
 //! alone are grainy under others.
 
-use crate::bake::Order;
 use crate::budget::{shares, solving_share};
 use crate::error::BakeError;
 use crate::look::Look;
+use crate::order::Order;
 use crate::snapshots::OfMaps;
 use crate::work::Work;
 use parbake_fit::backend::{Backend, Cpu};
