@@ -16,12 +16,10 @@ use crate::geometry::{Geometry, move_geometry};
 use crate::importance::importances;
 use crate::look::{Look, add_fallback};
 use crate::lost::lost;
-use crate::low_poly::{check_triangles, coarse_surfaces, low_poly};
 use crate::map_images::images;
 use crate::options::{BakeOptions, Shading, UvMode};
 use crate::order::Order;
-use crate::parts::{with_kept_parts, with_parted_materials, with_parts};
-use crate::plan::Plan;
+use crate::parts::with_parts;
 use crate::report::{BakeReport, layout_warning};
 use crate::rigs::{carried, rigged};
 use crate::snapshots::show;
@@ -90,29 +88,6 @@ pub fn prepare_high_poly(high: &Model, options: &BakeOptions) -> Result<HighPoly
     Ok(prepare(high, options)?.keeping_views())
 }
 
-/// Makes a low-poly of at most `triangles` triangles, chosen by its pictures, and bakes the high-poly's look onto
-/// it. [`Baked::ray_cast`] has the same triangles.
-///
-/// # Errors
-/// An option out of range; a model without extent; charts that do not fit into the texture; parts that are not there, or
-/// too many for so few triangles.
-pub fn bake_to_triangles(
-    high: &Model,
-    triangles: usize,
-    options: &BakeOptions,
-    watcher: &dyn Watcher,
-) -> Result<Baked, BakeError> {
-    options.check()?;
-    let begin = Instant::now();
-    let kept = with_kept_parts(high, &options.keep_parts)?;
-    let high = &*with_parted_materials(&kept);
-    let prepared = prepare(high, options)?;
-    check_triangles(&prepared, high, triangles)?;
-    let start = coarse_surfaces(&prepared, high);
-    let (low, _) = low_poly(&prepared, high, &start, None, triangles, options, watcher)?;
-    run(&prepared, &low, Work::Level, options, watcher, begin)
-}
-
 /// Bakes a prepared high-poly's look onto a low-poly; the result is that of [`bake`].
 ///
 /// # Errors
@@ -165,13 +140,15 @@ pub(crate) fn conventions(options: &BakeOptions) -> Conventions {
     }
 }
 
-fn prepare(high: &Model, options: &BakeOptions) -> Result<HighPoly, BakeError> {
+/// A high-poly that is ready for one bake with these options, which are in range.
+pub(crate) fn prepare(high: &Model, options: &BakeOptions) -> Result<HighPoly, BakeError> {
     let mut prepared = HighPoly::new(high, conventions(options))?;
     prepared.importances = importances(high, &options.importance, options.importance_attribute.as_deref())?;
     Ok(prepared)
 }
 
-fn run(
+/// A bake from its first stage to its report; it began at `begin`.
+pub(crate) fn run(
     high: &HighPoly,
     low: &Model,
     work: Work,

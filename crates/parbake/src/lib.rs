@@ -28,9 +28,11 @@
 //!   depend on their number.
 
 mod bake;
+mod bake_to_triangles;
 mod baseline;
 mod budget;
 mod comparison;
+mod comparison_figures;
 mod compress;
 mod error;
 pub mod evaluate;
@@ -67,7 +69,8 @@ mod threads;
 mod warnings;
 mod work;
 
-pub use bake::{Baked, bake, bake_prepared, bake_to_triangles, prepare_high_poly};
+pub use bake::{Baked, bake, bake_prepared, prepare_high_poly};
+pub use bake_to_triangles::bake_to_triangles;
 pub use budget::check_budget;
 pub use comparison::{
     BACKGROUNDS, BeforeAndAfter, COMPARED_VIEWS, Comparison, Detail, OnBackground, OnChannel, compare_bake,

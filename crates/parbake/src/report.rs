@@ -1,6 +1,6 @@
 //! What a bake saw, as plain data: the JSON report, and what the HTML report shows.
 
-use crate::comparison::Comparison;
+use crate::comparison_figures::Comparison;
 use crate::fallback::FallbackReport;
 use crate::options::BakeOptions;
 use crate::work::Work;
