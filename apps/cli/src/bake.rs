@@ -5,7 +5,7 @@ use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::formats::{check_formats, write_model};
 use crate::options_file::merged;
-use crate::outputs::{check_beside, check_maps, check_not_input, check_output, is_obj, is_stdout};
+use crate::outputs::{check_beside, check_maps, check_not_input, check_output, is_obj};
 use crate::progress::{Console, interrupted};
 use crate::rules;
 use crate::watch;
@@ -16,7 +16,6 @@ use parbake::{
     compare_bake, read_model, read_painted_model, with_normal_y, with_threads, write_file,
 };
 use parbake_report::html_report;
-use std::io::Write;
 use std::path::Path;
 
 /// Runs the command.
@@ -230,26 +229,6 @@ pub fn write_report(path: &Path, high: &Model, baked: &Baked, console: &Console)
     let html = html_report(high, baked, console)?;
     write_file(path, html.as_bytes())?;
     Ok(())
-}
-
-/// Writes any report as JSON, to standard output for "-".
-pub fn write_json(path: &Path, report: &impl serde::Serialize) -> Result<(), Failure> {
-    let json =
-        serde_json::to_string_pretty(report).map_err(|e| Failure::Output(format!("no JSON report: {e}")))?;
-    if is_stdout(path) {
-        return print(&json);
-    }
-    Ok(write_file(path, json.as_bytes())?)
-}
-
-/// Prints to standard output; a reader that has seen enough is no failure.
-pub fn print(text: &str) -> Result<(), Failure> {
-    match writeln!(std::io::stdout().lock(), "{text}") {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::Output(format!("standard output: {error}")))
-        }
-        _ => Ok(()),
-    }
 }
 
 /// The last lines: what came of it.

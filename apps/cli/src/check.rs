@@ -1,9 +1,10 @@
 //! `parbake check`.
 
 use crate::arguments::CheckCommand;
-use crate::bake::{print, read, write_json};
+use crate::bake::read;
 use crate::failure::{Ending, Failure};
 use crate::outputs::{check_json, is_stdout};
+use crate::printed::{print, write_json};
 use crate::progress::Console;
 use parbake::{LayoutCheck, ModelCheck, UvCheck, check_model, with_threads};
 use std::fmt::Write;

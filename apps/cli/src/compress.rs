@@ -1,12 +1,13 @@
 //! `parbake compress`.
 
 use crate::arguments::CompressCommand;
-use crate::bake::{check_textures, compare, ending, gains, print, read, write_report};
+use crate::bake::{check_textures, compare, ending, gains, read, write_report};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::formats::{check_formats, write_model};
 use crate::options_file::merged;
 use crate::outputs::{check_beside, check_not_input, check_output, is_stdout};
+use crate::printed::print;
 use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;

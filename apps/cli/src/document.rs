@@ -5,8 +5,8 @@
 //! Contract: `docs/report.schema.json` describes them, and a test holds them to it. [`VERSION`] grows when a
 //! field is renamed, goes, or changes its meaning; new fields leave it.
 
-use crate::bake::write_json;
 use crate::failure::Failure;
+use crate::printed::write_json;
 use crate::progress::Console;
 use serde::Serialize;
 use std::collections::BTreeMap;

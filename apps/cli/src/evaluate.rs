@@ -1,10 +1,11 @@
 //! `parbake eval`.
 
 use crate::arguments::EvalCommand;
-use crate::bake::{print, read_pair};
+use crate::bake::read_pair;
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::outputs::{check_json, is_stdout};
+use crate::printed::print;
 use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;

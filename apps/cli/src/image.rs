@@ -1,11 +1,12 @@
 //! `parbake image`.
 
 use crate::arguments::ImageCommand;
-use crate::bake::{check_input, print};
+use crate::bake::check_input;
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::formats::write_model;
 use crate::outputs::{check_animation, check_beside, check_not_input, check_output, is_stdout};
+use crate::printed::print;
 use crate::progress::{Console, interrupted};
 use crate::rules;
 use clap::ArgMatches;

@@ -18,6 +18,7 @@ mod lod_text;
 mod options_file;
 mod outputs;
 mod pictures;
+mod printed;
 mod progress;
 mod raycast;
 mod reproduce;

@@ -1,11 +1,12 @@
 //! `parbake raycast`.
 
 use crate::arguments::RaycastCommand;
-use crate::bake::{Pair, check_textures, print, read_pair};
+use crate::bake::{Pair, check_textures, read_pair};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::formats::{check_formats, write_model};
 use crate::outputs::{check_beside, check_not_input, check_output, check_place, is_stdout};
+use crate::printed::print;
 use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;

@@ -1,9 +1,9 @@
 //! `parbake reproduce`.
 
 use crate::arguments::ReproduceCommand;
-use crate::bake::print;
 use crate::failure::{Ending, Failure};
 use crate::outputs::check_place;
+use crate::printed::print;
 use crate::progress::{Console, interrupted};
 use parbake::{with_threads, write_file};
 use parbake_reproduce::{Event, Fall, Observer, Record, Reproduced, reproduce};

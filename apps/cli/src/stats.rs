@@ -1,10 +1,11 @@
 //! `parbake stats`.
 
 use crate::arguments::StatsCommand;
-use crate::bake::{print, read, read_both};
+use crate::bake::{read, read_both};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::outputs::{check_json, is_stdout};
+use crate::printed::print;
 use crate::progress::Console;
 use parbake::{LayoutStats, ModelStats, SurfaceDistance, model_distance, model_stats, with_threads};
 use parbake_report::page::text::figures;

@@ -1,9 +1,10 @@
 //! `parbake variants`.
 
 use crate::arguments::VariantsCommand;
-use crate::bake::{print, read_pair, write_json};
+use crate::bake::read_pair;
 use crate::failure::{Ending, Failure};
 use crate::outputs::{check_beside, is_stdout};
+use crate::printed::{print, write_json};
 use crate::progress::Console;
 use parbake::{with_threads, write_file};
 use parbake_reproduce::variants::{VariantsReport, compare_variants, variants_html};

@@ -1,8 +1,9 @@
 //! `parbake view`.
 
 use crate::arguments::ViewCommand;
-use crate::bake::{check_input, print};
+use crate::bake::check_input;
 use crate::failure::{Ending, Failure};
+use crate::printed::print;
 use crate::progress::Console;
 use parbake_viewer::{Server, View, ViewError, open_browser};
 use std::path::Path;

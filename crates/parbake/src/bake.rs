@@ -16,19 +16,18 @@ use crate::geometry::{Geometry, move_geometry};
 use crate::importance::importances;
 use crate::look::{Look, add_fallback};
 use crate::lost::{lost, not_judged};
-use crate::low_poly::{check_triangles, coarse_surfaces, low_poly};
+use crate::map_images::images;
 use crate::options::{BakeOptions, Shading, UvMode};
-use crate::parts::{with_kept_parts, with_parted_materials, with_parts};
-use crate::plan::Plan;
-use crate::report::{BakeReport, Work, layout_warning};
+use crate::order::Order;
+use crate::parts::with_parts;
+use crate::report::{BakeReport, layout_warning};
 use crate::rigs::{carried, rigged};
 use crate::snapshots::show;
 use crate::textures::{FittedTextures, Subject, fit_views, training_views};
 use crate::warnings::{Warnings, swapped, unseen};
+use crate::work::Work;
 use parbake_atlas::check_mesh;
-use parbake_image::quantise::to_image;
-use parbake_image::{MapKind, MapSet};
-use parbake_model::{Image, Model};
+use parbake_model::Model;
 use parbake_progress::{Clock, Message, ProgressScope, Stage, Watcher};
 use parbake_render::camera::Projection;
 use parbake_uv::moves::UvMoves;
@@ -87,29 +86,6 @@ pub fn bake(
 pub fn prepare_high_poly(high: &Model, options: &BakeOptions) -> Result<HighPoly, BakeError> {
     options.check()?;
     Ok(prepare(high, options)?.keeping_views())
-}
-
-/// Makes a low-poly of at most `triangles` triangles, chosen by its pictures, and bakes the high-poly's look onto
-/// it. [`Baked::ray_cast`] has the same triangles.
-///
-/// # Errors
-/// An option out of range; a model without extent; charts that do not fit into the texture; parts that are not there, or
-/// too many for so few triangles.
-pub fn bake_to_triangles(
-    high: &Model,
-    triangles: usize,
-    options: &BakeOptions,
-    watcher: &dyn Watcher,
-) -> Result<Baked, BakeError> {
-    options.check()?;
-    let begin = Instant::now();
-    let kept = with_kept_parts(high, &options.keep_parts)?;
-    let high = &*with_parted_materials(&kept);
-    let prepared = prepare(high, options)?;
-    check_triangles(&prepared, high, triangles)?;
-    let start = coarse_surfaces(&prepared, high);
-    let (low, _) = low_poly(&prepared, high, &start, None, triangles, options, watcher)?;
-    run(&prepared, &low, Work::Level, options, watcher, begin)
 }
 
 /// Bakes a prepared high-poly's look onto a low-poly; the result is that of [`bake`].
@@ -175,22 +151,15 @@ pub(crate) fn conventions(options: &BakeOptions) -> Conventions {
     }
 }
 
-fn prepare(high: &Model, options: &BakeOptions) -> Result<HighPoly, BakeError> {
+/// A high-poly that is ready for one bake with these options, which are in range.
+pub(crate) fn prepare(high: &Model, options: &BakeOptions) -> Result<HighPoly, BakeError> {
     let mut prepared = HighPoly::new(high, conventions(options))?;
     prepared.importances = importances(high, &options.importance, options.importance_attribute.as_deref())?;
     Ok(prepared)
 }
 
-/// What is to be done.
-#[derive(Clone, Copy)]
-pub(crate) struct Order<'a> {
-    pub high: &'a HighPoly,
-    pub plan: &'a Plan,
-    pub options: &'a BakeOptions,
-    pub work: Work,
-}
-
-fn run(
+/// A bake from its first stage to its report; it began at `begin`.
+pub(crate) fn run(
     high: &HighPoly,
     low: &Model,
     work: Work,
@@ -319,9 +288,4 @@ fn run(
         report,
         uv_moves: uv_stage.and_then(|u| u.moves),
     })
-}
-
-/// Maps as files hold them.
-pub(crate) fn images(maps: &MapSet, srgb: bool) -> Vec<(MapKind, Image)> {
-    maps.iter().map(|(kind, map)| (kind, to_image(kind, map, srgb))).collect()
 }

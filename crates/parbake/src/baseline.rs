@@ -1,7 +1,7 @@
 //! What a bake is compared with: the ray-cast bake of the low-poly as it was delivered.
 
 use crate::options::{BakeOptions, UvMode};
-use crate::report::Work;
+use crate::work::Work;
 use parbake_model::{Material, Mesh, Model};
 use parbake_uv::surface::{RepairedLowPoly, UvStageOptions, repair_uvs};
 use parbake_views::high_poly::HighPoly;

@@ -5,49 +5,17 @@
 //! `eval HIGH BAKED --views 8` gives under the convention and the shading of the bake.
 
 use crate::bake::Baked;
+pub use crate::comparison_figures::{BACKGROUNDS, BeforeAndAfter, Comparison, OnBackground, OnChannel};
 use crate::error::BakeError;
 use crate::evaluate::channels::Channel;
 use crate::evaluate::options::EvaluateOptions;
 use crate::evaluate::{Compared, ViewFigures, evaluate_each, mean};
-use crate::options::{BakeOptions, Shading};
+use crate::options::BakeOptions;
 use parbake_model::Model;
 use parbake_progress::Watcher;
-use serde::{Deserialize, Serialize};
 
 /// Views that are compared: enough for a mean, few enough that it takes seconds.
 pub const COMPARED_VIEWS: usize = 8;
-
-/// What lies behind the models, as `evaluate` knows it; the first is its default.
-pub const BACKGROUNDS: [&str; 3] = ["black", "grey", "white"];
-
-/// Figures of both models.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BeforeAndAfter {
-    /// Of [`Baked::ray_cast`].
-    pub ray_cast: ViewFigures,
-    /// Of [`Baked::model`].
-    pub baked: ViewFigures,
-}
-
-/// Figures of both models on one background.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct OnBackground {
-    /// Its name, one of [`BACKGROUNDS`].
-    pub background: String,
-    /// Means over the views.
-    pub mean: BeforeAndAfter,
-    /// Each view's figures.
-    pub views: Vec<BeforeAndAfter>,
-}
-
-/// Figures of both models in one channel of the material.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct OnChannel {
-    /// Which.
-    pub channel: Channel,
-    /// Means over the views.
-    pub mean: BeforeAndAfter,
-}
 
 /// Which figures are made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -56,21 +24,6 @@ pub struct Detail {
     pub flip: bool,
     /// The channels of whole materials.
     pub channels: bool,
-}
-
-/// Figures of a bake and of the ray-cast bake of the same pair.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Comparison {
-    /// The options with which `evaluate` gives the same figures on the first background.
-    pub options: EvaluateOptions,
-    /// How all were shaded.
-    #[serde(default)]
-    pub shading: Shading,
-    /// The channels of whole materials; none under [`Shading::Lambert`], or where they were left out.
-    #[serde(default)]
-    pub channels: Vec<OnChannel>,
-    /// One for each of [`BACKGROUNDS`], in their order.
-    pub backgrounds: Vec<OnBackground>,
 }
 
 /// The conventions of a comparison after a bake with these options.

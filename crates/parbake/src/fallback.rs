@@ -9,11 +9,11 @@
 //!
 //! Contract: pictures are judged on black under a headlight, from training views.
 
-use crate::bake::Order;
 use crate::budget::solving_share;
 use crate::error::BakeError;
 use crate::look::add_fallback;
 use crate::options::{BakeOptions, Parallax};
+use crate::order::Order;
 use crate::plan::Plan;
 use crate::textures::{Subject, fit_views};
 use parbake_image::MapKind;

@@ -28,9 +28,11 @@
 //!   depend on their number.
 
 mod bake;
+mod bake_to_triangles;
 mod baseline;
 mod budget;
 mod comparison;
+mod comparison_figures;
 mod compress;
 mod error;
 pub mod evaluate;
@@ -44,11 +46,13 @@ pub mod lod;
 mod look;
 mod lost;
 mod low_poly;
+mod map_images;
 mod memory;
 mod models;
 mod nodes;
 mod normal_y;
 mod options;
+mod order;
 pub mod parts;
 mod plan;
 mod raycast;
@@ -63,8 +67,10 @@ mod texels;
 mod textures;
 mod threads;
 mod warnings;
+mod work;
 
-pub use bake::{Baked, bake, bake_prepared, bake_to_triangles, prepare_high_poly};
+pub use bake::{Baked, bake, bake_prepared, prepare_high_poly};
+pub use bake_to_triangles::bake_to_triangles;
 pub use budget::check_budget;
 pub use comparison::{
     BACKGROUNDS, BeforeAndAfter, COMPARED_VIEWS, Comparison, Detail, OnBackground, OnChannel, compare_bake,
@@ -115,13 +121,14 @@ pub use raycast::{
     Match, RayNormals, Raycast, RaycastOptions, RaycastReport, RaycastUv, ShapeMapReport, ShapePicture,
     raycast,
 };
-pub use report::{BakeReport, LossStep, Work};
+pub use report::{BakeReport, LossStep};
 pub use stats::{
     FileStats, LayoutStats, ModelStats, StatsOptions, TexelDensity, TextureStats, model_distance, model_stats,
 };
 pub use studio::{Shot, Studio, Subject};
 pub use texels::parse_texels;
 pub use threads::{MOST_THREADS, join, with_threads};
+pub use work::Work;
 
 /// The README's example, compiled as it is pasted.
 #[cfg(doctest)]

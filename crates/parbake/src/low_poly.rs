@@ -5,14 +5,12 @@ use crate::error::BakeError;
 use crate::options::{BakeOptions, Preset};
 use crate::parts::{kept_parts_of, parts_of_materials};
 use crate::rigs::transferred;
-use crate::shortlist::{ATTEMPTS, best_baked};
+use crate::shortlist::{ATTEMPTS, CoarseModel, best_baked};
 use crate::snapshots::of_surface;
 use parbake_model::{AlphaMode, Material, MaterialExtensions, Model};
 use parbake_progress::{Portion, Showing, Watcher};
 use parbake_simplify::polish::PolishOptions;
-use parbake_simplify::{
-    ChooseOptions, Chosen, CoarseSurfaces, LayerReport, choose_triangles, least_triangles,
-};
+use parbake_simplify::{ChooseOptions, Chosen, CoarseSurfaces, choose_triangles, least_triangles};
 use parbake_views::high_poly::HighPoly;
 
 /// Triangles that a part which stays apart keeps at least, in each layer.
@@ -42,9 +40,6 @@ pub fn check_triangles(high: &HighPoly, model: &Model, triangles: usize) -> Resu
 pub fn coarse_surfaces(high: &HighPoly, model: &Model) -> CoarseSurfaces {
     CoarseSurfaces::new(high.scene.mesh(), &parts_of_materials(model))
 }
-
-/// A low-poly, and how the triangles of each layer were found.
-pub type CoarseModel = (Model, Vec<LayerReport>);
 
 /// A low-poly of at most so many triangles, without texture coordinates, in the high-poly's own space; it moves as the
 /// model does, and has its parts. `model` is what the high-poly was prepared from, `start` is what `coarse_surfaces` makes of

@@ -141,6 +141,9 @@ pub(crate) fn check_content_aware(method: Method, no_content_aware: bool) -> Res
     Ok(())
 }
 
+/// Linear light of a grey background, the independent evaluator's too.
+pub const GREY: f32 = 0.5;
+
 /// Background of the training views: what the low-poly shall look like where it overhangs the
 /// high-poly's outline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -161,7 +164,7 @@ impl SilhouetteBackground {
     pub fn light(self) -> [f32; 3] {
         match self {
             SilhouetteBackground::Black => [0.0; 3],
-            SilhouetteBackground::Grey => [crate::evaluate::options::GREY; 3],
+            SilhouetteBackground::Grey => [GREY; 3],
             SilhouetteBackground::White => [1.0; 3],
         }
     }

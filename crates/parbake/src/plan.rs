@@ -2,7 +2,7 @@
 //! by stage.
 
 use crate::options::{BakeOptions, Convention, Method, Parallax, Preset, Shading, ShapeMode, UvMode};
-use crate::report::Work;
+use crate::work::Work;
 use parbake_fit::cutout::CutoutOptions;
 use parbake_fit::parallax::ParallaxOptions;
 use parbake_fit::parallax_maps::{ParallaxPass, ParallaxPlan};

@@ -7,10 +7,11 @@
 //!                                               └ maps of shape ─ pictures
 //! ```
 
-use crate::bake::{conventions, images};
+use crate::bake::conventions;
 use crate::error::BakeError;
 use crate::look::Look;
 use crate::lost::lost;
+use crate::map_images::images;
 use crate::normal_y::NormalY;
 use crate::options::UvMode;
 pub use crate::raycast_options::{Match, RayNormals, RaycastOptions, RaycastUv};

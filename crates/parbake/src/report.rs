@@ -1,8 +1,9 @@
 //! What a bake saw, as plain data: the JSON report, and what the HTML report shows.
 
-use crate::comparison::Comparison;
+use crate::comparison_figures::Comparison;
 use crate::fallback::FallbackReport;
 use crate::options::BakeOptions;
+use crate::work::Work;
 use parbake_atlas::UvCheck;
 use parbake_files::Written;
 use parbake_fit::parallax_maps::ParallaxReport;
@@ -45,30 +46,6 @@ pub(crate) fn layout_warning(model: &str, uv: &UvCheck) -> Option<String> {
     let problems = uv.problems();
     (!problems.is_empty())
         .then(|| format!("{model}: the baked texture coordinates are not one to one. {}", problems.join(" ")))
-}
-
-/// What a report is of.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Work {
-    /// A high-poly's look on a low-poly.
-    #[default]
-    Bake,
-    /// A high-poly's look on a low-poly that was made for it.
-    Level,
-    /// A model with a smaller texture.
-    Compress,
-}
-
-impl Work {
-    /// The command, as one types it, and what it takes.
-    pub fn command(self) -> &'static str {
-        match self {
-            Self::Bake => "bake HIGH LOW",
-            Self::Level => "lod MODEL",
-            Self::Compress => "compress MODEL",
-        }
-    }
 }
 
 /// What a bake saw.

@@ -7,16 +7,16 @@
 
 use crate::bake::bake_as;
 use crate::error::BakeError;
-use crate::evaluate::options::{EvaluateOptions, GREY};
-use crate::low_poly::CoarseModel;
-use crate::options::{BakeOptions, Parallax, Preset};
-use crate::report::Work;
+use crate::evaluate::options::EvaluateOptions;
+use crate::options::{BakeOptions, GREY, Parallax, Preset};
 use crate::studio::{Studio, Subject};
+use crate::work::Work;
 use parbake_metric::{mean_squared_error, psnr_from_mse};
 use parbake_model::Model;
 use parbake_model::glam::Vec3;
 use parbake_progress::{Message, Portion, Stage, Watcher};
 use parbake_render::camera::fibonacci_sphere;
+use parbake_simplify::LayerReport;
 use parbake_views::high_poly::HighPoly;
 use rayon::prelude::*;
 
@@ -31,6 +31,9 @@ const BACKGROUNDS: [[f32; 3]; 3] = [[0.0; 3], [GREY; 3], [1.0; 3]];
 
 /// Share of the time for triangles that attempts take where brief bakes follow, about.
 pub(crate) const ATTEMPTS: f64 = 0.5;
+
+/// A low-poly, and how the triangles of each layer were found.
+pub type CoarseModel = (Model, Vec<LayerReport>);
 
 /// The low-poly whose brief bake comes closest to `model` in pictures: PSNR in dB, the mean over views and backgrounds. The first
 /// one where there is no other, and where importances weigh the surface, which these pictures do not; the best so far where the

@@ -5,12 +5,12 @@
 //! what a headlight shows of normals does not tell left from right, so normals that are fitted to its light
 //! alone are grainy under others.
 
-use crate::bake::Order;
 use crate::budget::{shares, solving_share};
 use crate::error::BakeError;
 use crate::look::Look;
-use crate::report::Work;
+use crate::order::Order;
 use crate::snapshots::OfMaps;
+use crate::work::Work;
 use parbake_fit::backend::{Backend, Cpu};
 use parbake_fit::parallax_maps::{FittedMaps, ParallaxMaps, ParallaxPlan, ParallaxReport, fit_parallax_maps};
 use parbake_fit::schedule::{Comparison, Fitted, fit_textures};

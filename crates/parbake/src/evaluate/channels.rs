@@ -8,7 +8,7 @@
 //! Contract: values are display-referred, 0 to 1: colours with sRGB's curve, clipped at 1; normals of the common
 //! frame as `(n + 1) / 2`; all else as it is, in grey.
 
-use super::{PIXELS_PER_DEGREE, ViewFigures};
+use super::figures::{PIXELS_PER_DEGREE, ViewFigures};
 use crate::studio::{Shot, Subject};
 use parbake_image::display::encode_srgb;
 use parbake_image::{MapKind, MapValues};

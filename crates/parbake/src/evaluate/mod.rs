@@ -1,7 +1,8 @@
-//! Compares two models picture by picture: PSNR, MS-SSIM and FLIP over views spread
+//! Compares two models picture by picture: PSNR, MS-SSIM and FLIP (`figures.rs`) over views spread
 //! around them; where whole materials are compared, of what is seen and of each channel (`channels.rs`).
 
 pub mod channels;
+mod figures;
 pub mod options;
 
 use crate::error::BakeError;
@@ -9,6 +10,7 @@ use crate::lost::not_judged;
 use crate::options::Shading;
 use crate::studio::{Shot, Studio, Subject};
 use channels::{Channel, ChannelFigures};
+pub use figures::{ViewFigures, compare, mean};
 use options::EvaluateOptions;
 use parbake_metric::Rgb;
 use parbake_model::Model;
@@ -17,17 +19,6 @@ use parbake_render::camera::fibonacci_sphere;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Figures of one view.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ViewFigures {
-    /// Decibels, higher is better.
-    pub psnr: f64,
-    /// 0 … 1, higher is better; none below 161 pixels.
-    pub ms_ssim: Option<f64>,
-    /// Mean FLIP, 0 … 1, lower is better; none when left out.
-    pub flip: Option<f64>,
-}
 
 /// Figures of a pair.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -43,9 +34,6 @@ pub struct Evaluation {
     /// The material's channels; none under [`Shading::Lambert`]. They do not depend on the background.
     pub channels: Vec<ChannelFigures>,
 }
-
-/// FLIP's viewing distance: pixels per degree of its authors' default monitor.
-const PIXELS_PER_DEGREE: f32 = 67.020_64;
 
 /// Compares `low` with `high`.
 ///
@@ -156,28 +144,4 @@ pub(crate) fn evaluate_each(
         view
     });
     Ok(Compared { shading, views: views.collect(), channels })
-}
-
-/// All figures of one pair of pictures of equal size.
-pub fn compare(high: &Rgb, low: &Rgb, with_flip: bool) -> ViewFigures {
-    let error = parbake_metric::mean_squared_error(high, low).unwrap_or(f64::NAN);
-    ViewFigures {
-        psnr: parbake_metric::psnr_from_mse(error),
-        ms_ssim: parbake_metric::ms_ssim(high, low).ok().flatten(),
-        flip: with_flip.then(|| parbake_metric::flip(high, low, PIXELS_PER_DEGREE).ok()).flatten(),
-    }
-}
-
-/// Averages over views; a figure that a view lacks is left out.
-pub fn mean(views: &[ViewFigures]) -> ViewFigures {
-    let count = views.len().max(1) as f64;
-    let optional = |of: fn(&ViewFigures) -> Option<f64>| {
-        let all: Option<Vec<f64>> = views.iter().map(of).collect();
-        all.map(|all| all.iter().sum::<f64>() / count)
-    };
-    ViewFigures {
-        psnr: views.iter().map(|v| v.psnr).sum::<f64>() / count,
-        ms_ssim: optional(|v| v.ms_ssim),
-        flip: optional(|v| v.flip),
-    }
 }

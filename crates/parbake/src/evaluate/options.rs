@@ -1,14 +1,12 @@
 //! Options of an evaluation, as plain data for library, command line and files.
 
 use crate::error::BakeError;
+pub use crate::options::GREY;
 use crate::options::{Convention, Shading, check_shading};
 use parbake_image::display::Display;
 use parbake_render::camera::Projection;
 use parbake_render::interpretation::Interpretation;
 use serde::{Deserialize, Serialize};
-
-/// Linear light of a grey background, the independent evaluator's too.
-pub const GREY: f32 = 0.5;
 
 /// Conventions of an evaluation. The defaults are those that a bake fits by default: glTF's.
 /// [`EvaluateOptions::paper`] are those of the paper's figures.

@@ -12,9 +12,10 @@
 //!
 //! Contract: no level has more triangles than were asked for. A watcher that says stop is heeded between pictures.
 
+use super::candidate::Way;
 use super::chain::Chain;
-use super::ways::Judge;
-use super::{Draft, Maker, Way};
+use super::judge::Judge;
+use super::maker::{Draft, Maker};
 use crate::error::BakeError;
 use crate::options::ShapeMode;
 use crate::rigs::transferred;

@@ -6,7 +6,9 @@
 //!
 //! Contract: the format has a version; fields are only added under the same version.
 
-use super::{LevelReport, switch::AtSize};
+use super::level::LevelReport;
+use super::options::LodOptions;
+use super::switch::AtSize;
 use parbake_model::{Bounds, Model};
 use serde::{Deserialize, Serialize};
 
@@ -59,7 +61,7 @@ impl LodDocument {
     /// Of a chain whose levels were written to these files.
     pub fn new(
         model: &Model,
-        options: &super::LodOptions,
+        options: &LodOptions,
         all_levels: String,
         levels: Vec<(String, u64, LevelReport)>,
     ) -> Self {

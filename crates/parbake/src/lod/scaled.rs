@@ -6,18 +6,20 @@
 //! Contract: at most half of the model's texels. Charts are as they were delivered, shared texels and mirrored charts
 //! included. A watcher that says stop is heeded between pictures.
 
+use super::candidate::Way;
 use super::delivered::{Coarser, surface_of};
+use super::judge::Judge;
+use super::maker::{Draft, Maker, largest_texture};
 use super::maps::{
     LevelMap, Reduction, images_of_extensions, oblong_level_maps, with_halved_extensions, with_reductions,
 };
 use super::merged::with_common_maps;
 use super::search::error_of;
-use super::ways::Judge;
-use super::{Draft, Maker, Way, largest_texture};
 use crate::bake::Baked;
 use crate::error::BakeError;
 use crate::options::BakeOptions;
-use crate::report::{BakeReport, Work};
+use crate::report::BakeReport;
+use crate::work::Work;
 use parbake_atlas::check_mesh;
 use parbake_model::{Image, Model};
 

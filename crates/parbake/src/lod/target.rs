@@ -8,13 +8,13 @@
 //! Contract: every figure of a trial is that of the file's own content, read back where its formats lose anything.
 
 use super::chain::Chain;
+use super::maker::{Draft, Maker};
 use super::maps::{LevelMap, Reduction, level_maps, size_of, with_reductions};
 use super::options::LodOptions;
 use super::search::{Baking, Choice, Measured, Plan, Search, Step, Verdict, error_of};
 use super::switch::{Lineup, Pictures};
-use super::ways::as_viewers_do;
+use super::viewed::as_viewers_do;
 use super::written::{AsWritten, as_written};
-use super::{Draft, Maker};
 use crate::error::BakeError;
 use crate::normal_y::NormalY;
 use parbake_files::{TextureFormat, WriteOptions};

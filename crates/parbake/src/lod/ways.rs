@@ -13,22 +13,18 @@
 //!
 //! Contract: deterministic without a budget. A budget is for one bake; a watcher that says stop is heeded between pictures.
 
+use super::candidate::{Candidate, Way};
 use super::chain::Chain;
 use super::delivered::{Coarser, baked_draft, coarser, may_keep_vertices};
-use super::face_frames::with_face_tangents;
+use super::judge::{Judge, Tried};
+use super::maker::{Draft, Maker, texels_of};
 use super::maps::{Reduction, level_maps, with_reductions};
 use super::scaled::{scaled, scaled_draft};
-use super::see_through::with_blending;
-use super::switch::Pictures;
-use super::{Candidate, Draft, Maker, Way, texels_of};
 use crate::error::BakeError;
 use parbake_model::Model;
-use std::borrow::Cow;
 use std::cell::Cell;
 use std::time::Instant;
 
-/// Pixels that a model spans at most in the larger ones of the pictures that are compared.
-const LARGEST: f64 = 300.0;
 /// Decibels from which on nobody would see what other ways gain.
 const EXCELLENT: f64 = 50.0;
 /// Decibels by which another way has to be better than a new layout, and a bake than scaled maps.
@@ -136,9 +132,6 @@ fn within_half(maker: &Maker, side: f64) -> usize {
         .unwrap_or(usual)
 }
 
-/// A level, and what its pictures say.
-type Tried = (Draft, Candidate);
-
 /// Takes the other one where it shows more by at least so many decibels.
 fn weigh(best: &mut Tried, other: Tried, least: f64, candidates: &mut Vec<Candidate>) {
     candidates.push(other.1);
@@ -174,43 +167,6 @@ fn refined(
             baked_draft(maker, chain, level, own, Some(size)).map(Some)
         }
         _ => Ok(None),
-    }
-}
-
-/// A model for pictures as viewers make them.
-pub(crate) fn as_viewers_do(model: &Model) -> Cow<'_, Model> {
-    with_face_tangents(with_blending(model))
-}
-
-/// Compares ways by their pictures.
-pub(crate) struct Judge<'m> {
-    maker: &'m Maker<'m>,
-    /// The original at the level's size, and where that is small at twice that: a level is seen from closer, too.
-    pictures: Vec<Pictures>,
-}
-
-impl<'m> Judge<'m> {
-    /// For a level of so many pixels.
-    fn new(maker: &'m Maker<'m>, pixels: f64) -> Result<Self, BakeError> {
-        let sizes = [pixels, (2.0 * pixels).min(LARGEST)];
-        let sizes = sizes.into_iter().enumerate().filter(|&(k, size)| k == 0 || size > pixels);
-        let pictures = sizes.map(|(_, size)| maker.lineup.pictures(&maker.original, size));
-        Ok(Self { maker, pictures: pictures.collect::<Result<_, _>>()? })
-    }
-
-    /// PSNR in dB, the mean over the sizes.
-    pub(crate) fn psnr(&self, model: &Model) -> Result<f64, BakeError> {
-        let lineup = &self.maker.lineup;
-        let subject = lineup.subject(&as_viewers_do(model))?;
-        let sum: f64 = self.pictures.iter().map(|pictures| lineup.psnr(pictures, &subject)).sum();
-        Ok(sum / self.pictures.len() as f64)
-    }
-
-    /// A draft with its figure.
-    fn tried(&self, draft: Draft) -> Result<Tried, BakeError> {
-        let psnr = self.psnr(&draft.baked.model)?;
-        let candidate = draft.candidate(psnr);
-        Ok((draft, candidate))
     }
 }
 

@@ -1,0 +1,34 @@
+//! A bake of a high-poly alone: its low-poly is made first (`low_poly.rs`), then both are baked (`bake.rs`).
+
+use crate::bake::{Baked, prepare, run};
+use crate::error::BakeError;
+use crate::low_poly::{check_triangles, coarse_surfaces, low_poly};
+use crate::options::BakeOptions;
+use crate::parts::{with_kept_parts, with_parted_materials};
+use crate::work::Work;
+use parbake_model::Model;
+use parbake_progress::Watcher;
+use std::time::Instant;
+
+/// Makes a low-poly of at most `triangles` triangles, chosen by its pictures, and bakes the high-poly's look onto
+/// it. [`Baked::ray_cast`] has the same triangles.
+///
+/// # Errors
+/// An option out of range; a model without extent; charts that do not fit into the texture; parts that are not there, or
+/// too many for so few triangles.
+pub fn bake_to_triangles(
+    high: &Model,
+    triangles: usize,
+    options: &BakeOptions,
+    watcher: &dyn Watcher,
+) -> Result<Baked, BakeError> {
+    options.check()?;
+    let begin = Instant::now();
+    let kept = with_kept_parts(high, &options.keep_parts)?;
+    let high = &*with_parted_materials(&kept);
+    let prepared = prepare(high, options)?;
+    check_triangles(&prepared, high, triangles)?;
+    let start = coarse_surfaces(&prepared, high);
+    let (low, _) = low_poly(&prepared, high, &start, None, triangles, options, watcher)?;
+    run(&prepared, &low, Work::Level, options, watcher, begin)
+}

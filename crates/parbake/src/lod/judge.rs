@@ -1,0 +1,48 @@
+//! Compares drafts of a level by their pictures.
+//!
+//! Contract: figures are of models as viewers show them, against the original, before anything is compressed.
+
+use super::candidate::Candidate;
+use super::maker::{Draft, Maker};
+use super::switch::Pictures;
+use super::viewed::as_viewers_do;
+use crate::error::BakeError;
+use parbake_model::Model;
+
+/// Pixels that a model spans at most in the larger ones of the pictures that are compared.
+const LARGEST: f64 = 300.0;
+
+/// A level, and what its pictures say.
+pub(crate) type Tried = (Draft, Candidate);
+
+/// Compares ways by their pictures.
+pub(crate) struct Judge<'m> {
+    maker: &'m Maker<'m>,
+    /// The original at the level's size, and where that is small at twice that: a level is seen from closer, too.
+    pictures: Vec<Pictures>,
+}
+
+impl<'m> Judge<'m> {
+    /// For a level of so many pixels.
+    pub(crate) fn new(maker: &'m Maker<'m>, pixels: f64) -> Result<Self, BakeError> {
+        let sizes = [pixels, (2.0 * pixels).min(LARGEST)];
+        let sizes = sizes.into_iter().enumerate().filter(|&(k, size)| k == 0 || size > pixels);
+        let pictures = sizes.map(|(_, size)| maker.lineup.pictures(&maker.original, size));
+        Ok(Self { maker, pictures: pictures.collect::<Result<_, _>>()? })
+    }
+
+    /// PSNR in dB, the mean over the sizes.
+    pub(crate) fn psnr(&self, model: &Model) -> Result<f64, BakeError> {
+        let lineup = &self.maker.lineup;
+        let subject = lineup.subject(&as_viewers_do(model))?;
+        let sum: f64 = self.pictures.iter().map(|pictures| lineup.psnr(pictures, &subject)).sum();
+        Ok(sum / self.pictures.len() as f64)
+    }
+
+    /// A draft with its figure.
+    pub(crate) fn tried(&self, draft: Draft) -> Result<Tried, BakeError> {
+        let psnr = self.psnr(&draft.baked.model)?;
+        let candidate = draft.candidate(psnr);
+        Ok((draft, candidate))
+    }
+}
