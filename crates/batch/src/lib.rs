@@ -23,6 +23,7 @@ mod memory;
 mod observer;
 mod openjd;
 mod options;
+mod outcome;
 mod page;
 mod place;
 mod record;
@@ -36,8 +37,9 @@ pub use jobs_file::{JobsFile, read_jobs};
 pub use observer::{Event, Observer};
 pub use openjd::{TaskCommand, openjd_template};
 pub use options::BatchOptions;
+pub use outcome::{Batch, Ended, Outcome};
 pub use page::summary;
-pub use run::{Batch, Ended, Outcome, run_batch};
+pub use run::run_batch;
 
 /// A variable of a worker's environment: where it is set, the program ends when its standard input does, so that no
 /// worker outlives a batch that was killed.

@@ -4,9 +4,9 @@
 //! Contract: all text is escaped; figures that a command does not have are left out. The page needs no other file.
 
 use crate::job::FIGURES;
+use crate::outcome::{Batch, Ended, Outcome};
 use crate::place::Place;
 use crate::record::Record;
-use crate::run::{Batch, Ended, Outcome};
 use parbake_report::page::text::{count, decimal, duration, escape};
 use parbake_report::page::{base64, document, section};
 use serde_json::{Value, json};

@@ -6,60 +6,18 @@ use crate::job::{Abilities, Commands, Job};
 use crate::memory::{available, has_room};
 use crate::observer::{Event, Observer};
 use crate::options::BatchOptions;
+use crate::outcome::{Batch, Ended, Outcome};
 use crate::page;
 use crate::place::Place;
 use crate::record::Record;
 use crate::worker::{Done, Task, Worker};
 use parbake_files::write_atomically;
 use std::collections::VecDeque;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 /// How often workers are looked after: a job takes a second or more.
 const PAUSE: Duration = Duration::from_millis(30);
-
-/// What came of a job.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Outcome {
-    /// It was finished before.
-    Kept(Record),
-    /// It has been finished now.
-    Made(Record),
-    /// It failed: why, in a sentence.
-    Failed(String),
-    /// The batch was stopped before its end.
-    Waiting,
-}
-
-impl Outcome {
-    /// Of a finished job.
-    pub fn record(&self) -> Option<&Record> {
-        match self {
-            Self::Kept(record) | Self::Made(record) => Some(record),
-            Self::Failed(_) | Self::Waiting => None,
-        }
-    }
-}
-
-/// A job, and what came of it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Ended {
-    /// The job.
-    pub job: Job,
-    /// What came of it.
-    pub outcome: Outcome,
-}
-
-/// What came of a batch.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Batch {
-    /// All jobs, in the order in which they were given.
-    pub jobs: Vec<Ended>,
-    /// Whether it was stopped.
-    pub stopped: bool,
-    /// The page; none where single jobs were asked for.
-    pub page: Option<PathBuf>,
-}
 
 /// Runs jobs with this program and writes results, records and the page to the output folder.
 ///

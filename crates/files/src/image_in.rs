@@ -8,6 +8,7 @@
 //! is reserved.
 
 use crate::guard::guarded;
+use crate::image_trouble::ImageTrouble;
 use crate::ktx2;
 use crate::resources::read_file;
 use crate::{FileError, Limits, Place};
@@ -15,8 +16,6 @@ use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, Imag
 use parbake_model::Image;
 use std::io::Cursor;
 use std::path::Path;
-
-const SUPPORTED: &str = "PNG, JPEG, WebP and KTX2 (Basis Universal)";
 
 /// The most pixels that one byte of a whole file can stand for: a PNG of one bit a
 /// pixel, at the 1032 bytes that deflate makes of one; a JPEG's 64 pixels a bit, and
@@ -26,47 +25,6 @@ fn most_pixels_a_byte(format: ImageFormat) -> u64 {
         ImageFormat::Png => 8 * 1032,
         ImageFormat::Jpeg => 2 * 8 * 64,
         _ => u64::MAX,
-    }
-}
-
-/// Why a picture could not be had, before it is known whose picture it is.
-#[derive(Debug)]
-pub(crate) enum ImageTrouble {
-    UnknownFormat,
-    Side(u64),
-    Pixels(u64),
-    Damaged(String),
-}
-
-impl ImageTrouble {
-    pub fn into_error(self, path: &Path, place: Place, limits: &Limits) -> FileError {
-        let path = path.to_path_buf();
-        match self {
-            Self::UnknownFormat if place == Place::File => {
-                FileError::UnknownFormat { path, supported: SUPPORTED }
-            }
-            Self::UnknownFormat => FileError::Unsupported {
-                path,
-                place,
-                feature: "this picture's format".into(),
-                advice: format!("convert it to one of {SUPPORTED}"),
-            },
-            Self::Side(found) => FileError::OverLimit {
-                path,
-                place,
-                what: "texels along the image's longer side",
-                found,
-                limit: limits.max_image_side.into(),
-            },
-            Self::Pixels(found) => FileError::OverLimit {
-                path,
-                place,
-                what: "texels of the image",
-                found,
-                limit: limits.max_image_pixels,
-            },
-            Self::Damaged(reason) => FileError::Invalid { path, place, reason },
-        }
     }
 }
 

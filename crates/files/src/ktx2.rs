@@ -8,7 +8,7 @@
 //! memory for the sizes that it is told, and trusts some offsets.
 
 use crate::guard::guarded;
-use crate::image_in::ImageTrouble;
+use crate::image_trouble::ImageTrouble;
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
 
 /// The first bytes of a KTX2 file.

@@ -3,25 +3,11 @@
 use crate::context::{Context, Textures};
 use crate::resources::{begins_with, read_file};
 use crate::words::shown;
-use crate::{Contents, FileError, Folder, Limits, Place, Warning, gltf, obj};
-use parbake_model::Model;
+use crate::{FileError, Folder, Limits, Loaded, Place, Warning, gltf, obj};
 use std::ffi::OsString;
 use std::path::Path;
 
 const SUPPORTED: &str = "OBJ (.obj) and glTF 2.0 (.gltf, .glb)";
-
-/// A model, and what is odd about its file.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Loaded {
-    /// Keeps the model's contract; has at least one triangle, and every triangle an area.
-    pub model: Model,
-    /// One sentence each, to show to people; where a file was read, each begins with the file's name.
-    pub warnings: Vec<Warning>,
-    /// Bytes of its file and of all others that were read for it.
-    pub bytes: u64,
-    /// What those files hold that the model does not tell.
-    pub contents: Contents,
-}
 
 /// Reads an `.obj`, `.gltf` or `.glb` file with all that it refers to.
 ///
@@ -35,7 +21,7 @@ pub fn read_model(path: &Path, limits: &Limits) -> Result<Loaded, FileError> {
 }
 
 /// Like [`read_model`], with the importances that are painted in a vertex attribute of a glTF file
-/// ([`Model::painted`]): one number, or a colour's red.
+/// ([`Model::painted`](parbake_model::Model::painted)): one number, or a colour's red.
 ///
 /// # Errors
 /// As [`read_model`]; also where no mesh has the attribute.
@@ -115,7 +101,7 @@ mod tests {
     use super::*;
     use crate::{WarningKind, glb_bytes};
     use parbake_model::glam::Vec3;
-    use parbake_model::{Material, Mesh};
+    use parbake_model::{Material, Mesh, Model};
 
     /// Protects the message for other formats: it says what can be read.
     #[test]

@@ -9,7 +9,8 @@
 //! not depend on the number of threads.
 
 use parbake_model::glam::Vec2;
-use parbake_render::parallax::{ParallaxCoefficients, ViewDirection};
+use parbake_render::directions::ViewDirection;
+use parbake_render::parallax::ParallaxCoefficients;
 use parbake_views::chart_labels::{Atlas, NO_CHART};
 use parbake_views::view_sample::ViewSample;
 use rayon::prelude::*;

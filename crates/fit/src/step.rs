@@ -16,8 +16,9 @@ use crate::outliers::Loss;
 use crate::problem::Problem;
 use parbake_image::{Domain, FloatImage, MapKind, MapSet};
 use parbake_model::glam::Vec4;
-use parbake_solve::boxed::{FreeLanes, solve_in_box};
+use parbake_solve::boxed::solve_in_box;
 use parbake_solve::conjugate_gradient::{Effort, Outcome};
+use parbake_solve::free_lanes::FreeLanes;
 use parbake_solve::stencil::{Diagonal, Row, Stencil, Symmetric};
 use rayon::prelude::*;
 

@@ -3,7 +3,7 @@
 //! Contract ([`Hierarchy::fault`] checks it): nodes come after their parents; their transforms are finite; there is one
 //! node for each triangle, or [`Hierarchy::NONE`].
 
-use crate::NodeTransform;
+use crate::Node;
 use glam::DAffine3;
 
 /// Nodes, and the triangles that hang on them.
@@ -13,17 +13,6 @@ pub struct Hierarchy {
     pub nodes: Vec<Node>,
     /// For each of F triangles the index of its node, or [`Hierarchy::NONE`].
     pub of_triangles: Vec<u32>,
-}
-
-/// A node.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Node {
-    /// Its name in the file; may be empty.
-    pub name: String,
-    /// Index of its parent, which is less than its own.
-    pub parent: Option<usize>,
-    /// From its space to its parent's while nothing moves.
-    pub rest: NodeTransform,
 }
 
 impl Hierarchy {
@@ -70,6 +59,7 @@ impl Hierarchy {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::NodeTransform;
     use glam::{DQuat, DVec3};
 
     fn node(parent: Option<usize>, x: f64) -> Node {

@@ -15,31 +15,35 @@ mod image;
 mod material;
 mod material_extensions;
 mod mesh;
+mod node;
 mod parallax;
 mod parallax_fault;
 mod placement;
 mod rig;
 mod short_uv;
+mod texture_slot;
 
 pub use basis::Basis;
 pub use cutout::CutoutMap;
 pub use glam;
-pub use hierarchy::{Hierarchy, Node};
+pub use hierarchy::Hierarchy;
 pub use image::Image;
-pub use material::{AlphaMode, Material, TextureSlot, UvTransform, Wrap};
+pub use material::{AlphaMode, Material};
 pub use material_extensions::{
     Anisotropy, Clearcoat, DiffuseTransmission, Iridescence, MaterialExtensions, Sheen, Specular,
     Transmission, Volume,
 };
 pub use mesh::Mesh;
+pub use node::{Node, NodeTransform};
 pub use parallax::{DepthMap, ParallaxMap};
 pub use parallax_fault::ParallaxFault;
 pub use placement::{Bounds, Placement};
 pub use rig::{
-    Animation, Influences, Interpolation, Joint, MOST_INFLUENCES, Morph, MorphTarget, NodeTransform,
-    Property, Rig, Skeleton, Track,
+    Animation, Influences, Interpolation, Joint, MOST_INFLUENCES, Morph, MorphTarget, Property, Rig,
+    Skeleton, Track,
 };
 pub use short_uv::{is_short, nearest_short, short_uv, short_uvs_pay};
+pub use texture_slot::{TextureSlot, UvTransform, Wrap};
 
 /// A textured model: one mesh, and what its triangles' materials name.
 ///

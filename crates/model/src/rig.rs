@@ -15,7 +15,7 @@
 //! numbers are finite; times increase.
 
 use crate::Node;
-use glam::{DAffine3, DQuat, DVec3, Vec3};
+use glam::{DAffine3, Vec3};
 use std::sync::Arc;
 
 /// Joints that a vertex may follow.
@@ -46,22 +46,6 @@ pub struct Skeleton {
     pub targets: Vec<MorphTarget>,
     /// Animations.
     pub animations: Vec<Animation>,
-}
-
-/// How a node is placed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NodeTransform {
-    /// Scaled, then rotated, then moved; animations may replace each.
-    Parts {
-        /// Translation.
-        translation: DVec3,
-        /// Rotation, of unit length.
-        rotation: DQuat,
-        /// Scale.
-        scale: DVec3,
-    },
-    /// A matrix, which animations leave alone.
-    Matrix(DAffine3),
 }
 
 /// A node that vertices follow.
@@ -147,22 +131,6 @@ pub enum Interpolation {
     Linear,
     /// A cubic Hermite spline.
     CubicSpline,
-}
-
-impl NodeTransform {
-    /// No move at all.
-    pub const IDENTITY: Self =
-        Self::Parts { translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: DVec3::ONE };
-
-    /// To the parent's space.
-    pub fn to_parent(&self) -> DAffine3 {
-        match *self {
-            Self::Parts { translation, rotation, scale } => {
-                DAffine3::from_scale_rotation_translation(scale, rotation, translation)
-            }
-            Self::Matrix(matrix) => matrix,
-        }
-    }
 }
 
 impl Influences {
@@ -317,6 +285,7 @@ impl Morph {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::NodeTransform;
 
     /// Protects weights: the four strongest are kept, a joint that comes twice counts once, and they sum to 1.
     #[test]

@@ -13,6 +13,7 @@ mod estimate;
 mod message;
 mod portion;
 mod scope;
+mod showing;
 mod snapshot;
 mod stage;
 
@@ -21,5 +22,6 @@ pub use estimate::Estimate;
 pub use message::{Message, Watcher};
 pub use portion::Portion;
 pub use scope::ProgressScope;
-pub use snapshot::{MOST_TEXELS, PackedParallax, Showing, Snapshot};
+pub use showing::Showing;
+pub use snapshot::{MOST_TEXELS, PackedParallax, Snapshot};
 pub use stage::Stage;

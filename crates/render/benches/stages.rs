@@ -21,13 +21,14 @@ use parbake_render::antialias::{Blends, find_blends};
 use parbake_render::background::{Background, Composer};
 use parbake_render::camera::{Camera, Projection};
 use parbake_render::cutout::CutoutCoefficients;
+use parbake_render::directions::ViewDirection;
 use parbake_render::edges::EdgeAdjacency;
 use parbake_render::frame::{TangentLight, tangent_light, tangent_light_adjoint};
 use parbake_render::interpolate::{
     Barycentrics, barycentrics, barycentrics_adjoint, footprint_adjoint, interpolate,
 };
 use parbake_render::loss::{Comparison, ImageLoss, Reference, compare};
-use parbake_render::parallax::{ParallaxCoefficients, ViewDirection};
+use parbake_render::parallax::ParallaxCoefficients;
 use parbake_render::pipeline::{self, Gradients, View};
 use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 use parbake_render::scatter::{Fetch, Scatter};

@@ -16,7 +16,6 @@
 //! Contract: directions are unit vectors; the derivatives are those of the polynomials, in x, y and z as if these
 //! were independent.
 
-use crate::parallax::ViewDirection;
 use crate::spherical_harmonics::{self, MOST_FUNCTIONS, as_constant};
 use parbake_model::Basis;
 use parbake_model::glam::Vec3;
@@ -31,6 +30,15 @@ pub struct VertexFrame {
     pub tangent: Vec3,
     /// 1, or −1 where the texture is mirrored.
     pub handedness: f32,
+}
+
+/// From where a point is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ViewDirection {
+    /// Unit vector to the viewer in the mesh's axes, or the line of sight in the tangent frame.
+    pub direction: Vec3,
+    /// Cosine between that and the vertex normal, −1 … 1; of a line 0 … 1.
+    pub cosine: f32,
 }
 
 /// From where a surface is seen, as the functions of a basis have it; `to_viewer` is of unit length.

@@ -13,7 +13,7 @@
 //!
 //! Contract: n·d is in [−1, 1]; where it is below the limit it has no gradient.
 
-use crate::directions::{adjoint as directions_adjoint, with_values};
+use crate::directions::{ViewDirection, adjoint as directions_adjoint, with_values};
 use crate::spherical_harmonics::MOST_FUNCTIONS;
 use parbake_image::FloatImage;
 use parbake_image::pyramid::{Taps, taps};
@@ -37,15 +37,6 @@ pub struct ParallaxCoefficients {
     pub limit: f32,
     /// Wrap modes of all maps along u and v.
     pub wrap: [Wrap; 2],
-}
-
-/// From where a point is seen.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ViewDirection {
-    /// Unit vector to the viewer in the mesh's axes, or the line of sight in the tangent frame.
-    pub direction: Vec3,
-    /// Cosine between that and the vertex normal, −1 … 1; of a line 0 … 1.
-    pub cosine: f32,
 }
 
 /// Gradients of what a shift was made from.

@@ -70,7 +70,7 @@ impl ParallaxCoefficients {
 mod tests {
     use super::*;
     use crate::cutout::CutoutCoefficients;
-    use crate::parallax::ViewDirection;
+    use crate::directions::ViewDirection;
     use crate::spherical_harmonics::{MOST_FUNCTIONS, evaluate, functions};
     use parbake_model::glam::Vec3;
     use parbake_model::{CutoutMap, Wrap};

@@ -10,9 +10,10 @@
 //! that of the first corner; on a face seen from behind the normal is flipped.
 
 use crate::camera::{Camera, Projection};
+use crate::directions::ViewDirection;
 use crate::frame::{TangentLight, tangent_light, tangent_light_adjoint};
 use crate::interpolate::{Barycentrics, barycentrics, footprint_adjoint, interpolate, planes_adjoint};
-use crate::parallax::{ParallaxCoefficients, ViewDirection};
+use crate::parallax::ParallaxCoefficients;
 use crate::raster::ScreenTriangle;
 use crate::scatter::Fetch;
 use crate::shade::{Brdf, BrdfGradient};

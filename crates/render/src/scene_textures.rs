@@ -6,10 +6,10 @@
 //! that break their contract, are not there.
 
 use crate::cutout::CutoutCoefficients;
-use crate::directions::{VertexFrame, sight};
+use crate::directions::{VertexFrame, ViewDirection, sight};
 use crate::interpolate::{Barycentrics, interpolate};
 use crate::interpretation::Interpretation;
-use crate::parallax::{ParallaxCoefficients, ViewDirection};
+use crate::parallax::ParallaxCoefficients;
 use parbake_image::display::encode_srgb;
 use parbake_image::maps::KINDS;
 use parbake_image::material_maps::{

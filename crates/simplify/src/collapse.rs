@@ -212,7 +212,7 @@ fn ways(surface: &Surface, candidate: &Candidate) -> Vec<Change> {
 
 /// What a change costs for each triangle that is saved.
 fn cost(surface: &Surface, gain: f64, change: &Change) -> f64 {
-    let lengths: f64 = change.added.iter().map(|t| squared_sides(change.corners(surface, t))).sum();
+    let lengths: f64 = change.added.iter().map(|t| squared_sides(surface.corners_after(change, t))).sum();
     (LENGTH * lengths - gain) / change.saved() as f64
 }
 

@@ -6,12 +6,14 @@ pub mod change;
 pub mod choose;
 pub mod collapse;
 mod creases;
+pub mod operations;
 pub mod pictures;
 pub mod polish;
 pub mod raster;
 pub mod start;
 pub mod surface;
 pub mod target;
+pub mod triangle;
 
 pub use choose::{ChooseOptions, Chosen, LayerReport, StartReport, choose_triangles, least_triangles};
 pub use start::{CoarseSurfaces, Start};

@@ -8,19 +8,11 @@
 //! order in which they came about.
 
 use crate::change::Change;
+use crate::triangle::Triangle;
 use glam::Vec3;
 use parbake_mesh::weld_by_position;
 use parbake_model::Mesh;
 use std::collections::HashMap;
-
-/// A triangle: its points, counter-clockwise from the front, and what it belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Triangle {
-    /// Points.
-    pub corners: [u32; 3],
-    /// Material of the mesh that it came from.
-    pub material: u32,
-}
 
 /// Points and triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -110,7 +102,7 @@ impl Surface {
             self.part_of(triangle.material) == part && !change.removed.contains(index)
         });
         let kept = kept.map(|(_, triangle)| self.corners(triangle.corners));
-        let added = change.added.iter().map(|triangle| change.corners(self, triangle));
+        let added = change.added.iter().map(|triangle| self.corners_after(change, triangle));
         let boxed = kept.chain(added).flatten().fold(None, |boxed: Option<(Vec3, Vec3)>, point| {
             let (low, high) = boxed.unwrap_or((point, point));
             Some((low.min(point), high.max(point)))
@@ -192,6 +184,14 @@ impl Surface {
     #[inline]
     pub fn corners(&self, points: [u32; 3]) -> [Vec3; 3] {
         points.map(|point| self.points[point as usize])
+    }
+
+    /// Corner positions of a triangle that a change adds.
+    pub fn corners_after(&self, change: &Change, triangle: &Triangle) -> [Vec3; 3] {
+        triangle.corners.map(|point| match change.moved {
+            Some((moved, position)) if moved == point => position,
+            _ => self.points[point as usize],
+        })
     }
 
     /// The points that share a triangle with this one, ascending.

@@ -5,7 +5,7 @@
 //! inverse stay as they are. Inner products are summed row by row in order: the result does not depend on the
 //! number of threads.
 
-use crate::boxed::FreeLanes;
+use crate::free_lanes::FreeLanes;
 use crate::operator::{Coupled, Inner, Operator};
 use crate::stencil::{Block, Stencil};
 use glam::Vec4;

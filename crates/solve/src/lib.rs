@@ -4,6 +4,7 @@
 //! grid                 a square of texels, summed by bands of rows in a fixed order
 //! stencil              the nine-point normal matrix of a bilinear texture
 //! operator             what conjugate gradients ask of a matrix
+//! free_lanes           which of a texel's four numbers may move
 //! conjugate_gradient   the solver of all of them, boxed: solutions within [0, 1]
 //! thin_plate           resistance to bending, by its gradient
 //! adam                 first-order descent
@@ -13,6 +14,7 @@
 pub mod adam;
 pub mod boxed;
 pub mod conjugate_gradient;
+pub mod free_lanes;
 pub mod grid;
 pub mod operator;
 pub mod random;

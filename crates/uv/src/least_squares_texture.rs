@@ -19,8 +19,9 @@ pub use crate::parameterized::ParameterizedSignal;
 use crate::rounding::rounded;
 use glam::Vec4;
 use parbake_image::FloatImage;
-use parbake_solve::boxed::{FreeLanes, free_lanes};
+use parbake_solve::boxed::free_lanes;
 use parbake_solve::conjugate_gradient::{Stop, descend, squared_norm};
+use parbake_solve::free_lanes::FreeLanes;
 use parbake_solve::operator::{Inner, Lanes, Operator};
 use rayon::prelude::*;
 

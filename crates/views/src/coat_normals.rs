@@ -6,12 +6,11 @@
 //!
 //! Contract: an image of unit normals on the low-poly's own coordinates, or none where the low-poly's mesh has about the same.
 
-use crate::extension_maps::weights;
 use crate::extension_values::tangent_frame;
 use crate::gutter;
 use crate::high_poly::HighPoly;
 use crate::low_poly::LowPoly;
-use crate::projection::{in_frame, texel_width};
+use crate::projection::{corner_weights, in_frame, texel_width};
 use parbake_image::quantise::to_image;
 use parbake_image::{FloatImage, MapKind};
 use parbake_mesh::SurfacePoint;
@@ -34,9 +33,9 @@ pub(crate) fn coat_normals(
     let normal = |texel: usize| -> Option<Vec4> {
         let triangle = low.map.triangle[texel] as usize;
         let hit = points[texel].filter(|_| is_coated(triangle))?;
-        let (width, own) = (texel_width(mesh, triangle, size), weights(hit.barycentric));
+        let (width, own) = (texel_width(mesh, triangle, size), corner_weights(hit.barycentric));
         let mut found = high.extensions.coat_normal(high.scene.mesh(), hit.triangle as usize, own, width)?;
-        let frame = tangent_frame(mesh, triangle, weights(low.map.barycentric[texel]));
+        let frame = tangent_frame(mesh, triangle, corner_weights(low.map.barycentric[texel]));
         // A sheet seen from its back: the side that faces out is meant.
         if found.dot(frame.z_axis) < 0.0 {
             found = -found;

@@ -16,7 +16,7 @@ use crate::gutter;
 use crate::high_poly::HighPoly;
 use crate::layer_factors::{Part, Said, Shares, set};
 use crate::low_poly::LowPoly;
-use crate::projection::texel_width;
+use crate::projection::{corner_weights, texel_width};
 use parbake_image::FloatImage;
 use parbake_image::display::encode_srgb;
 use parbake_mesh::{HighSurface, SurfacePoint};
@@ -176,7 +176,7 @@ fn project(low: &LowPoly, layers: &[AlphaLayer], high: &HighPoly) -> Vec<Option<
         let triangle = low.map.triangle[texel] as usize;
         let place = *of_triangle.get(triangle)?;
         let corners = low.placed.triangles[triangle].map(|i| i as usize);
-        let weights = weights(low.map.barycentric[texel]);
+        let weights = corner_weights(low.map.barycentric[texel]);
         let point: Vec3 = interpolate(corners.map(|i| low.placed.positions[i]), weights);
         let normal: Vec3 = interpolate(corners.map(|i| low.placed.normals[i]), weights);
         let reach = high.conventions.max_distance;
@@ -192,10 +192,6 @@ fn project(low: &LowPoly, layers: &[AlphaLayer], high: &HighPoly) -> Vec<Option<
         Some(hit)
     };
     (0..texels).into_par_iter().map(point).collect()
-}
-
-pub(crate) fn weights([second, third]: [f32; 2]) -> [f32; 3] {
-    [1.0 - second - third, second, third]
 }
 
 /// Where the values of texels come from.
@@ -223,13 +219,13 @@ impl<F: Fn(usize) -> bool + Sync> Values<'_, F> {
                 return None;
             }
             let width = texel_width(low, triangle, size);
-            let own = weights(hit.barycentric);
+            let own = corner_weights(hit.barycentric);
             let source = &self.high.extensions;
             let value = source.at(group, mesh, hit.triangle as usize, own, width, folds[layer]);
             if group != Group::Anisotropy {
                 return Some(value);
             }
-            let frame = tangent_frame(low, triangle, weights(self.low.map.barycentric[texel]));
+            let frame = tangent_frame(low, triangle, corner_weights(self.low.map.barycentric[texel]));
             let found = value.truncate();
             let along = Vec2::new(found.dot(frame.x_axis), found.dot(frame.y_axis));
             let direction = along.normalize_or(Vec2::X);

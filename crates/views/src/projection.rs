@@ -88,12 +88,12 @@ impl<'a> Projector<'a> {
 
     /// What the point at these weights of corners 1 and 2 of a triangle finds; nothing where there is no such
     /// triangle, or no high-poly.
-    pub fn find(&self, triangle: usize, [second, third]: [f32; 2]) -> Option<Found> {
+    pub fn find(&self, triangle: usize, barycentric: [f32; 2]) -> Option<Found> {
         let Self { low, high, .. } = self;
         let HighPoly { scene, surface, .. } = high;
         let corners = low.triangles.get(triangle)?.map(|i| i as usize);
         let reach = high.conventions.max_distance;
-        let weights = [1.0 - second - third, second, third];
+        let weights = corner_weights(barycentric);
         let point = interpolate(corners.map(|i| low.positions[i]), weights);
         let normal = interpolate(corners.map(|i| low.normals[i]), weights);
         let side = low.area_normal(triangle);
@@ -107,8 +107,8 @@ impl<'a> Projector<'a> {
             Search::Outermost => surface.project_from_outside(point, direction, side, reach),
             Search::ClosestPoint => surface.closest_on_side(point, side, reach),
         }?;
-        let [b1, b2] = hit.barycentric;
-        let mut values = scene.look(hit.triangle as usize, [1.0 - b1 - b2, b1, b2], self.widths[triangle]);
+        let own = corner_weights(hit.barycentric);
+        let mut values = scene.look(hit.triangle as usize, own, self.widths[triangle]);
         let mut found = values[MapKind::Normal].truncate();
         // A sheet seen from its back: the side that faces out is meant.
         if found.dot(normal) < 0.0 {
@@ -118,6 +118,11 @@ impl<'a> Projector<'a> {
         values[MapKind::Normal] = in_frame(&frame, found).extend(0.0);
         Some(Found { point, direction, frame, hit, normal: found, values })
     }
+}
+
+/// Weights of a triangle's corners, from those of the second and the third.
+pub(crate) fn corner_weights([second, third]: [f32; 2]) -> [f32; 3] {
+    [1.0 - second - third, second, third]
 }
 
 /// A direction of space in a tangent frame, so that `frame` · result is that direction; +Z where the frame is

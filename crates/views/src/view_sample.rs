@@ -8,8 +8,8 @@ use crate::packing::{packed, unpacked};
 use crate::reference::Reference;
 use crate::view_sampler::ViewSampler;
 use parbake_model::glam::{Vec2, Vec3};
+use parbake_render::directions::ViewDirection;
 use parbake_render::frame::TangentLight;
-use parbake_render::parallax::ViewDirection;
 use rayon::prelude::*;
 
 /// One pixel, as in `Sample` but for where it is fetched: 44 bytes.

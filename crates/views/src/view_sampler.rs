@@ -12,10 +12,9 @@ use parbake_model::glam::{Vec2, Vec3};
 use parbake_model::{Basis, Mesh};
 use parbake_render::camera::Camera;
 use parbake_render::cutout::{CutoutCoefficients, rasterise_cut};
-use parbake_render::directions::{VertexFrame, sight};
+use parbake_render::directions::{VertexFrame, ViewDirection, sight};
 use parbake_render::frame::{TangentLight, tangent_light};
 use parbake_render::interpolate::{barycentrics, interpolate};
-use parbake_render::parallax::ViewDirection;
 use parbake_render::raster::{
     NOTHING, ScreenTriangle, ScreenTriangles, Visibility, rasterise, rasterise_behind,
 };

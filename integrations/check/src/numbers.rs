@@ -7,8 +7,8 @@ use naga::Module;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{Basis, CutoutMap, Image, ParallaxMap};
 use parbake_render::cutout::CutoutCoefficients;
-use parbake_render::directions::{VertexFrame, sight};
-use parbake_render::parallax::{ParallaxCoefficients, ViewDirection};
+use parbake_render::directions::{VertexFrame, ViewDirection, sight};
+use parbake_render::parallax::ParallaxCoefficients;
 
 /// Whose shader it is, since names and parameters differ.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@
 
 use super::draco::{self, Decoded};
 use super::json::{Document, Meshopt};
-use super::meshopt;
+use super::meshopt::Compression;
 use super::uri::{Uri, parse};
 use crate::context::Context;
 use crate::search::is_refusal;
@@ -126,7 +126,7 @@ impl<'a> Buffers<'a> {
         if let Some(decoded) = cell.get() {
             return Ok(decoded);
         }
-        let decoded = draco::decode(self, bytes, here, self.points.get())?;
+        let decoded = draco::decode(self.context, bytes, here, self.points.get())?;
         self.points.set(self.points.get() + decoded.points as u64);
         Ok(cell.get_or_init(|| decoded))
     }
@@ -155,7 +155,10 @@ impl<'a> Buffers<'a> {
         if let Some(bytes) = cell.get() {
             return Ok(bytes);
         }
-        let bytes = meshopt::decode(self, json, here)?;
+        let compression = Compression::new(self.context, json, here)?;
+        let stream = self.part(json.buffer, json.byte_offset, json.byte_length, here)?;
+        self.add_bytes(compression.bytes(stream)?, pointer(here.into()))?;
+        let bytes = compression.decode(stream)?;
         Ok(cell.get_or_init(|| bytes))
     }
 

@@ -5,11 +5,10 @@
 //! of its attributes, are held against the limits while it is decoded. A stream that several
 //! primitives name is decoded once.
 
-use super::accessor::Component;
-use super::buffers::{Buffers, pointer};
-use crate::FileError;
+use super::component::Component;
 use crate::context::Context;
 use crate::guard::guarded;
+use crate::{FileError, Place};
 use draco_core::draco_types::DataType;
 use draco_core::geometry_attribute::PointAttribute;
 use draco_core::geometry_indices::{FaceIndex, PointIndex};
@@ -49,12 +48,11 @@ impl Decoded {
 /// Decodes the stream in a buffer view; `here` is the pointer to the extension that names it, and
 /// `already` points were decoded before.
 pub(super) fn decode(
-    buffers: &Buffers<'_>,
+    context: &Context<'_>,
     stream: &[u8],
     here: &str,
     already: u64,
 ) -> Result<Decoded, FileError> {
-    let context = buffers.context;
     let limits = context.limits;
     let max_points = (limits.max_vertices as u64).saturating_sub(already);
     let mut decode_limits = DecodeLimits::default();
@@ -68,7 +66,7 @@ pub(super) fn decode(
         let mut mesh = Mesh::new();
         MeshDecoder::new().decode(&mut buffer, &mut mesh).map(|()| mesh)
     });
-    let invalid = |reason: String| context.invalid(pointer(here.into()), reason);
+    let invalid = |reason: String| context.invalid(Place::Pointer(here.into()), reason);
     let mesh = match decoded {
         Some(Ok(mesh)) => mesh,
         Some(Err(error)) if error.kind() == ErrorKind::LimitExceeded => {
@@ -104,7 +102,7 @@ fn within(
     points: usize,
     faces: usize,
 ) -> Result<(), FileError> {
-    let place = || pointer(here.into());
+    let place = || Place::Pointer(here.into());
     let all = already.saturating_add(points as u64);
     context.within(place(), "decoded vertices", all, context.limits.max_vertices as u64)?;
     context.within(place(), "triangles", faces as u64, context.limits.max_triangles as u64)

@@ -9,8 +9,8 @@
 //! Contract: a file of one model is the same as without levels.
 
 use super::binary::Binary;
+use super::material_lists::Materials;
 use super::pieces::Piece;
-use super::write_material::Materials;
 use super::write_mesh::primitives;
 use super::write_nodes::{add_children, hang, nodes_of};
 use parbake_model::{Mesh, Model};

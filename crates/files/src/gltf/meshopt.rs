@@ -1,14 +1,14 @@
 //! EXT_meshopt_compression and KHR_meshopt_compression: buffer views that hold the streams of
 //! meshoptimizer, which the crate `meshopt` decodes; filters are in `meshopt_filter.rs`.
 //!
-//! Contract: no more memory is reserved than a stream of this length can fill, and the decoded
-//! bytes of all views count as bytes of the document's files.
+//! Contract: no more memory is reserved than a stream of this length can fill, which
+//! [`Compression::bytes`] says, so that it can be held against the limits before.
 
-use super::buffers::{Buffers, pointer};
 use super::json::Meshopt;
 use super::meshopt_filter::Filter;
-use crate::FileError;
+use crate::context::Context;
 use crate::guard::guarded;
+use crate::{FileError, Place};
 
 /// The most bytes that one byte of a stream of vertices can stand for: a control byte of format 1
 /// says of four channels that 256 vertices do not differ in them.
@@ -25,64 +25,90 @@ enum Mode {
     Indices,
 }
 
-/// The bytes of a compressed buffer view; `here` is the pointer to its extension.
-pub(super) fn decode(buffers: &Buffers<'_>, json: &Meshopt, here: &str) -> Result<Vec<u8>, FileError> {
-    let context = buffers.context;
-    let refuse = |part: &str, reason: String| Err(context.invalid(pointer(format!("{here}/{part}")), reason));
-    let mode = match json.mode.as_str() {
-        "ATTRIBUTES" => Mode::Attributes,
-        "TRIANGLES" => Mode::Triangles,
-        "INDICES" => Mode::Indices,
-        other => return refuse("mode", format!("{other:?} is no mode of compression")),
-    };
-    let filter = match json.filter.as_deref().unwrap_or("NONE") {
-        "NONE" => None,
-        name => match (mode, Filter::of(name, json.byte_stride)) {
-            (Mode::Attributes, Some(filter)) => Some(filter),
-            _ => {
-                let stride = json.byte_stride;
-                return refuse("filter", format!("{name:?} cannot be applied to elements of {stride} bytes"));
-            }
-        },
-    };
-    let fits = match mode {
-        Mode::Attributes => json.byte_stride.is_multiple_of(4) && (4..=256).contains(&json.byte_stride),
-        Mode::Triangles | Mode::Indices => matches!(json.byte_stride, 2 | 4),
-    };
-    if !fits {
-        let (stride, mode) = (json.byte_stride, &json.mode);
-        return refuse("byteStride", format!("{mode} cannot have elements of {stride} bytes"));
-    }
-    if mode == Mode::Triangles && !json.count.is_multiple_of(3) {
-        return refuse("count", format!("{} indices are no whole number of triangles", json.count));
-    }
-    let stream = buffers.part(json.buffer, json.byte_offset, json.byte_length, here)?;
-    let bytes = (json.count as u64).saturating_mul(json.byte_stride as u64);
-    let most = match mode {
-        Mode::Attributes => MOST_VERTEX_BYTES,
-        Mode::Triangles => TRIANGLE * json.byte_stride as u64,
-        Mode::Indices => json.byte_stride as u64,
-    };
-    if bytes > most.saturating_mul(stream.len() as u64) {
-        let length = stream.len();
-        return refuse("count", format!("{} elements cannot come from {length} bytes", json.count));
-    }
-    buffers.add_bytes(bytes, pointer(here.into()))?;
-    // meshoptimizer's decoders are made for hostile input; the wall is for the wrapper around them.
-    let decoded = guarded(|| match mode {
-        Mode::Attributes => vertices(stream, json.count, json.byte_stride),
-        Mode::Triangles => indices(stream, json.count, json.byte_stride, true),
-        Mode::Indices => indices(stream, json.count, json.byte_stride, false),
-    });
-    match decoded.flatten() {
-        Some(mut bytes) => {
-            if let Some(filter) = filter {
-                filter.apply(&mut bytes);
-            }
-            Ok(bytes)
+/// What the extension of a compressed buffer view says of its stream, held against the format.
+pub(super) struct Compression<'a, 'c> {
+    context: &'a Context<'c>,
+    json: &'a Meshopt,
+    /// The pointer to the extension.
+    here: &'a str,
+    mode: Mode,
+    filter: Option<Filter>,
+}
+
+impl<'a, 'c> Compression<'a, 'c> {
+    /// Of the extension at the pointer `here`.
+    pub fn new(context: &'a Context<'c>, json: &'a Meshopt, here: &'a str) -> Result<Self, FileError> {
+        let refuse = |part: &str, reason: String| {
+            Err(context.invalid(Place::Pointer(format!("{here}/{part}")), reason))
+        };
+        let mode = match json.mode.as_str() {
+            "ATTRIBUTES" => Mode::Attributes,
+            "TRIANGLES" => Mode::Triangles,
+            "INDICES" => Mode::Indices,
+            other => return refuse("mode", format!("{other:?} is no mode of compression")),
+        };
+        let filter = match json.filter.as_deref().unwrap_or("NONE") {
+            "NONE" => None,
+            name => match (mode, Filter::of(name, json.byte_stride)) {
+                (Mode::Attributes, Some(filter)) => Some(filter),
+                _ => {
+                    let stride = json.byte_stride;
+                    return refuse(
+                        "filter",
+                        format!("{name:?} cannot be applied to elements of {stride} bytes"),
+                    );
+                }
+            },
+        };
+        let fits = match mode {
+            Mode::Attributes => json.byte_stride.is_multiple_of(4) && (4..=256).contains(&json.byte_stride),
+            Mode::Triangles | Mode::Indices => matches!(json.byte_stride, 2 | 4),
+        };
+        if !fits {
+            let (stride, mode) = (json.byte_stride, &json.mode);
+            return refuse("byteStride", format!("{mode} cannot have elements of {stride} bytes"));
         }
-        None => {
-            Err(context.invalid(pointer(here.into()), "the compressed data is damaged and cannot be decoded"))
+        if mode == Mode::Triangles && !json.count.is_multiple_of(3) {
+            return refuse("count", format!("{} indices are no whole number of triangles", json.count));
+        }
+        Ok(Self { context, json, here, mode, filter })
+    }
+
+    /// How many bytes the stream becomes, if one of its length can.
+    pub fn bytes(&self, stream: &[u8]) -> Result<u64, FileError> {
+        let bytes = (self.json.count as u64).saturating_mul(self.json.byte_stride as u64);
+        let most = match self.mode {
+            Mode::Attributes => MOST_VERTEX_BYTES,
+            Mode::Triangles => TRIANGLE * self.json.byte_stride as u64,
+            Mode::Indices => self.json.byte_stride as u64,
+        };
+        if bytes > most.saturating_mul(stream.len() as u64) {
+            let length = stream.len();
+            let reason = format!("{} elements cannot come from {length} bytes", self.json.count);
+            return Err(self.context.invalid(Place::Pointer(format!("{}/count", self.here)), reason));
+        }
+        Ok(bytes)
+    }
+
+    /// The bytes of the buffer view.
+    pub fn decode(&self, stream: &[u8]) -> Result<Vec<u8>, FileError> {
+        // meshoptimizer's decoders are made for hostile input; the wall is for the wrapper around them.
+        let decoded = guarded(|| match self.mode {
+            Mode::Attributes => vertices(stream, self.json.count, self.json.byte_stride),
+            Mode::Triangles => indices(stream, self.json.count, self.json.byte_stride, true),
+            Mode::Indices => indices(stream, self.json.count, self.json.byte_stride, false),
+        });
+        match decoded.flatten() {
+            Some(mut bytes) => {
+                if let Some(filter) = self.filter {
+                    filter.apply(&mut bytes);
+                }
+                Ok(bytes)
+            }
+            None => {
+                let place = Place::Pointer(self.here.into());
+                Err(self.context.invalid(place, "the compressed data is damaged and cannot be decoded"))
+            }
         }
     }
 }

@@ -5,10 +5,12 @@
 //! the same bytes.
 
 use super::binary::Binary;
+use super::image_purpose::purpose_of;
 use super::levels_out::{self, meshes, nodes, together};
+use super::material_lists::Materials;
 use super::meshopt_out;
 use super::pieces::{Piece, pieces};
-use super::write_material::{EMISSIVE_STRENGTH, Materials, UNLIT, purpose_of};
+use super::write_material::{EMISSIVE_STRENGTH, UNLIT};
 use super::write_rig;
 use crate::texture_out::{Encoded, Purpose, encode_texture};
 use crate::write_options::{

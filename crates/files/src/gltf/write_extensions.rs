@@ -3,7 +3,8 @@
 //!
 //! What is an extension's default is left out; numbers are clamped to its range.
 
-use super::write_material::{Materials, from_zero, in_range};
+use super::factors::{from_zero, in_range};
+use super::material_lists::Materials;
 use parbake_model::{Material, MaterialExtensions, TextureSlot};
 use serde_json::{Map, Value, json};
 

@@ -4,8 +4,8 @@
 //!
 //! Contract: the map passes its check.
 
+use super::material_lists::{Filter, Materials};
 use super::parallax::{NAME, NAME_SH, VERSION};
-use super::write_material::{Filter, Materials};
 use parbake_model::{Basis, Material, ParallaxMap};
 use serde_json::{Value, json};
 

@@ -9,22 +9,18 @@
 //! * Metal, roughness and emission: `pbr.rs`.
 //! * What is missing (a library, a section, a picture) is a warning.
 
+use super::find_file::{read_absolute, read_beside};
 use super::lex::text;
-use super::mtl::{self, Map, Section};
-use crate::context::{Context, NamedBytes, Textures};
-use crate::search::{is_absolute, is_refusal};
-use crate::words::shown;
-use crate::{FileError, Place, WarningKind};
-use parbake_model::glam::Vec2;
-use parbake_model::{AlphaMode, Image, Material, TextureSlot, UvTransform, Wrap};
+use super::mtl::{self, Found};
+use super::pictures::Pictures;
+use crate::context::Context;
+use crate::search::is_absolute;
+use crate::{FileError, WarningKind};
+use parbake_model::{AlphaMode, Image, Material};
 use std::collections::HashMap;
-use std::io;
 
 /// More are not looked for: each may cost a search on the disk.
 const MOST_LIBRARIES: usize = 1000;
-
-/// A section, and the folder of its library (empty, or with a `/` at the end).
-pub(super) type Found = (Section, String);
 
 /// Materials for these names, in this order, and the pictures they use.
 pub(super) fn build(
@@ -33,7 +29,7 @@ pub(super) fn build(
     context: &Context<'_>,
 ) -> Result<(Vec<Material>, Vec<Image>), FileError> {
     let sections = read_libraries(libraries, context)?;
-    let mut pictures = Pictures { context, found: Vec::new(), seen: HashMap::new() };
+    let mut pictures = Pictures::new(context);
     let mut materials = Vec::with_capacity(names.len());
     let mut doubtful = Vec::new();
     for name in names {
@@ -122,41 +118,6 @@ fn split_names(words: &str, most: usize) -> Vec<String> {
     kept.split_ascii_whitespace().take(most).map(|name| name.replace(blank, " ")).collect()
 }
 
-/// `None` when there is no such file.
-fn read_beside(file: &str, context: &Context<'_>) -> Result<Option<Vec<u8>>, FileError> {
-    found(context.read_there(file, context.limits.max_file_bytes), file, context)
-}
-
-/// Folders and forbidden files are as good as missing; what is too large, or outside where reading
-/// is confined, is not.
-fn found<T>(read: io::Result<T>, file: &str, context: &Context<'_>) -> Result<Option<T>, FileError> {
-    match read {
-        Ok(read) => Ok(Some(read)),
-        Err(source) if is_refusal(&source) => {
-            let place = Place::Image(shown(file));
-            Err(FileError::Read { path: context.path.into(), place, source })
-        }
-        Err(_) => Ok(None),
-    }
-}
-
-/// A file at an absolute path, or, with a warning, the one of that name beside the model.
-fn read_absolute(
-    file: &str,
-    folder: &str,
-    context: &Context<'_>,
-) -> Result<Option<(String, Vec<u8>)>, FileError> {
-    let most = context.limits.max_file_bytes;
-    let there = context.read_there(file, most);
-    if let Ok(bytes) = there {
-        return Ok(Some((file.into(), bytes)));
-    }
-    match found(context.read_by_name(file, folder, most), file, context)?.flatten() {
-        Some(read) => Ok(Some(read)),
-        None => Ok(found(there, file, context)?.map(|bytes| (file.into(), bytes))),
-    }
-}
-
 /// Fills the material in. A bump map is put down as a normal map, and its file is
 /// returned: only its pixels will tell whether it is one.
 fn fill<'f>(
@@ -204,93 +165,14 @@ fn looks_like_normals(image: &Image) -> bool {
     b > 178.0 && (r - 127.5).abs() < 40.0 && (g - 127.5).abs() < 40.0
 }
 
-/// Pictures found so far, each once, to be decoded together.
-pub(super) struct Pictures<'a, 'c> {
-    pub context: &'a Context<'c>,
-    found: Vec<NamedBytes<'static>>,
-    /// By path as tried. `None`: not found.
-    seen: HashMap<String, Option<usize>>,
-}
-
-impl Pictures<'_, '_> {
-    /// The material's use of the picture, if it can be found; else a warning that names both.
-    pub fn slot(
-        &mut self,
-        map: &Map,
-        folder: &str,
-        material: &str,
-    ) -> Result<Option<TextureSlot>, FileError> {
-        if self.context.textures == Textures::Skip {
-            return Ok(None);
-        }
-        let key = format!("{folder}{}", map.file);
-        let image = match self.seen.get(&key) {
-            Some(&known) => known,
-            None => {
-                let image = self.load(&key, map, folder)?;
-                self.seen.insert(key, image);
-                image
-            }
-        };
-        let Some(image) = image else {
-            let name = &map.file;
-            self.context.warn_of(
-                WarningKind::MissingTexture,
-                format!(
-                    "material {material:?}: picture {name:?} was not found; the material goes without it"
-                ),
-            );
-            return Ok(None);
-        };
-        let wrap = [if map.clamp { Wrap::Clamp } else { Wrap::Repeat }; 2];
-        Ok(Some(TextureSlot { image, uv_set: 0, wrap, transform: transform(map) }))
-    }
-
-    fn load(&mut self, key: &str, map: &Map, folder: &str) -> Result<Option<usize>, FileError> {
-        let found = if is_absolute(&map.file) {
-            read_absolute(&map.file, folder, self.context)?
-        } else {
-            let mut places = vec![key];
-            // Some libraries name pictures as the model sees them. With confinement, what leads out of
-            // the library's folder may stay in the model's, and the other way round.
-            if !folder.is_empty() {
-                places.push(&map.file);
-            }
-            let mut found = None;
-            for place in places {
-                found = read_beside(place, self.context)?.map(|bytes| (place.to_string(), bytes));
-                if found.is_some() {
-                    break;
-                }
-            }
-            match found {
-                Some(found) => Some(found),
-                // Many libraries carry the paths of the machine they were written on.
-                None => {
-                    let most = self.context.limits.max_file_bytes;
-                    let read = self.context.read_by_name(&map.file, folder, most);
-                    self::found(read, &map.file, self.context)?.flatten()
-                }
-            }
-        };
-        Ok(found.map(|(place, bytes)| {
-            self.found.push((place, bytes.into()));
-            self.found.len() - 1
-        }))
-    }
-}
-
-/// `v_up' = s·v_up + o` becomes, v down, `v' = s·v + (1 − s − o)`.
-fn transform(map: &Map) -> UvTransform {
-    let ([su, sv], [ou, ov]) = (map.scale, map.offset);
-    UvTransform { offset: Vec2::new(ou, 1.0 - sv - ov), rotation: 0.0, scale: Vec2::new(su, sv) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::context::Textures;
     use crate::{Limits, NoResources, Resources, encode_png};
-    use std::io::ErrorKind;
+    use parbake_model::Wrap;
+    use parbake_model::glam::Vec2;
+    use std::io::{self, ErrorKind};
     use std::path::Path;
 
     struct Shelf(Vec<(&'static str, Vec<u8>)>);

@@ -2,11 +2,13 @@
 
 mod assemble;
 mod corner;
+mod find_file;
 mod lex;
 mod materials;
 mod mtl;
 mod names;
 mod pbr;
+mod pictures;
 mod polygon;
 mod srgb;
 mod statements;

@@ -51,6 +51,9 @@ pub(super) struct Section {
     pub metallic_map: Option<Map>,
 }
 
+/// A section, and the folder of its library (empty, or with a `/` at the end).
+pub(super) type Found = (Section, String);
+
 /// All sections, in order.
 pub(super) fn read(bytes: &[u8]) -> Vec<Section> {
     let mut sections: Vec<Section> = Vec::new();

@@ -7,8 +7,8 @@
 //!   is a map of roughness alone and no metal; if `-imfchan` names a channel, it must be glTF's.
 //!   Other maps are left out with a warning, and `Pr` and `Pm` count.
 
-use super::materials::{Found, Pictures};
-use super::mtl::{Map, Section};
+use super::mtl::{Found, Map, Section};
+use super::pictures::Pictures;
 use crate::FileError;
 use crate::context::Textures;
 use parbake_model::Material;

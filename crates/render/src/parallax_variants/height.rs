@@ -131,7 +131,7 @@ impl ShiftMap for HeightParallax {
 mod tests {
     use super::super::shift_map::tests::{noise, vantage, worst_gradient};
     use super::*;
-    use crate::parallax::ViewDirection;
+    use crate::directions::ViewDirection;
     use parbake_model::glam::Vec3;
 
     fn map(variant: Variant) -> HeightParallax {

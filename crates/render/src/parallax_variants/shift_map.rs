@@ -6,8 +6,9 @@
 //! Contract: shifts are finite, in texture widths, u to the right and v down; nothing depends
 //! on the number of threads.
 
+use crate::directions::ViewDirection;
 use crate::frame::TangentLight;
-use crate::parallax::{ParallaxCoefficients, ViewDirection};
+use crate::parallax::ParallaxCoefficients;
 use parbake_model::Basis;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 

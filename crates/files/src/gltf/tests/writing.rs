@@ -88,7 +88,7 @@ fn many_vertices_take_long_indices() {
 /// Protects mip levels and quality: what a texture is, is read off all materials that have it.
 #[test]
 fn purposes_follow_from_slots() {
-    use super::super::write_material::purpose_of;
+    use super::super::image_purpose::purpose_of;
     use crate::ktx2_out::Content;
     use crate::texture_out::{Purpose, Use};
     use parbake_model::{AlphaMode, ParallaxMap, Sheen};

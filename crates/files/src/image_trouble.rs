@@ -1,0 +1,49 @@
+//! Why a picture could not be had, whatever its format.
+//!
+//! Decoders know neither the file nor the place that a picture is from; who called them makes a [`FileError`] of it.
+
+use crate::{FileError, Limits, Place};
+use std::path::Path;
+
+const SUPPORTED: &str = "PNG, JPEG, WebP and KTX2 (Basis Universal)";
+
+/// Why a picture could not be had, before it is known whose picture it is.
+#[derive(Debug)]
+pub(crate) enum ImageTrouble {
+    UnknownFormat,
+    Side(u64),
+    Pixels(u64),
+    Damaged(String),
+}
+
+impl ImageTrouble {
+    pub fn into_error(self, path: &Path, place: Place, limits: &Limits) -> FileError {
+        let path = path.to_path_buf();
+        match self {
+            Self::UnknownFormat if place == Place::File => {
+                FileError::UnknownFormat { path, supported: SUPPORTED }
+            }
+            Self::UnknownFormat => FileError::Unsupported {
+                path,
+                place,
+                feature: "this picture's format".into(),
+                advice: format!("convert it to one of {SUPPORTED}"),
+            },
+            Self::Side(found) => FileError::OverLimit {
+                path,
+                place,
+                what: "texels along the image's longer side",
+                found,
+                limit: limits.max_image_side.into(),
+            },
+            Self::Pixels(found) => FileError::OverLimit {
+                path,
+                place,
+                what: "texels of the image",
+                found,
+                limit: limits.max_image_pixels,
+            },
+            Self::Damaged(reason) => FileError::Invalid { path, place, reason },
+        }
+    }
+}
