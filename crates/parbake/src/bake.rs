@@ -36,6 +36,7 @@ use parbake_views::high_poly::{Conventions, HighPoly};
 use parbake_views::low_poly::{LowPoly, lit};
 use parbake_views::pool::Rig;
 use parbake_views::projection::project;
+use parbake_views::unlit::was_unlit;
 use std::time::Instant;
 
 /// The training cameras: the paper's distance, and the field of view at which a
@@ -234,7 +235,8 @@ pub(crate) fn run(
     }
     let is_whole = high.is_whole_material;
     let unfit = if is_whole { look.extensions.lost.clone() } else { lost(high.extensions.materials()) };
-    let unjudged = not_judged(high.extensions.materials()).filter(|_| is_whole);
+    let own = high.extensions.materials().iter().filter(|material| !was_unlit(material));
+    let unjudged = not_judged(own).filter(|_| is_whole);
     let unfit = unfit.into_iter().chain(high.unlit.clone()).chain(unjudged);
     warnings.tell(unfit.map(|text| format!("{}: {text}", high.name)));
 

@@ -9,6 +9,7 @@
 
 use parbake_model::{AlphaMode, Material, MaterialExtensions, Model, Specular};
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 
 /// Materials that a warning names; the others are counted.
 const MOST_NAMES: usize = 5;
@@ -25,8 +26,10 @@ pub fn with_unlit_as_emission(model: &Model) -> (Cow<'_, [Material]>, Option<Str
         return (Cow::Borrowed(&model.materials), None);
     }
     let can_glow = model.mesh.colors.is_empty();
-    let names: Vec<String> = unlit.iter().take(MOST_NAMES).map(|m| format!("{:?}", m.name)).collect();
-    let more = match unlit.len() - names.len() {
+    // Primitives of one material may have a copy each.
+    let all: BTreeSet<&str> = unlit.iter().map(|material| material.name.as_str()).collect();
+    let names: Vec<String> = all.iter().take(MOST_NAMES).map(|name| format!("{name:?}")).collect();
+    let more = match all.len() - names.len() {
         0 => String::new(),
         n => format!(" and {n} more"),
     };
@@ -40,6 +43,12 @@ pub fn with_unlit_as_emission(model: &Model) -> (Cow<'_, [Material]>, Option<Str
     }
     let glowing = model.materials.iter().map(|own| if own.unlit { as_emission(own) } else { own.clone() });
     (Cow::Owned(glowing.collect()), Some(told))
+}
+
+/// Whether this material was unlit before [`with_unlit_as_emission`].
+pub fn was_unlit(material: &Material) -> bool {
+    let is_without_reflections = material.extensions.specular.is_some_and(|specular| specular.factor == 0.0);
+    is_without_reflections && material.base_color[..3] == [0.0; 3]
 }
 
 fn as_emission(unlit: &Material) -> Material {
@@ -92,6 +101,7 @@ mod tests {
         assert_eq!(materials[0].base_color, [0.0, 0.0, 0.0, 1.0]);
         assert_eq!(materials[0].extensions.specular.map(|s| s.factor), Some(0.0));
         assert_eq!(materials[1], model.materials[1]);
+        assert!(was_unlit(&materials[0]) && !was_unlit(&materials[1]));
         assert!(told.is_some_and(|text| text.contains("\"screen\" becomes emission")));
     }
 
