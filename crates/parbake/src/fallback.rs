@@ -143,7 +143,7 @@ fn fit(
     scope: &ProgressScope,
     clock: &mut Clock,
 ) -> Result<Vec<(MapKind, Image)>, BakeError> {
-    let &Order { high, plan, options, work } = order;
+    let &Order { high, plan, options, .. } = order;
     let options = BakeOptions { parallax: Parallax::None, texture_size: side, ..options.clone() };
     let schedule = options.plan().schedule;
     // Fewer texels need fewer views.
@@ -152,7 +152,7 @@ fn fit(
     let prepared = &LowPoly::new(low, &high.frame, side)?;
     let projected = &project(prepared, high);
     let subject = Subject { model: low, prepared, projected, kinds, is_seen: false };
-    let order = Order { high, plan, options: &options, work };
+    let order = Order { plan, options: &options, ..*order };
     let mut images = fit_views(&order, subject, Some(references), None, scope, clock)?.fitted.images;
     images.retain(|(kind, _)| matches!(kind, MapKind::BaseColor | MapKind::Normal));
     for (kind, image) in &mut images {

@@ -111,7 +111,7 @@ impl Subject {
     }
 
     /// How maps become light, and how that is shown.
-    fn comparison(&self) -> Comparison<'static, Lambert> {
+    fn comparison(&self) -> Comparison<'static, Lambert, Cpu> {
         let conventions = &self.high.conventions;
         Comparison { backend: &Cpu, brdf: &Lambert, display: conventions.display, srgb: conventions.srgb() }
     }
@@ -198,10 +198,10 @@ impl<'a> Ground<'a> {
         let losses = match stays || state.map.parameters().is_empty() {
             true => Vec::new(),
             false => fit_parallax_of::<_, _, _, FITTED>(
-                &Cpu,
+                comparison.backend,
                 &self.views,
                 &mut state,
-                &Lambert,
+                comparison.brdf,
                 &DisplayTable::new(display),
                 &fit,
                 watcher,
