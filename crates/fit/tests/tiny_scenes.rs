@@ -67,7 +67,7 @@ fn square(name: &str, half: f32, height: f32) -> Model {
     Model { name: name.into(), mesh, materials, images, ..Model::default() }
 }
 
-/// With what everything here is fitted.
+/// With what everything here is fitted. References are rendered with the same BRDF.
 const COMPARISON: Comparison<Lambert, Cpu> =
     Comparison { backend: &Cpu, brdf: &Lambert, display: DISPLAY, srgb: true };
 

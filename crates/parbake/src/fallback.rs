@@ -22,9 +22,9 @@ use parbake_image::reduced::reduced;
 use parbake_model::{Image, Model};
 use parbake_progress::{Clock, Portion, ProgressScope, Stage, Watcher};
 use parbake_render::interpretation::Interpretation;
-use parbake_render::shade::Lambert;
 use parbake_views::alpha_layers::LayerKind;
 use parbake_views::frame::scene;
+use parbake_views::high_poly::HEADLIGHT_BRDF;
 use parbake_views::low_poly::LowPoly;
 use parbake_views::pool::View;
 use parbake_views::projection::project;
@@ -177,7 +177,8 @@ fn psnr(
     let interpretation = Interpretation { parallax: false, ..high.conventions.interpretation };
     let scene = scene(&model, &high.frame, interpretation);
     let views: Vec<View> = judged.iter().map(|reference| reference.view).collect();
-    let shown = render_references(&scene, &Lambert, &views, &order.plan.reference, views.len(), watcher);
+    let shown =
+        render_references(&scene, &HEADLIGHT_BRDF, &views, &order.plan.reference, views.len(), watcher);
     let display = &high.conventions.display;
     let squares: f64 = judged.iter().zip(&shown).map(|(wanted, shown)| square(wanted, shown, display)).sum();
     let values: usize = judged.iter().map(|reference| 3 * reference.pixels.len()).sum();

@@ -24,9 +24,8 @@ use parbake_model::glam::{Vec2, Vec3};
 use parbake_progress::{Clock, Portion, ProgressScope, Showing, Stage};
 use parbake_render::directions::{VertexFrame, sight};
 use parbake_render::parallax::ParallaxCoefficients;
-use parbake_render::shade::Lambert;
 use parbake_views::alpha_layers::{LayerKind, alpha_layers};
-use parbake_views::high_poly::{Conventions, ViewSet};
+use parbake_views::high_poly::{Conventions, HEADLIGHT_BRDF, ViewSet};
 use parbake_views::low_poly::LowPoly;
 use parbake_views::material_sampler::MaterialSampler;
 use parbake_views::projection::ProjectedMaps;
@@ -95,7 +94,7 @@ pub(crate) fn fit_views(
 
     let look = Look::without_extensions(high, kinds.to_vec());
     let srgb = high.conventions.srgb();
-    let comparison = Comparison { backend, brdf: &Lambert, display, srgb };
+    let comparison = Comparison { backend, brdf: &HEADLIGHT_BRDF, display, srgb };
     let solving = Portion::new(scope, 0.0..solving_share(options));
     let seen = OfMaps::new(&look, low, &prepared.written, &projected.maps, srgb);
 
