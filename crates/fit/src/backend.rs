@@ -1,14 +1,17 @@
-//! The seam for a GPU: the four coarse operations in which a bake spends its time, on flat buffers of
+//! The seam for a GPU: the five coarse operations in which a bake spends its time, on flat buffers of
 //! plain elements.
 //!
 //! ```text
-//! view samples ─ assemble ─ solve          (texture solve, `step.rs`)
-//!              └ view gradient             (parallax fit, `parallax.rs`)
+//! view samples ─────┬ assemble ─ solve     (texture solve, `step.rs`)
+//! material samples ─┘
+//! view gradient                            (parallax fit, `parallax.rs`)
 //! ```
 //!
-//! Elements are `repr(C)`: [`Sample`](parbake_views::samples::Sample),
+//! Elements are `repr(C)`: [`Sample`](parbake_views::samples::Sample), [`MaterialSample`],
 //! [`ViewSample`], [`Row`] and `Vec4`. A kernel for each operation can
-//! stand in the place of the [`Cpu`]'s; nothing is kept between calls.
+//! stand in the place of the [`Cpu`]'s; nothing is kept between calls. Sampling of views has two functions, for
+//! views that were not rasterised before and for those that were. Functions of this crate take the
+//! implementation as an argument, so that their callers choose it.
 //!
 //! Contract: results depend on the arguments alone, not on the number of threads.
 
@@ -26,6 +29,9 @@ use parbake_render::shade::Brdf;
 use parbake_solve::conjugate_gradient::{self, Effort, Outcome};
 use parbake_solve::free_lanes::FreeLanes;
 use parbake_solve::stencil::{Block, Row, Stencil};
+use parbake_views::high_poly::ViewSet;
+use parbake_views::material_sample::MaterialSample;
+use parbake_views::material_sampler::MaterialSampler;
 use parbake_views::reference::Reference;
 use parbake_views::samples::{SampleSet, collect_samples, shifted_samples};
 use parbake_views::view_sample::ViewSample;
@@ -42,15 +48,26 @@ pub trait Backend: Sync {
         watcher: &dyn Watcher,
     ) -> SampleSet;
 
-    /// The same of views that were sampled before, their coordinates shifted by a map. Each view is
-    /// freed once it was read.
-    fn shifted_view_samples<M: ShiftMap>(
+    /// The same of views that were sampled before, their coordinates shifted by a map. Views that are
+    /// handed over rather than lent are freed once they were read.
+    fn shifted_view_samples<V: AsRef<[ViewSample]> + Send, M: ShiftMap>(
         &self,
-        views: Vec<Vec<ViewSample>>,
+        views: Vec<V>,
         texture_size: usize,
         map: &M,
         watcher: &dyn Watcher,
     ) -> SampleSet;
+
+    /// The samples of the high-poly's materials in all views of a set, on a texture of `texture_size`² texels,
+    /// and how many views there were time for. The sampler's shift, if it has one, is a function on the CPU: an
+    /// implementation that cannot call it leaves such samplers to [`MaterialSampler::samples`].
+    fn material_samples(
+        &self,
+        sampler: &MaterialSampler,
+        set: &ViewSet,
+        texture_size: usize,
+        watcher: &dyn Watcher,
+    ) -> (SampleSet<MaterialSample>, usize);
 
     /// The normal equations of one map over all samples, texture size² rows; returns the loss.
     fn assemble<P: Problem, S: SampleBlock>(
@@ -97,14 +114,24 @@ impl Backend for Cpu {
         collect_samples(sampler, references, texture_size, watcher)
     }
 
-    fn shifted_view_samples<M: ShiftMap>(
+    fn shifted_view_samples<V: AsRef<[ViewSample]> + Send, M: ShiftMap>(
         &self,
-        views: Vec<Vec<ViewSample>>,
+        views: Vec<V>,
         texture_size: usize,
         map: &M,
         watcher: &dyn Watcher,
     ) -> SampleSet {
         shifted_samples(views, texture_size, map, watcher)
+    }
+
+    fn material_samples(
+        &self,
+        sampler: &MaterialSampler,
+        set: &ViewSet,
+        texture_size: usize,
+        watcher: &dyn Watcher,
+    ) -> (SampleSet<MaterialSample>, usize) {
+        sampler.samples(set, texture_size, watcher)
     }
 
     fn assemble<P: Problem, S: SampleBlock>(

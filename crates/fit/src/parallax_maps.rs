@@ -15,7 +15,7 @@
 //!
 //! Contract: maps are as they come back from 8 bits.
 
-use crate::backend::Cpu;
+use crate::backend::Backend;
 use crate::chart_ownership::{ChartOwnership, clamp_to_chart};
 use crate::cutout::{CutoutOptions, examples, fit_cutout};
 use crate::parallax::{ParallaxOptions, State, fit_parallax, mean_square};
@@ -28,14 +28,13 @@ use parbake_model::{Image, Model, ParallaxMap};
 use parbake_progress::{PackedParallax, Portion, Showing, Snapshot, Stage, Watcher};
 use parbake_render::cutout::CutoutCoefficients;
 use parbake_render::parallax::ParallaxCoefficients;
-use parbake_render::shade::Lambert;
+use parbake_render::shade::Brdf;
 use parbake_views::PrepareError;
 use parbake_views::chart_labels::Atlas;
-use parbake_views::high_poly::{Conventions, HighPoly};
+use parbake_views::high_poly::HighPoly;
 use parbake_views::low_poly::LowPoly;
 use parbake_views::projection::{ProjectedMaps, project};
 use parbake_views::reference::Reference;
-use parbake_views::samples::shifted_samples;
 use parbake_views::view_sample::{ViewSample, sample_views};
 use parbake_views::view_sampler::ViewSampler;
 use serde::{Deserialize, Serialize};
@@ -84,6 +83,23 @@ impl ParallaxMaps {
         }
         map
     }
+}
+
+/// What the maps are fitted to.
+#[derive(Clone, Copy)]
+pub struct ParallaxInput<'a> {
+    /// The low-poly.
+    pub low: &'a Model,
+    /// It as it was prepared for the texture that is to be written.
+    pub prepared: &'a LowPoly,
+    /// The high-poly's maps, projected for the same texture.
+    pub projected: &'a ProjectedMaps,
+    /// The high-poly.
+    pub high: &'a HighPoly,
+    /// It from the training views.
+    pub references: &'a [Reference],
+    /// Looks at the low-poly without a cutout from there.
+    pub sampler: &'a ViewSampler<'a>,
 }
 
 /// What was done.
@@ -153,20 +169,19 @@ const JUDGED: usize = 12;
 /// Steps at either end whose mean the report gives.
 const REPORTED: usize = 10;
 
-/// Fits the maps of a low-poly; `own` is what was prepared and projected for the texture that is to be
-/// written, `sampler` looks at the low-poly without a cutout.
+/// Fits the maps of a low-poly; `comparison` says with which BRDF, and on which backend. References were
+/// rendered with the same BRDF.
 ///
 /// # Errors
-/// Where its texture coordinates have no area.
-pub fn fit_parallax_maps(
-    low: &Model,
-    own: (&LowPoly, &ProjectedMaps),
-    high: &HighPoly,
-    references: &[Reference],
-    sampler: &ViewSampler,
+/// Where the low-poly's texture coordinates have no area.
+pub fn fit_parallax_maps<B: Brdf, K: Backend>(
+    input: &ParallaxInput,
+    comparison: &Comparison<B, K>,
     plan: &ParallaxPlan,
     watcher: &dyn Watcher,
 ) -> Result<FittedMaps, PrepareError> {
+    let &ParallaxInput { low, prepared, projected, high, references, sampler } = input;
+    let &Comparison { backend, brdf, display, srgb } = comparison;
     let sampler = &sampler.clone().in_basis(plan.parallax.basis);
     let references = &references[..references.len().min(plan.views)];
     let mut report = ParallaxReport::default();
@@ -181,8 +196,6 @@ pub fn fit_parallax_maps(
         shift
     };
 
-    let Conventions { display, .. } = high.conventions;
-    let comparison = Comparison { backend: &Cpu, brdf: &Lambert, display, srgb: high.conventions.srgb() };
     let views = sample_views(&sampler, references);
     let display = DisplayTable::new(&display);
     let mut map = ParallaxCoefficients::zeros(plan.parallax.basis, plan.parallax.size);
@@ -204,8 +217,8 @@ pub fn fit_parallax_maps(
             break;
         }
         let made;
-        let (own, start) = if own.0.map.size == pass.texture_size {
-            own
+        let (own, start) = if prepared.map.size == pass.texture_size {
+            (prepared, projected)
         } else {
             let low = LowPoly::for_parallax(low, &high.frame, pass.texture_size)?;
             let start = project(&low, high);
@@ -220,13 +233,13 @@ pub fn fit_parallax_maps(
                 }
                 other => Some(other),
             });
-            let some = &views[..views.len().min(BEGIN_VIEWS)];
-            let samples = shifted_samples(some, pass.texture_size, &map, watcher);
+            let some = views.iter().take(BEGIN_VIEWS).collect();
+            let samples = backend.shifted_view_samples(some, pass.texture_size, &map, watcher);
             let schedule = Schedule { rounds: ROUNDS, final_steps: 0, ..Schedule::default() };
-            let begin = fit_textures(&samples, &own.atlas, &start.maps, &comparison, &schedule, watcher);
+            let begin = fit_textures(&samples, &own.atlas, &start.maps, comparison, &schedule, watcher);
             let mut maps = MapSet::new(pass.texture_size);
             for (kind, image) in &begin.images {
-                maps.insert(*kind, from_image(*kind, image, comparison.srgb));
+                maps.insert(*kind, from_image(*kind, image, srgb));
             }
             State { map, maps }
         };
@@ -234,7 +247,7 @@ pub fn fit_parallax_maps(
         if coarser.is_some_and(|size| size < pass.texture_size) {
             let anew = solved_with(ParallaxCoefficients::zeros(plan.parallax.basis, plan.parallax.size));
             let [with, without] =
-                [&state, &anew].map(|state| mean_square(&Cpu, &judged, state, &Lambert, &display));
+                [&state, &anew].map(|state| mean_square(backend, &judged, state, brdf, &display));
             // Textures of a solve that was cut short say nothing of the map.
             if with > WORTH_KEEPING * without && !watcher.stopped() {
                 state = anew;
@@ -248,7 +261,7 @@ pub fn fit_parallax_maps(
             }
             other => Some(other),
         });
-        losses.push(fit_parallax(&Cpu, &views, &mut state, &Lambert, &display, &options, &showing));
+        losses.push(fit_parallax(backend, &views, &mut state, brdf, &display, &options, &showing));
         coarser = Some(pass.texture_size);
         map = state.map;
         textures = Some(state.maps);
@@ -266,9 +279,9 @@ pub fn fit_parallax_maps(
     let parallax = map.as_stored();
     if let Some(maps) = textures {
         let mut state = State { map, maps };
-        report.rounding[0] = mean_square(&Cpu, &judged, &state, &Lambert, &display);
+        report.rounding[0] = mean_square(backend, &judged, &state, brdf, &display);
         state.map = parallax.clone();
-        report.rounding[1] = mean_square(&Cpu, &judged, &state, &Lambert, &display);
+        report.rounding[1] = mean_square(backend, &judged, &state, brdf, &display);
     }
     Ok(FittedMaps { maps: ParallaxMaps { parallax, cutout }, views, report: Some(report) })
 }

@@ -6,7 +6,7 @@
 //! kept, so a run that is stopped, or a step that goes wrong, never ends worse. Best is by
 //! the loss that is minimised (`outliers.rs`); plain squares are what is reported.
 
-use crate::backend::{Backend, Cpu};
+use crate::backend::Backend;
 use crate::membrane::Membrane;
 use crate::outliers::{Cauchy, Loss};
 use crate::problem::{Problem, ShadedProblem};
@@ -240,7 +240,7 @@ impl<K: Backend> Descent<'_, K> {
 
 /// What is fitted, and how it is compared.
 #[derive(Clone, Copy)]
-pub struct Comparison<'a, B, K = Cpu> {
+pub struct Comparison<'a, B, K> {
     /// What computes.
     pub backend: &'a K,
     /// How maps become light.

@@ -6,7 +6,7 @@
 use parbake_fit::backend::{Backend, Cpu};
 use parbake_fit::cutout::CutoutOptions;
 use parbake_fit::parallax::{ParallaxOptions, State, mean_square};
-use parbake_fit::parallax_maps::{FittedMaps, ParallaxPass, ParallaxPlan, fit_parallax_maps};
+use parbake_fit::parallax_maps::{FittedMaps, ParallaxInput, ParallaxPass, ParallaxPlan, fit_parallax_maps};
 use parbake_fit::schedule::{Comparison, Fitted, Schedule, fit_textures};
 use parbake_fit::texels::Texels;
 use parbake_fit::view_gradient::Sums;
@@ -67,6 +67,10 @@ fn square(name: &str, half: f32, height: f32) -> Model {
     Model { name: name.into(), mesh, materials, images, ..Model::default() }
 }
 
+/// With what everything here is fitted. References are rendered with the same BRDF.
+const COMPARISON: Comparison<Lambert, Cpu> =
+    Comparison { backend: &Cpu, brdf: &Lambert, display: DISPLAY, srgb: true };
+
 /// A pair made ready, and its views.
 struct Scene {
     low: Model,
@@ -98,15 +102,16 @@ impl Scene {
     }
 
     fn parallax_maps(&self, plan: &ParallaxPlan) -> FittedMaps {
-        let own = (&self.prepared, &self.projected);
-        fit_parallax_maps(&self.low, own, &self.high, &self.references, &self.sampler(), plan, &()).unwrap()
+        let Self { low, high, prepared, projected, references } = self;
+        let sampler = &self.sampler();
+        let input = ParallaxInput { low, prepared, projected, high, references, sampler };
+        fit_parallax_maps(&input, &COMPARISON, plan, &()).unwrap()
     }
 
     fn textures(&self, watcher: &dyn Watcher) -> Fitted {
         let samples = collect_samples(&self.sampler(), &self.references, TEXELS, &());
-        let comparison = Comparison { backend: &Cpu, brdf: &Lambert, display: DISPLAY, srgb: true };
         let (atlas, start) = (&self.prepared.atlas, &self.projected.maps);
-        fit_textures(&samples, atlas, start, &comparison, &Schedule::default(), watcher)
+        fit_textures(&samples, atlas, start, &COMPARISON, &Schedule::default(), watcher)
     }
 }
 

@@ -18,7 +18,7 @@ use crate::look::{Look, add_fallback};
 use crate::lost::{lost, not_judged};
 use crate::map_images::images;
 use crate::options::{BakeOptions, Shading, UvMode};
-use crate::order::Order;
+use crate::order::{BakeBackend, Order};
 use crate::parts::with_parts;
 use crate::report::{BakeReport, layout_warning};
 use crate::rigs::{carried, rigged};
@@ -206,7 +206,7 @@ pub(crate) fn run(
     let kinds = layer_kinds(&prepared.placed, delivered, high);
     let subject =
         Subject { model: low, prepared: &prepared, projected: &projected, kinds: &kinds, is_seen: true };
-    let order = Order { high, plan: &plan, options, work };
+    let order = Order { high, plan: &plan, options, work, backend: &BakeBackend::default() };
     show(low, high, watcher);
     let references = training_views(&order, &scope);
     clock.lap(Stage::Reference);

@@ -22,9 +22,9 @@ use parbake_image::reduced::reduced;
 use parbake_model::{Image, Model};
 use parbake_progress::{Clock, Portion, ProgressScope, Stage, Watcher};
 use parbake_render::interpretation::Interpretation;
-use parbake_render::shade::Lambert;
 use parbake_views::alpha_layers::LayerKind;
 use parbake_views::frame::scene;
+use parbake_views::high_poly::HEADLIGHT_BRDF;
 use parbake_views::low_poly::LowPoly;
 use parbake_views::pool::View;
 use parbake_views::projection::project;
@@ -143,7 +143,7 @@ fn fit(
     scope: &ProgressScope,
     clock: &mut Clock,
 ) -> Result<Vec<(MapKind, Image)>, BakeError> {
-    let &Order { high, plan, options, work } = order;
+    let &Order { high, plan, options, .. } = order;
     let options = BakeOptions { parallax: Parallax::None, texture_size: side, ..options.clone() };
     let schedule = options.plan().schedule;
     // Fewer texels need fewer views.
@@ -152,7 +152,7 @@ fn fit(
     let prepared = &LowPoly::new(low, &high.frame, side)?;
     let projected = &project(prepared, high);
     let subject = Subject { model: low, prepared, projected, kinds, is_seen: false };
-    let order = Order { high, plan, options: &options, work };
+    let order = Order { plan, options: &options, ..*order };
     let mut images = fit_views(&order, subject, Some(references), None, scope, clock)?.fitted.images;
     images.retain(|(kind, _)| matches!(kind, MapKind::BaseColor | MapKind::Normal));
     for (kind, image) in &mut images {
@@ -177,7 +177,8 @@ fn psnr(
     let interpretation = Interpretation { parallax: false, ..high.conventions.interpretation };
     let scene = scene(&model, &high.frame, interpretation);
     let views: Vec<View> = judged.iter().map(|reference| reference.view).collect();
-    let shown = render_references(&scene, &Lambert, &views, &order.plan.reference, views.len(), watcher);
+    let shown =
+        render_references(&scene, &HEADLIGHT_BRDF, &views, &order.plan.reference, views.len(), watcher);
     let display = &high.conventions.display;
     let squares: f64 = judged.iter().zip(&shown).map(|(wanted, shown)| square(wanted, shown, display)).sum();
     let values: usize = judged.iter().map(|reference| 3 * reference.pixels.len()).sum();

@@ -23,8 +23,8 @@ use parbake_render::lighting::Lighting;
 use parbake_render::metallic_roughness::MetallicRoughness;
 use parbake_render::scene::{Picture, Scene};
 use parbake_render::scene_material::MaterialPicture;
-use parbake_render::shade::Lambert;
 use parbake_views::frame::{common_frame, needs_whole_material, scene};
+use parbake_views::high_poly::HEADLIGHT_BRDF;
 
 /// Where models are photographed.
 #[derive(Clone, Debug)]
@@ -110,7 +110,10 @@ impl Studio {
         with_channels: bool,
     ) -> Shot {
         match &self.whole {
-            None => Shot { picture: subject.0.render(&Lambert, camera, size.0, size.1), values: Vec::new() },
+            None => Shot {
+                picture: subject.0.render(&HEADLIGHT_BRDF, camera, size.0, size.1),
+                values: Vec::new(),
+            },
             Some(brdf) => {
                 let MaterialPicture { light, values } =
                     subject.0.render_material(brdf, camera, size, self.widens_highlights, with_channels);

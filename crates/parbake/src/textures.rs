@@ -11,8 +11,10 @@ use crate::look::Look;
 use crate::order::Order;
 use crate::snapshots::OfMaps;
 use crate::work::Work;
-use parbake_fit::backend::{Backend, Cpu};
-use parbake_fit::parallax_maps::{FittedMaps, ParallaxMaps, ParallaxPlan, ParallaxReport, fit_parallax_maps};
+use parbake_fit::backend::Backend;
+use parbake_fit::parallax_maps::{
+    FittedMaps, ParallaxInput, ParallaxMaps, ParallaxPlan, ParallaxReport, fit_parallax_maps,
+};
 use parbake_fit::schedule::{Comparison, Fitted, fit_textures};
 use parbake_fit::separate_maps::fit_separate_maps;
 use parbake_image::MapKind;
@@ -22,9 +24,8 @@ use parbake_model::glam::{Vec2, Vec3};
 use parbake_progress::{Clock, Portion, ProgressScope, Showing, Stage};
 use parbake_render::directions::{VertexFrame, sight};
 use parbake_render::parallax::ParallaxCoefficients;
-use parbake_render::shade::Lambert;
 use parbake_views::alpha_layers::{LayerKind, alpha_layers};
-use parbake_views::high_poly::{Conventions, ViewSet};
+use parbake_views::high_poly::{Conventions, HEADLIGHT_BRDF, ViewSet};
 use parbake_views::low_poly::LowPoly;
 use parbake_views::material_sampler::MaterialSampler;
 use parbake_views::projection::ProjectedMaps;
@@ -83,7 +84,7 @@ pub(crate) fn fit_views(
     scope: &ProgressScope,
     clock: &mut Clock,
 ) -> Result<FittedTextures, BakeError> {
-    let &Order { high, plan, options, .. } = order;
+    let &Order { high, plan, options, backend, .. } = order;
     let Subject { model: low, prepared, projected, kinds, is_seen } = subject;
     let (size, placed) = (options.texture_size, &prepared.placed);
     let Conventions { display, .. } = high.conventions;
@@ -93,6 +94,7 @@ pub(crate) fn fit_views(
 
     let look = Look::without_extensions(high, kinds.to_vec());
     let srgb = high.conventions.srgb();
+    let comparison = Comparison { backend, brdf: &HEADLIGHT_BRDF, display, srgb };
     let solving = Portion::new(scope, 0.0..solving_share(options));
     let seen = OfMaps::new(&look, low, &prepared.written, &projected.maps, srgb);
 
@@ -104,8 +106,8 @@ pub(crate) fn fit_views(
         (Some(plan), Some(references)) => {
             let share = scope.share(shares::PARALLAX);
             let share = Showing::new(&share, |snapshot| seen.complete(snapshot, None)).only_if(is_seen);
-            let own = (prepared, projected);
-            let fitted = fit_parallax_maps(low, own, high, references, &sampler, &plan, &share)?;
+            let input = ParallaxInput { low, prepared, projected, high, references, sampler: &sampler };
+            let fitted = fit_parallax_maps(&input, &comparison, &plan, &share)?;
             clock.lap(Stage::Parallax);
             Some(fitted)
         }
@@ -117,7 +119,8 @@ pub(crate) fn fit_views(
         let shift = maps.map(shift_of);
         let shift = shift.as_ref().map(|shift| shift as _);
         let layers = alpha_layers(kinds, high);
-        MaterialSampler { high, low: placed, layers: &layers, shift }.samples(&set, size, scope)
+        let sampler = MaterialSampler { high, low: placed, layers: &layers, shift };
+        backend.material_samples(&sampler, &set, size, scope)
     };
     if whole {
         drop(references);
@@ -130,7 +133,7 @@ pub(crate) fn fit_views(
         let showing =
             Showing::new(&solving, |snapshot| seen.complete(snapshot, maps.as_ref())).only_if(is_seen);
         let schedule = plan.material_schedule();
-        let fitted = fit_separate_maps(&samples, atlas, start, &Cpu, srgb, &schedule, &showing);
+        let fitted = fit_separate_maps(&samples, atlas, start, backend, srgb, &schedule, &showing);
         let (samples, parallax_report) = (samples.len(), parallax_report.flatten());
         return Ok(FittedTextures { fitted, views, samples, parallax: maps, parallax_report });
     }
@@ -140,7 +143,7 @@ pub(crate) fn fit_views(
         None => {
             // Textures that follow others may need fewer than were rendered.
             let some = &references[..views.min(plan.views)];
-            let samples = Cpu.view_samples(&sampler, some, size, scope);
+            let samples = backend.view_samples(&sampler, some, size, scope);
             drop(references);
             (samples, None, None)
         }
@@ -148,20 +151,20 @@ pub(crate) fn fit_views(
             let sampler = sampler.with_cutout(maps.cutout.as_ref());
             view_samples.extend(sample_views(&sampler, &references[view_samples.len()..]));
             drop(references);
-            (Cpu.shifted_view_samples(view_samples, size, &maps.parallax, scope), Some(maps), report)
+            (backend.shifted_view_samples(view_samples, size, &maps.parallax, scope), Some(maps), report)
         }
     };
     if samples.is_empty() {
         return Err(unseen());
     }
     clock.lap(Stage::Sampling);
-    let comparison = Comparison { backend: &Cpu, brdf: &Lambert, display, srgb };
     let showing = Showing::new(&solving, |snapshot| seen.complete(snapshot, maps.as_ref())).only_if(is_seen);
     let (mut start, mut schedule) = (start.clone(), plan.schedule);
     if schedule.normal_steps > 0 && !options.fits_normals_to_headlight() {
         let (samples, _) = sampled(maps.as_ref());
         let (normals, schedule_of_normals) = (start.only(MapKind::Normal), plan.material_schedule());
-        let fitted = fit_separate_maps(&samples, atlas, &normals, &Cpu, srgb, &schedule_of_normals, &showing);
+        let fitted =
+            fit_separate_maps(&samples, atlas, &normals, backend, srgb, &schedule_of_normals, &showing);
         for (kind, image) in fitted.images {
             start.insert(kind, from_image(kind, &image, srgb));
         }

@@ -8,8 +8,8 @@ use parbake_image::display::Display;
 use parbake_render::background::{Background, Composer};
 use parbake_render::loss::{Comparison, LossValue, Reference};
 use parbake_render::pipeline::{Gradients, View, adjoint, forward};
-use parbake_render::shade::Lambert;
 use parbake_render::surface::{Surface, Textures};
+use parbake_views::high_poly::HEADLIGHT_BRDF;
 use parbake_views::reference::Reference as Rendered;
 use rayon::prelude::*;
 
@@ -109,9 +109,9 @@ impl Views<'_> {
             comparison: self.comparison,
             antialias: true,
         };
-        let tape = forward(surface, textures, &Lambert, &view);
+        let tape = forward(surface, textures, &HEADLIGHT_BRDF, &view);
         let mut gradients = Gradients::zeros(surface, textures, true);
-        adjoint(surface, textures, &Lambert, &view, &tape, &mut gradients);
+        adjoint(surface, textures, &HEADLIGHT_BRDF, &view, &tape, &mut gradients);
         Judgement { loss: tape.loss, gradients, outline: Outline::of(&tape.rgba, &reference) }
     }
 }

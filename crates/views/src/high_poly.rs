@@ -25,6 +25,11 @@ use parbake_render::scene::Scene;
 use parbake_render::shade::{Brdf, Lambert};
 use std::sync::{Arc, Mutex};
 
+/// The BRDF under a headlight. Reference views are rendered with it; vertices, parallax maps and, where whole
+/// materials are not fitted, textures are fitted to these with it, and evaluation shows such bakes with it. All of
+/// them take it from here, so that they agree.
+pub const HEADLIGHT_BRDF: Lambert = Lambert;
+
 /// How a bake sees its models.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conventions {
@@ -158,7 +163,7 @@ impl HighPoly {
         let always = [MapKind::BaseColor, MapKind::Normal];
         let whole = self.is_whole_material;
         MapKind::ALL.into_iter().filter(move |kind| {
-            let is_read = if whole { true } else { Lambert.reads(*kind) };
+            let is_read = if whole { true } else { HEADLIGHT_BRDF.reads(*kind) };
             let is_there = self.scene.has(*kind) || (whole && *kind == MapKind::MetallicRoughness);
             is_read && (always.contains(kind) || is_there)
         })
@@ -173,7 +178,8 @@ impl HighPoly {
             return found;
         }
         let views = set.views(&self.conventions.rig);
-        let rendered = Arc::new(render_references(&self.scene, &Lambert, &views, &set.sampling, 1, watcher));
+        let rendered =
+            Arc::new(render_references(&self.scene, &HEADLIGHT_BRDF, &views, &set.sampling, 1, watcher));
         // What was stopped early is not the whole set.
         if let Some(mut kept) = kept().filter(|_| rendered.len() == set.count) {
             kept.push((*set, rendered.clone()));

@@ -21,8 +21,8 @@ use parbake_model::glam::Vec3;
 use parbake_model::{Image, Model};
 use parbake_render::camera::{Camera, Projection, fibonacci_sphere};
 use parbake_render::parallax_variants::shift_map::Unshifted;
-use parbake_render::shade::Lambert;
-use parbake_views::high_poly::{Conventions, HighPoly, ViewSet};
+use parbake_render::shade::Brdf;
+use parbake_views::high_poly::{Conventions, HEADLIGHT_BRDF, HighPoly, ViewSet};
 use parbake_views::low_poly::LowPoly;
 use parbake_views::pool::Rig;
 use parbake_views::projection::{ProjectedMaps, project};
@@ -111,9 +111,14 @@ impl Subject {
     }
 
     /// How maps become light, and how that is shown.
-    fn comparison(&self) -> Comparison<'static, Lambert> {
+    fn comparison(&self) -> Comparison<'static, impl Brdf + use<>, Cpu> {
         let conventions = &self.high.conventions;
-        Comparison { backend: &Cpu, brdf: &Lambert, display: conventions.display, srgb: conventions.srgb() }
+        Comparison {
+            backend: &Cpu,
+            brdf: &HEADLIGHT_BRDF,
+            display: conventions.display,
+            srgb: conventions.srgb(),
+        }
     }
 
     fn sampler(&self, options: &VariantsOptions) -> ViewSampler<'_> {
@@ -153,7 +158,7 @@ impl<'a> Ground<'a> {
             .map(|direction| {
                 let camera = Camera::towards_origin(direction, evaluate.radius, evaluate.projection());
                 let (size, supersample) = (evaluate.resolution, evaluate.supersample);
-                let picture = subject.high.scene.render(&Lambert, &camera, size, supersample);
+                let picture = subject.high.scene.render(&HEADLIGHT_BRDF, &camera, size, supersample);
                 (camera, shown(&picture, &display, [0.0; 3]))
             })
             .collect();
@@ -163,7 +168,9 @@ impl<'a> Ground<'a> {
     /// The high-poly from the sides to look at.
     pub fn high_sides(&self) -> Vec<Rgb> {
         let scene = &self.subject.high.scene;
-        SIDES.map(|side| self.grey(&scene.render(&Lambert, &camera(side), PICTURE.0, PICTURE.1))).into()
+        SIDES
+            .map(|side| self.grey(&scene.render(&HEADLIGHT_BRDF, &camera(side), PICTURE.0, PICTURE.1)))
+            .into()
     }
 
     fn grey(&self, picture: &parbake_render::scene::Picture) -> Rgb {
@@ -198,10 +205,10 @@ impl<'a> Ground<'a> {
         let losses = match stays || state.map.parameters().is_empty() {
             true => Vec::new(),
             false => fit_parallax_of::<_, _, _, FITTED>(
-                &Cpu,
+                comparison.backend,
                 &self.views,
                 &mut state,
-                &Lambert,
+                comparison.brdf,
                 &DisplayTable::new(display),
                 &fit,
                 watcher,

@@ -18,7 +18,8 @@ use parbake_render::interpolate::{barycentrics, interpolate};
 use parbake_render::parallax_variants::shift_map::{ShiftMap, TangentView};
 use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
 use parbake_render::scene::{Picture, unpack};
-use parbake_render::shade::{Brdf, Lambert};
+use parbake_render::shade::Brdf;
+use parbake_views::high_poly::HEADLIGHT_BRDF;
 use rayon::prelude::*;
 
 /// A low-poly, its textures and its map.
@@ -57,7 +58,7 @@ impl<'a, M: ShiftMap> Look<'a, M> {
         let uv = uv + self.map.shift(uv, &TangentView::under_headlight(sight, &light));
         let lod = self.color.lod(along(b.per_x), along(b.per_y));
         let (color, normal) = (self.color.fetch(uv, lod), self.normal.fetch(uv, lod));
-        Lambert.light(&light, &MapValues::of(Vec3::from(color), Vec3::from(normal)))
+        HEADLIGHT_BRDF.light(&light, &MapValues::of(Vec3::from(color), Vec3::from(normal)))
     }
 
     /// The whole view, each pixel the mean of `supersample`² samples.
