@@ -39,6 +39,11 @@ fn differing(a: &Rgb, b: &Rgb, pixels_per_degree: f32) -> Window {
 }
 
 /// The difference at each pixel, width × height values, row 0 on top.
+///
+/// # Errors
+///
+/// [`MetricError::PixelCount`] where a picture holds more or fewer pixels than its size says, and
+/// [`MetricError::SizeMismatch`] where the sizes differ.
 pub fn flip_map(reference: &Rgb, test: &Rgb, pixels_per_degree: f32) -> Result<Vec<f32>, MetricError> {
     check(reference, test)?;
     if reference.pixels.is_empty() {
@@ -59,6 +64,10 @@ pub fn flip_map(reference: &Rgb, test: &Rgb, pixels_per_degree: f32) -> Result<V
 }
 
 /// Mean of [`flip_map`]; 0 for pictures without pixels.
+///
+/// # Errors
+///
+/// As [`flip_map`].
 pub fn flip(reference: &Rgb, test: &Rgb, pixels_per_degree: f32) -> Result<f64, MetricError> {
     let map = flip_map(reference, test, pixels_per_degree)?;
     Ok(map.iter().copied().map(f64::from).sum::<f64>() / map.len().max(1) as f64)

@@ -151,6 +151,11 @@ fn similarity(a: &Plane, b: &Plane, kernel: &[f32; TAPS]) -> [f64; 2] {
 }
 
 /// MS-SSIM, at most 1; `None` where a side is shorter than [`SMALLEST_SIDE`].
+///
+/// # Errors
+///
+/// [`MetricError::PixelCount`] where a picture holds more or fewer pixels than its size says, and
+/// [`MetricError::SizeMismatch`] where the sizes differ.
 pub fn ms_ssim(a: &Rgb, b: &Rgb) -> Result<Option<f64>, MetricError> {
     check(a, b)?;
     if a.width.min(a.height) < SMALLEST_SIDE {

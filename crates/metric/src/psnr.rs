@@ -10,6 +10,11 @@ use rayon::prelude::*;
 
 /// Mean squared difference over all pixels and channels, 0 … 1; 0 for pictures
 /// without pixels.
+///
+/// # Errors
+///
+/// [`MetricError::PixelCount`] where a picture holds more or fewer pixels than its size says, and
+/// [`MetricError::SizeMismatch`] where the sizes differ.
 pub fn mean_squared_error(a: &Rgb, b: &Rgb) -> Result<f64, MetricError> {
     check(a, b)?;
     if a.pixels.is_empty() {

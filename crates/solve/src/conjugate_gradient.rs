@@ -1,12 +1,12 @@
 //! Preconditioned conjugate gradients (Hestenes and Stiefel 1952) on any [`Operator`], and on a [`Stencil`], whose
 //! preconditioner is the inverses of its centre blocks (block Jacobi).
 //!
-//! Contract: the matrix is positive semi-definite on the texels it touches; texels whose centre block has no
+//! Contract: the matrix is positive semi-definite on the elements it touches; texels whose centre block has no
 //! inverse stay as they are. Inner products are summed row by row in order: the result does not depend on the
 //! number of threads.
 
 use crate::free_lanes::FreeLanes;
-use crate::operator::{Coupled, Inner, Operator};
+use crate::operator::{Coupled, Element, ElementOf, Inner, Operator};
 use crate::stencil::{Block, Stencil};
 use glam::Vec4;
 use rayon::prelude::*;
@@ -41,7 +41,7 @@ pub struct Stop<I> {
 }
 
 /// `rᵀ M r`, M being the preconditioner: the squared norm that [`Stop`] speaks of.
-pub fn squared_norm<O: Operator>(operator: &O, r: &[Vec4]) -> O::Inner {
+pub fn squared_norm<O: Operator>(operator: &O, r: &[ElementOf<O>]) -> O::Inner {
     let width = operator.width();
     let rows: Vec<O::Inner> = (r.par_chunks(width).enumerate())
         .map(|(row, r)| {
@@ -60,20 +60,22 @@ pub fn squared_norm<O: Operator>(operator: &O, r: &[Vec4]) -> O::Inner {
 /// the steps done and the squared norm that is left.
 pub fn descend<O: Operator>(
     operator: &mut O,
-    x: &mut [Vec4],
-    r: &mut [Vec4],
+    x: &mut [ElementOf<O>],
+    r: &mut [ElementOf<O>],
     mut rho: O::Inner,
     free: Option<&[FreeLanes]>,
     stop: &Stop<O::Inner>,
 ) -> (usize, O::Inner) {
     let width = operator.width();
-    let mask = |i: usize| free.map_or(Vec4::ONE, |f| f[i].mask());
+    let mask = |i: usize| free.map_or(ElementOf::<O>::ONE, |f| ElementOf::<O>::mask(f[i]));
     // Masked like r, the preconditioned residual keeps the direction p inside the mask, so that A p needs
     // no mask of its own before it meets p.
-    let masked = |operator: &O, i: usize, r: Vec4| operator.precondition(i, r) * mask(i);
+    let masked = |operator: &O, i: usize, r: ElementOf<O>| operator.precondition(i, r) * mask(i);
     let own: &O = operator;
-    let mut p: Vec<Vec4> = r.par_iter().enumerate().map(|(i, r)| masked(own, i, *r)).collect();
-    let mut q = vec![Vec4::ZERO; x.len()];
+    // A row is the least task here too: what fits into one is solved without other threads.
+    let mut p: Vec<ElementOf<O>> =
+        r.par_iter().enumerate().with_min_len(width).map(|(i, r)| masked(own, i, *r)).collect();
+    let mut q = vec![ElementOf::<O>::ZERO; x.len()];
     let mut steps = 0;
     while steps < stop.steps && !rho.is_within(stop.enough) {
         let curvature = operator.product(&p, &mut q);
@@ -102,7 +104,10 @@ pub fn descend<O: Operator>(
         if gain < stop.least_gain {
             break;
         }
-        p.par_iter_mut().enumerate().for_each(|(i, p)| *p = masked(own, i, r[i]) + *p * beta);
+        p.par_iter_mut()
+            .enumerate()
+            .with_min_len(width)
+            .for_each(|(i, p)| *p = masked(own, i, r[i]) + *p * beta);
     }
     (steps, rho)
 }
