@@ -30,12 +30,7 @@ const DENSITY: f64 = 4.0;
 /// `side` is how many pixels along a line its whole surface covers, laid flat. Where its triangles have one material, the model
 /// as it is. None where textures cannot be moved (parallax maps, several mappings in one material, vertices that
 /// materials share) or where too many materials would stay.
-pub(crate) fn with_common_maps(
-    model: &Model,
-    side: f64,
-    most_side: usize,
-    most_texels: usize,
-) -> Option<Model> {
+pub fn with_common_maps(model: &Model, side: f64, most_side: usize, most_texels: usize) -> Option<Model> {
     let used = used_materials(model);
     if used.iter().any(|&index| model.materials.get(index).is_none_or(|own| own.parallax.is_some())) {
         return None;
