@@ -6,9 +6,9 @@
 //! Contract: a budget cuts steps of levels short and leaves out none; a watcher that says stop ends the chain.
 
 use super::options::LodOptions;
-use super::search::MOST_BAKES;
 use crate::budget::{check_budget, stage_weights};
 use crate::options::BakeOptions;
+use parbake_levels::search::MOST_BAKES;
 use parbake_progress::{Message, Stage, Watcher};
 use std::time::{Duration, Instant};
 

@@ -5,8 +5,8 @@
 use super::candidate::Candidate;
 use super::maker::{Draft, Maker};
 use super::switch::Pictures;
-use super::viewed::as_viewers_do;
 use crate::error::BakeError;
+use parbake_levels::viewed::as_viewers_do;
 use parbake_model::Model;
 
 /// Pixels that a model spans at most in the larger ones of the pictures that are compared.

@@ -19,20 +19,14 @@ mod candidate;
 pub(crate) mod chain;
 mod delivered;
 pub mod document;
-mod face_frames;
 mod judge;
 pub mod layout;
 mod level;
 mod maker;
-mod maps;
-mod merged;
 pub mod options;
 mod scaled;
-pub mod search;
-mod see_through;
 pub mod switch;
 pub mod target;
-mod viewed;
 mod ways;
 mod written;
 
@@ -43,11 +37,12 @@ use chain::Chain;
 pub use level::{Level, LevelReport};
 use maker::{Draft, Maker, largest_texture, texels_of};
 use options::LodOptions;
+pub use parbake_levels::search;
+use parbake_levels::viewed::as_viewers_do;
 use parbake_model::Model;
 use parbake_progress::Watcher;
 use std::time::Instant;
 use switch::Subject;
-use viewed::as_viewers_do;
 use written::as_written;
 
 /// Makes the levels of a model one by one and hands each over as soon as it is finished. Returns how many there are:

@@ -1,6 +1,6 @@
 //! A level with its model's own maps, with fewer texels: no bake.
 //!
-//! Materials share one set of maps (`merged.rs`). How much each map may lose is found by pictures: each is reduced by itself,
+//! Materials share one set of maps (`levels/merged.rs`). How much each map may lose is found by pictures: each is reduced by itself,
 //! step by step; of all together the errors add up, nearly enough.
 //!
 //! Contract: at most half of the model's texels. Charts are as they were delivered, shared texels and mirrored charts
@@ -10,17 +10,17 @@ use super::candidate::Way;
 use super::delivered::{Coarser, surface_of};
 use super::judge::Judge;
 use super::maker::{Draft, Maker, largest_texture};
-use super::maps::{
-    LevelMap, Reduction, images_of_extensions, oblong_level_maps, with_halved_extensions, with_reductions,
-};
-use super::merged::with_common_maps;
-use super::search::error_of;
 use crate::bake::Baked;
 use crate::error::BakeError;
 use crate::options::BakeOptions;
 use crate::report::BakeReport;
 use crate::work::Work;
 use parbake_atlas::check_mesh;
+use parbake_levels::maps::{
+    LevelMap, Reduction, images_of_extensions, oblong_level_maps, with_halved_extensions, with_reductions,
+};
+use parbake_levels::merged::with_common_maps;
+use parbake_levels::search::error_of;
 use parbake_model::{Image, Model};
 
 /// Decibels that fewer texels may cost, and those of which more show nothing, whatever is looked at.

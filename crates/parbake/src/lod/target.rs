@@ -1,5 +1,5 @@
-//! A level that is the smallest file of a PSNR: bakes for the search (`search.rs`), and what their maps can do without
-//! (`maps.rs`).
+//! A level that is the smallest file of a PSNR: bakes for the search (`levels/search.rs`), and what their maps can do without
+//! (`levels/maps.rs`).
 //!
 //! ```text
 //! search ─ plan ─ triangles, bake ─ maps reduced one by one, pictures ─ reductions together, file, pictures ─ search
@@ -9,15 +9,15 @@
 
 use super::chain::Chain;
 use super::maker::{Draft, Maker};
-use super::maps::{LevelMap, Reduction, level_maps, size_of, with_reductions};
 use super::options::LodOptions;
-use super::search::{Baking, Choice, Measured, Plan, Search, Step, Verdict, error_of};
 use super::switch::{Lineup, Pictures};
-use super::viewed::as_viewers_do;
 use super::written::{AsWritten, as_written};
 use crate::error::BakeError;
 use crate::normal_y::NormalY;
 use parbake_files::{TextureFormat, WriteOptions};
+use parbake_levels::maps::{LevelMap, Reduction, level_maps, size_of, with_reductions};
+use parbake_levels::search::{Baking, Choice, Measured, Plan, Search, Step, Verdict, error_of};
+use parbake_levels::viewed::as_viewers_do;
 use parbake_model::Model;
 use parbake_simplify::start::triangles_within;
 use serde::{Deserialize, Serialize};

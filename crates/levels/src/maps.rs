@@ -20,7 +20,7 @@ const POINTS: usize = 4;
 
 /// What becomes of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Reduction {
+pub enum Reduction {
     /// Its sides are halved so many times, along u and along v.
     Halved([usize; 2]),
     /// A factor stands for it.
@@ -29,7 +29,7 @@ pub(crate) enum Reduction {
 
 /// A map of a level; materials share it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct LevelMap {
+pub struct LevelMap {
     /// Index of its image.
     pub image: usize,
     /// What it is read as.
@@ -39,7 +39,7 @@ pub(crate) struct LevelMap {
 }
 
 /// The maps of a level that may be reduced, with both of their sides.
-pub(crate) fn level_maps(model: &Model) -> Vec<LevelMap> {
+pub fn level_maps(model: &Model) -> Vec<LevelMap> {
     let mut maps = oblong_level_maps(model);
     let is_even = |reduction: &Reduction| !matches!(reduction, Reduction::Halved([u, v]) if u != v);
     maps.iter_mut().for_each(|map| map.reductions.retain(is_even));
@@ -47,7 +47,7 @@ pub(crate) fn level_maps(model: &Model) -> Vec<LevelMap> {
 }
 
 /// The maps of a level that may be reduced, one side once more than the other one, too.
-pub(crate) fn oblong_level_maps(model: &Model) -> Vec<LevelMap> {
+pub fn oblong_level_maps(model: &Model) -> Vec<LevelMap> {
     let mut maps: Vec<LevelMap> = Vec::new();
     let Some(material) = model.materials.first() else { return maps };
     let is_opaque = model.materials.iter().all(|material| material.alpha_mode == AlphaMode::Opaque);
@@ -70,7 +70,7 @@ pub(crate) fn oblong_level_maps(model: &Model) -> Vec<LevelMap> {
 }
 
 /// Images that extensions alone bring along, and whether they are colours in sRGB; each once.
-pub(crate) fn images_of_extensions(model: &Model) -> Vec<(usize, bool)> {
+pub fn images_of_extensions(model: &Model) -> Vec<(usize, bool)> {
     let others: Vec<usize> = level_maps(model).iter().map(|map| map.image).collect();
     let mut images: Vec<(usize, bool)> = Vec::new();
     for (slot, is_color) in model.materials.iter().flat_map(|material| material.extensions.textures()) {
@@ -85,7 +85,7 @@ pub(crate) fn images_of_extensions(model: &Model) -> Vec<(usize, bool)> {
 }
 
 /// The level with those images halved so many times along u and along v.
-pub(crate) fn with_halved_extensions(mut model: Model, halvings: [usize; 2]) -> Model {
+pub fn with_halved_extensions(mut model: Model, halvings: [usize; 2]) -> Model {
     for (image, is_color) in images_of_extensions(&model) {
         let own = &model.images[image];
         let [u, v] = halvings;
@@ -97,7 +97,7 @@ pub(crate) fn with_halved_extensions(mut model: Model, halvings: [usize; 2]) -> 
 }
 
 /// Texels along a side of a reduced map; 0 for a factor.
-pub(crate) fn size_of(model: &Model, map: &LevelMap, reduction: Reduction) -> usize {
+pub fn size_of(model: &Model, map: &LevelMap, reduction: Reduction) -> usize {
     match reduction {
         Reduction::Factor => 0,
         Reduction::Halved([times, _]) => (model.images[map.image].width >> times).max(1),
@@ -105,7 +105,7 @@ pub(crate) fn size_of(model: &Model, map: &LevelMap, reduction: Reduction) -> us
 }
 
 /// The level with its maps reduced, one reduction for each of `maps`; images that nothing uses any more are gone.
-pub(crate) fn with_reductions(model: &Model, maps: &[LevelMap], reductions: &[Reduction]) -> Model {
+pub fn with_reductions(model: &Model, maps: &[LevelMap], reductions: &[Reduction]) -> Model {
     let mut out = Model { images: Vec::new(), ..model.clone() };
     let mut images: Vec<Option<Image>> = model.images.iter().cloned().map(Some).collect();
     for (map, reduction) in maps.iter().zip(reductions) {

@@ -11,15 +11,14 @@
 //! Contract: vertices, normals and tangents stay. Where a model has no tangents none are made up, so that each viewer makes up
 //! the same for the level as for the model. Texels of a texture that keeps its scale are the same numbers, but for the factors.
 
-use crate::look::Look;
 use parbake_atlas::blocks::{Block, Blocks, Source, blocks};
 use parbake_image::material_maps::{factors, texture_slot, transmits};
 use parbake_image::quantise::{from_image, to_image};
 use parbake_image::window::window;
+use parbake_image::written_maps::add_maps;
 use parbake_image::{FloatImage, MapKind};
 use parbake_model::glam::{DVec2, Vec2, Vec4};
 use parbake_model::{AlphaMode, Image, Material, MaterialExtensions, Model, TextureSlot, Wrap};
-use parbake_views::extension_maps::ExtensionMaps;
 use parbake_views::extension_values::Group;
 use parbake_views::joint_extensions::{agree, joint_extensions};
 use std::collections::BTreeMap;
@@ -31,12 +30,7 @@ const DENSITY: f64 = 4.0;
 /// `side` is how many pixels along a line its whole surface covers, laid flat. Where its triangles have one material, the model
 /// as it is. None where textures cannot be moved (parallax maps, several mappings in one material, vertices that
 /// materials share) or where too many materials would stay.
-pub(crate) fn with_common_maps(
-    model: &Model,
-    side: f64,
-    most_side: usize,
-    most_texels: usize,
-) -> Option<Model> {
+pub fn with_common_maps(model: &Model, side: f64, most_side: usize, most_texels: usize) -> Option<Model> {
     let used = used_materials(model);
     if used.iter().any(|&index| model.materials.get(index).is_none_or(|own| own.parallax.is_some())) {
         return None;
@@ -52,14 +46,9 @@ pub(crate) fn with_common_maps(
     let laid_out = blocks(&sources, &uvs, most_side, most_texels, aspect)?;
     let merge = Merge { model, used: &used, laid_out: &laid_out };
     let (maps, strength) = merge.maps();
-    let look = Look {
-        kinds: Vec::new(),
-        extensions: ExtensionMaps::default(),
-        emissive_strength: strength,
-        is_unlit: used.iter().all(|&index| model.materials[index].unlit),
-    };
+    let is_unlit = used.iter().all(|&index| model.materials[index].unlit);
     let (mut material, mut images) = (Material::default(), Vec::new());
-    look.add_maps(&mut material, &mut images, maps);
+    add_maps(&mut material, &mut images, maps, strength, is_unlit);
     let mut out = Model { images, materials: Vec::new(), ..model.clone() };
     for members in &groups {
         let first = &model.materials[members[0]];

@@ -1,0 +1,17 @@
+//! What a level of detail needs beside triangles and bakes.
+//!
+//! ```text
+//! merged: the materials of a model on one common set of maps ─ maps: which may lose texels, or become factors
+//! search: with which triangles, texels and maps a file is smallest at a PSNR
+//! viewed: a model as viewers show it ─┬ see_through: glass
+//!                                     └ face_frames: tangents that a file lacks
+//! ```
+//!
+//! Nothing here bakes, renders or reads files: who calls it does.
+
+mod face_frames;
+pub mod maps;
+pub mod merged;
+pub mod search;
+mod see_through;
+pub mod viewed;
