@@ -37,7 +37,7 @@ pub fn with_unlit_as_emission(model: &Model) -> (Cow<'_, [Material]>, Option<Str
         true => "emission",
         false => "lit, since its vertex colours cannot become emission",
     };
-    let told = format!("unlit beside lit materials: {}{more} becomes {becomes}", names.join(", "));
+    let told = format!("what is unlit beside lit materials becomes {becomes}: {}{more}", names.join(", "));
     if !can_glow {
         return (Cow::Borrowed(&model.materials), Some(told));
     }
@@ -102,7 +102,7 @@ mod tests {
         assert_eq!(materials[0].extensions.specular.map(|s| s.factor), Some(0.0));
         assert_eq!(materials[1], model.materials[1]);
         assert!(was_unlit(&materials[0]) && !was_unlit(&materials[1]));
-        assert!(told.is_some_and(|text| text.contains("\"screen\" becomes emission")));
+        assert!(told.is_some_and(|text| text.ends_with("becomes emission: \"screen\"")));
     }
 
     /// Protects models that are all of one kind, of which nothing is to be told, and vertex colours.
