@@ -12,8 +12,8 @@ use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;
 use parbake::{
-    BakeReport, Detail, Message, Stage, StageTime, Watcher, Work, check_budget, compress, has_colour_alone,
-    with_normal_y, with_threads,
+    BakeReport, Detail, Message, Stage, StageTime, UvMode, Watcher, Work, check_budget, compress,
+    has_colour_alone, with_normal_y, with_threads,
 };
 use std::path::Path;
 
@@ -35,10 +35,10 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
         if command.strict {
             check_textures(&loaded.warnings)?;
         }
-        if has_colour_alone(&loaded.model, &options) {
+        if options.uv != UvMode::Keep && has_colour_alone(&loaded.model, &options) {
             for name in rules::typed_of_views(given) {
                 let text = format!(
-                    "{name} acts on models with a normal map, or more to their materials than colour; here it does nothing"
+                    "{name} acts only on models with a normal map, or more to their materials than colour"
                 );
                 console.message(Message::Warning(text));
             }

@@ -49,7 +49,9 @@ fn typed_name(name: &str) -> String {
 
 /// Those of [`WITH_NORMAL_MAPS`] that were typed, as they were typed.
 pub fn typed_of_views(given: &ArgMatches) -> impl Iterator<Item = String> + '_ {
-    WITH_NORMAL_MAPS.iter().filter(|name| is_typed(given, name)).map(|name| typed_name(name))
+    // The convention says how colours are compared, whatever else there is.
+    let of_views = WITH_NORMAL_MAPS.iter().filter(|name| **name != "convention");
+    of_views.filter(|name| is_typed(given, name)).map(|name| typed_name(name))
 }
 
 /// Checks the options of `bake`, `demo` or `compress`; `file` is the options file, if there was one.

@@ -66,11 +66,9 @@ pub(crate) fn lost(materials: &[Material]) -> Vec<String> {
 pub(crate) fn not_judged<'a>(materials: impl IntoIterator<Item = &'a Material> + Clone) -> Option<String> {
     let has = |&&(_, _, has): &&Loss| materials.clone().into_iter().any(|material| has(&material.extensions));
     let names: Vec<&str> = LOSSES.iter().filter(has).map(|(name, ..)| *name).collect();
-    let verb = if names.len() == 1 { "is" } else { "are" };
     (!names.is_empty()).then(|| {
         format!(
-            "{} {verb} not shown by the renderer that pictures and figures come from, so they do not judge it; see it \
-             with `parbake view`",
+            "pictures and figures do not include {}, which Parbake's renderer does not show; `parbake view` does",
             names.join(", ")
         )
     })
@@ -102,6 +100,6 @@ mod tests {
         assert_eq!(not_judged([&glass]), None);
         glass.extensions.transmission = Some(Transmission { factor: 1.0, ..Transmission::default() });
         let told = not_judged([&Material::default(), &glass]);
-        assert!(told.is_some_and(|text| text.starts_with("KHR_materials_transmission is not shown")));
+        assert!(told.is_some_and(|text| text.contains("do not include KHR_materials_transmission,")));
     }
 }

@@ -23,6 +23,7 @@ use parbake_progress::Watcher;
 use parbake_render::interpretation::Interpretation;
 use parbake_render::scene::Scene;
 use parbake_render::shade::{Brdf, Lambert};
+use std::borrow::Cow;
 use std::sync::{Arc, Mutex};
 
 /// The BRDF under a headlight. Reference views are rendered with it; vertices, parallax maps and, where whole
@@ -118,14 +119,18 @@ impl HighPoly {
     pub fn new(model: &Model, conventions: Conventions) -> Result<Self, PrepareError> {
         let frame = common_frame(model)?;
         let mesh = placed(model, &frame);
-        let (materials, unlit) = with_unlit_as_emission(model);
+        let is_whole_material =
+            conventions.whole_material.unwrap_or_else(|| conventions.srgb() && needs_whole_material(model));
+        // A headlight on matte surfaces lights all materials, here and where bakes are judged.
+        let (materials, unlit) = match is_whole_material {
+            true => with_unlit_as_emission(model),
+            false => (Cow::Borrowed(&model.materials[..]), None),
+        };
         let (mut scene, surface) = rayon::join(
             || Scene::new(mesh.clone(), &materials, &model.images, conventions.interpretation),
             || HighSurface::new(&mesh),
         );
         let (name, triangles) = (model.name.clone(), model.mesh.triangles.len());
-        let is_whole_material =
-            conventions.whole_material.unwrap_or_else(|| conventions.srgb() && needs_whole_material(model));
         let images = if is_whole_material { &model.images[..] } else { &[] };
         let extensions = ExtensionSource::new(&materials, images);
         if is_whole_material {

@@ -47,16 +47,18 @@ pub fn with_unlit_as_emission(model: &Model) -> (Cow<'_, [Material]>, Option<Str
 
 /// Whether this material was unlit before [`with_unlit_as_emission`].
 pub fn was_unlit(material: &Material) -> bool {
-    let is_without_reflections = material.extensions.specular.is_some_and(|specular| specular.factor == 0.0);
-    is_without_reflections && material.base_color[..3] == [0.0; 3]
+    material.extensions == without_reflections() && material.base_color[..3] == [0.0; 3]
+}
+
+fn without_reflections() -> MaterialExtensions {
+    MaterialExtensions {
+        specular: Some(Specular { factor: 0.0, ..Specular::default() }),
+        ..MaterialExtensions::default()
+    }
 }
 
 fn as_emission(unlit: &Material) -> Material {
     let [red, green, blue, opacity] = unlit.base_color;
-    let extensions = MaterialExtensions {
-        specular: Some(Specular { factor: 0.0, ..Specular::default() }),
-        ..MaterialExtensions::default()
-    };
     Material {
         name: unlit.name.clone(),
         base_color: [0.0, 0.0, 0.0, opacity],
@@ -70,7 +72,7 @@ fn as_emission(unlit: &Material) -> Material {
         alpha_mode: unlit.alpha_mode,
         alpha_cutoff: unlit.alpha_cutoff,
         double_sided: unlit.double_sided,
-        extensions,
+        extensions: without_reflections(),
         ..Material::default()
     }
 }

@@ -38,7 +38,7 @@ pub(super) struct Place {
 
 impl Board {
     pub fn new(size: usize) -> Self {
-        // One more than there are cells, so that shifted words need no check.
+        // A spare word at the end, so that `first_free` reads the next word without a check.
         let words = size / 64 + 2;
         let levels = vec![vec![0; words * size]; size.max(1).ilog2() as usize + 1];
         Self { size, words, levels, longest_free: vec![size; size] }
