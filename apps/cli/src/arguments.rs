@@ -1,6 +1,6 @@
 //! What can be typed.
 
-use crate::rules::{NOT_IN_COMPRESS, WITH_NORMAL_MAPS};
+use crate::rules::{NOT_IN_COMPRESS, WITH_MORE_THAN_COLOUR};
 use clap::{Args, Command as Clap, CommandFactory, Parser, Subcommand, ValueEnum};
 use parbake::lod::layout::Layout;
 use parbake::{
@@ -78,7 +78,7 @@ pub fn command() -> Clap {
                 argument.hide(true)
             } else if name == "more_triangles" {
                 argument.hide(false)
-            } else if WITH_NORMAL_MAPS.contains(&name.as_str()) {
+            } else if WITH_MORE_THAN_COLOUR.contains(&name.as_str()) {
                 argument.help_heading(MORE_THAN_COLOUR)
             } else {
                 argument

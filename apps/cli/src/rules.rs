@@ -15,7 +15,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Options of a bake that do nothing where a model's own texture is replaced: the surface stays.
-pub const NOT_IN_COMPRESS: [&str; 14] = [
+pub const NOT_IN_COMPRESS: [&str; 15] = [
     "shape",
     "silhouette_background",
     "silhouette",
@@ -27,14 +27,15 @@ pub const NOT_IN_COMPRESS: [&str; 14] = [
     "cutout_size",
     "fallback_size",
     "max_distance",
+    "keep_sides",
     "importance",
     "importance_attribute",
     "keep_parts",
 ];
 
-/// Options that act in `compress` only on models with a normal map or with more to their materials than
-/// colour, which are baked as a pair is.
-pub const WITH_NORMAL_MAPS: [&str; 7] =
+/// Options that act in `compress` only on models with more to their materials than colour, which are baked as a pair
+/// is; colour alone is fitted without views.
+pub const WITH_MORE_THAN_COLOUR: [&str; 7] =
     ["views", "view_size", "rounds", "convention", "keep_normals", "normal_y", "seed"];
 
 /// Whether an argument was typed; false for one that the command does not have.
@@ -47,10 +48,10 @@ fn typed_name(name: &str) -> String {
     format!("--{}", name.replace('_', "-"))
 }
 
-/// Those of [`WITH_NORMAL_MAPS`] that were typed, as they were typed.
+/// Those of [`WITH_MORE_THAN_COLOUR`] that were typed, as they were typed.
 pub fn typed_of_views(given: &ArgMatches) -> impl Iterator<Item = String> + '_ {
     // The convention says how colours are compared, whatever else there is.
-    let of_views = WITH_NORMAL_MAPS.iter().filter(|name| **name != "convention");
+    let of_views = WITH_MORE_THAN_COLOUR.iter().filter(|name| **name != "convention");
     of_views.filter(|name| is_typed(given, name)).map(|name| typed_name(name))
 }
 

@@ -22,6 +22,7 @@ pub mod chart_ownership;
 pub mod cutout;
 pub mod material_problem;
 pub mod membrane;
+pub(crate) mod normal_spread;
 pub mod outliers;
 pub mod parallax;
 pub mod parallax_maps;

@@ -5,12 +5,15 @@
 //! (`material_problem.rs`), so one matrix says all that the samples say of them, and one long solve finds what
 //! many rounds of short ones would. Colours and emission are compared as sRGB, whose slope changes on the
 //! way: they take a few Gauss–Newton steps. Rounding one map to eight bits leaves the others alone, so nothing
-//! is solved again after it.
+//! is solved again after it. Roughness alone waits for another map: what the fitted normals do not show of the
+//! high-poly's makes highlights wider (`normal_spread.rs`).
 
 use crate::backend::Backend;
 use crate::material_problem::MaterialProblem;
 use crate::membrane::Membrane;
+use crate::normal_spread::widen_highlights;
 use crate::schedule::{Fitted, LossPoint, Move, Schedule, fit_maps};
+use parbake_image::quantise::from_image;
 use parbake_image::{MapKind, MapSet};
 use parbake_progress::{Portion, Watcher};
 use parbake_solve::conjugate_gradient::Effort;
@@ -70,9 +73,9 @@ impl SeparateSchedule {
 
 /// Fits all maps that the start has to what the samples saw of the high-poly's, beginning there; all are
 /// `samples.size`² texels. `srgb` tells whether files hold sRGB of colours. A watcher that stops it leaves the maps
-/// that were not reached as they are in the start.
+/// that were not reached as they are in the start. The samples' roughness is widened.
 pub fn fit_separate_maps<K: Backend>(
-    samples: &SampleSet<MaterialSample>,
+    samples: &mut SampleSet<MaterialSample>,
     atlas: &Atlas,
     start: &MapSet,
     backend: &K,
@@ -86,7 +89,13 @@ pub fn fit_separate_maps<K: Backend>(
         let problem = MaterialProblem::new(samples, atlas, [kind].into_iter());
         let share = |maps: usize| maps as f64 / kinds.len() as f64;
         let own = Portion::new(watcher, share(place)..share(place + 1));
-        fits.push(fit_maps(&problem, &start.only(kind), backend, srgb, &schedule.of(kind), &own));
+        let fitted = fit_maps(&problem, &start.only(kind), backend, srgb, &schedule.of(kind), &own);
+        if kind == MapKind::Normal && start.get(MapKind::MetallicRoughness).is_some() {
+            if let Some((_, image)) = fitted.images.iter().find(|(own, _)| *own == kind) {
+                widen_highlights(samples, &from_image(kind, image, srgb));
+            }
+        }
+        fits.push(fitted);
     }
     Fitted {
         losses: joined(&fits),
@@ -160,10 +169,10 @@ mod tests {
     #[test]
     fn each_map_is_found_and_the_losses_add_up() {
         let normal = Vec4::new(0.8, 0.0, 0.6, 0.0);
-        let (samples, atlas, start) = scene(0.25, 0.3, normal);
+        let (mut samples, atlas, start) = scene(0.25, 0.3, normal);
         let log = Log::default();
         let fitted =
-            fit_separate_maps(&samples, &atlas, &start, &Cpu, true, &SeparateSchedule::default(), &log);
+            fit_separate_maps(&mut samples, &atlas, &start, &Cpu, true, &SeparateSchedule::default(), &log);
         let texel =
             |kind| fitted.images.iter().find(|(own, _)| *own == kind).map(|(_, image)| image.pixels[27]);
         let [red, ..] = texel(MapKind::BaseColor).expect("it was fitted");

@@ -215,8 +215,10 @@ pub(crate) fn run(
     let textures = fit_views(&order, subject, references, map, &for_textures, &mut clock)?;
     let FittedTextures { fitted, views, samples, parallax, parallax_report } = textures;
     let LowPoly { written, map: texels, .. } = &prepared;
+    // A model that keeps its triangles has no holes that it had not.
+    let keeps_sides = options.keep_sides || same;
     clock.lap(Stage::Solve);
-    let (look, srgb) = (Look::new(high, &prepared, kinds), high.conventions.srgb());
+    let (look, srgb) = (Look::new(high, &prepared, kinds, keeps_sides), high.conventions.srgb());
     let mut model = look.textured(low, written, fitted.images, parallax.as_ref());
     let mut fallback = None;
     if let Some(references) = for_fallback {
@@ -237,7 +239,7 @@ pub(crate) fn run(
     let unfit = if is_whole { look.extensions.lost.clone() } else { lost(high.extensions.materials()) };
     let own = high.extensions.materials().iter().filter(|material| !was_unlit(material));
     let unjudged = not_judged(own).filter(|_| is_whole);
-    let unfit = unfit.into_iter().chain(high.unlit.clone()).chain(unjudged);
+    let unfit = unfit.into_iter().chain(high.changed.clone()).chain(unjudged);
     warnings.tell(unfit.map(|text| format!("{}: {text}", high.name)));
 
     let missed_texels = projected.missed;
@@ -247,7 +249,7 @@ pub(crate) fn run(
             drop(projected);
             let maps = project(&baseline, high).maps;
             let kinds = layer_kinds(&baseline.placed, delivered, high);
-            let look = Look::new(high, &baseline, kinds);
+            let look = Look::new(high, &baseline, kinds, keeps_sides);
             look.textured(delivered, &baseline.written, images(&maps, srgb), None)
         }
         None => look.textured(low, written, images(&projected.maps, srgb), None),

@@ -8,6 +8,7 @@ use parbake_image::MapKind;
 use parbake_image::written_maps::add_maps;
 use parbake_model::{AlphaMode, Image, Material, Mesh, Model, ParallaxMap, TextureSlot};
 use parbake_views::alpha_layers::LayerKind;
+use parbake_views::backs::sides;
 use parbake_views::extension_maps::{ExtensionMaps, LayerLook, extension_maps};
 use parbake_views::high_poly::HighPoly;
 use parbake_views::low_poly::LowPoly;
@@ -18,6 +19,8 @@ pub(crate) struct Look {
     pub kinds: Vec<LayerKind>,
     /// What the layers have of the high-poly's material extensions.
     pub extensions: ExtensionMaps,
+    /// Which of the high-poly's layers are double-sided; others are.
+    pub sides: Vec<(LayerKind, bool)>,
     /// What emission was divided by.
     pub emissive_strength: f32,
     /// Whether the high-poly shows its base colour without lights.
@@ -25,13 +28,14 @@ pub(crate) struct Look {
 }
 
 impl Look {
-    /// Of a low-poly whose triangles are in these layers.
-    pub fn new(high: &HighPoly, low: &LowPoly, kinds: Vec<LayerKind>) -> Self {
+    /// Of a low-poly whose triangles are in these layers. `keeps_sides`: no more layers are double-sided than in the
+    /// high-poly.
+    pub fn new(high: &HighPoly, low: &LowPoly, kinds: Vec<LayerKind>, keeps_sides: bool) -> Self {
         let extensions = match high.is_whole_material {
             true => extension_maps(low, &kinds, high),
             false => ExtensionMaps::default(),
         };
-        Self { extensions, ..Self::without_extensions(high, kinds) }
+        Self { extensions, sides: sides(high, keeps_sides), ..Self::without_extensions(high, kinds) }
     }
 
     /// The same without the high-poly's material extensions.
@@ -39,6 +43,7 @@ impl Look {
         Self {
             kinds,
             extensions: ExtensionMaps::default(),
+            sides: Vec::new(),
             emissive_strength: high.emissive_strength,
             is_unlit: high.is_whole_material && high.scene.is_unlit(),
         }
@@ -90,7 +95,8 @@ impl Look {
 
     /// The material of a layer; the images of extensions begin at `first`.
     fn of_layer(&self, material: &Material, kind: LayerKind, first: usize) -> Material {
-        let mut material = Material { alpha_mode: kind.mode, ..material.clone() };
+        let double_sided = self.sides.iter().find(|(own, _)| *own == kind).is_none_or(|(_, double)| *double);
+        let mut material = Material { alpha_mode: kind.mode, double_sided, ..material.clone() };
         let found: Option<&LayerLook> = self.extensions.layers.iter().find(|layer| layer.kind == kind);
         if let Some(look) = found {
             material.extensions = look.extensions.clone();
@@ -99,11 +105,6 @@ impl Look {
                 .for_each(|slot| *slot = TextureSlot { image: first + slot.image, ..TextureSlot::default() });
             if let Some(clearcoat) = material.extensions.clearcoat.as_mut().filter(|_| look.coats_normals) {
                 clearcoat.normal_texture = material.normal_texture;
-            }
-            // Of a closed surface a back is a hole of the low-poly; what is seen through, and open sheets, have
-            // the backs that they had.
-            if kind.transmits || kind.mode == AlphaMode::Blend || look.shows_backs {
-                material.double_sided = look.double_sided;
             }
         }
         let alpha = match kind.mode {
@@ -158,7 +159,7 @@ mod tests {
     fn whole(modes: Vec<AlphaMode>) -> Look {
         let kinds = modes.into_iter().map(|mode| LayerKind { mode, transmits: false }).collect();
         let extensions = ExtensionMaps::default();
-        Look { kinds, extensions, emissive_strength: 3.0, is_unlit: false }
+        Look { kinds, extensions, sides: Vec::new(), emissive_strength: 3.0, is_unlit: false }
     }
 
     fn image(pixels: [[u8; 4]; 2]) -> Image {

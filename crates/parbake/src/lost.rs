@@ -2,9 +2,7 @@
 //! comparison by Parbake's own renderer shows.
 
 use parbake_model::{Material, MaterialExtensions, Specular};
-
-/// Materials that a warning names; the others are counted.
-const MOST_NAMES: usize = 5;
+use parbake_views::named::named;
 
 /// An extension, what is lost without it, and whether a material has it with an effect.
 type Loss = (&'static str, &'static str, fn(&MaterialExtensions) -> bool);
@@ -45,19 +43,12 @@ const LOSSES: [Loss; 10] = [
 /// What is lost, an extension at a time: models have many materials.
 pub(crate) fn lost(materials: &[Material]) -> Vec<String> {
     let of = |&(name, lost, has): &Loss| {
-        let having: Vec<&Material> = materials.iter().filter(|m| has(&m.extensions)).collect();
-        let names: Vec<String> = having.iter().take(MOST_NAMES).map(|m| format!("{:?}", m.name)).collect();
-        let more = match having.len() - names.len() {
-            0 => String::new(),
-            n => format!(" and {n} more"),
-        };
-        let noun = if having.len() == 1 { "material" } else { "materials" };
-        (!having.is_empty()).then(|| {
-            format!(
-                "{name} is not written with this --shading: {noun} {}{more} lose {lost}",
-                names.join(", ")
-            )
-        })
+        let mut having = materials.iter().filter(|m| has(&m.extensions)).map(|m| m.name.as_str()).peekable();
+        having.peek()?;
+        Some(format!(
+            "{name} is not written with --shading lambert or --convention paper, which loses {lost}: {}",
+            named(having)
+        ))
     };
     LOSSES.iter().filter_map(of).collect()
 }

@@ -310,6 +310,11 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, help_heading = heading::ADVANCED))]
     pub keep_normals: bool,
 
+    /// Write materials double-sided only where the high-poly's are; else closed surfaces are, so that small holes
+    /// of the low-poly do not show
+    #[cfg_attr(feature = "clap", arg(long, help_heading = heading::ADVANCED))]
+    pub keep_sides: bool,
+
     /// Direction of the green channel of the normal map that is written
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = NormalY::Up, help_heading = heading::ADVANCED))]
     pub normal_y: NormalY,
@@ -366,6 +371,7 @@ impl Default for BakeOptions {
             shading: Shading::Auto,
             silhouette: None,
             keep_normals: false,
+            keep_sides: false,
             normal_y: NormalY::Up,
             robust_scale: None,
             max_distance: 0.05,

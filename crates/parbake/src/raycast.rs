@@ -156,7 +156,7 @@ pub fn raycast(
     clock.lap(Stage::Prepare);
 
     let cast = cast_maps(&prepared, &high, &options.cast(), watcher).ok_or(BakeError::Stopped)?;
-    let look = Look::new(&high, &prepared, kinds);
+    let look = Look::new(&high, &prepared, kinds, options.keep_sides);
     let mut maps = images(&cast.maps, high.conventions.srgb());
     if options.occlusion_texture {
         let own = cast.geometry.iter().find(|(map, _)| *map == GeometryMap::Occlusion);
@@ -179,7 +179,7 @@ pub fn raycast(
         true => look.extensions.lost.clone(),
         false => lost(high.extensions.materials()),
     };
-    let unfit = unfit.into_iter().chain(high.unlit.clone());
+    let unfit = unfit.into_iter().chain(high.changed.clone());
     warnings.tell(unfit.map(|text| format!("{}: {text}", high.name)));
     let uv = check_mesh(&prepared.written, size);
     warnings.tell(layout_warning(&low.name, &uv));

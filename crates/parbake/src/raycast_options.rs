@@ -116,6 +116,11 @@ pub struct RaycastOptions {
     #[serde(flatten)]
     pub write: WriteOptions,
 
+    /// Write materials double-sided only where the high-poly's are; else closed surfaces are, so that small holes
+    /// of the low-poly do not show
+    #[cfg_attr(feature = "clap", arg(long, help_heading = heading::ADVANCED))]
+    pub keep_sides: bool,
+
     /// Direction of the green channel of tangent-space normal maps that are written
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = NormalY::Up, help_heading = heading::ADVANCED))]
     pub normal_y: NormalY,
@@ -147,6 +152,7 @@ impl Default for RaycastOptions {
             occlusion_distance: 1.0,
             curvature_radius: 0.01,
             write: WriteOptions::default(),
+            keep_sides: false,
             normal_y: NormalY::Up,
             threads: 0,
         }

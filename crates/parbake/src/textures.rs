@@ -125,7 +125,7 @@ pub(crate) fn fit_views(
     if whole {
         drop(references);
         let (maps, parallax_report) = parallax.map(|fitted| (fitted.maps, fitted.report)).unzip();
-        let (samples, views) = sampled(maps.as_ref());
+        let (mut samples, views) = sampled(maps.as_ref());
         if samples.is_empty() {
             return Err(unseen());
         }
@@ -133,7 +133,7 @@ pub(crate) fn fit_views(
         let showing =
             Showing::new(&solving, |snapshot| seen.complete(snapshot, maps.as_ref())).only_if(is_seen);
         let schedule = plan.material_schedule();
-        let fitted = fit_separate_maps(&samples, atlas, start, backend, srgb, &schedule, &showing);
+        let fitted = fit_separate_maps(&mut samples, atlas, start, backend, srgb, &schedule, &showing);
         let (samples, parallax_report) = (samples.len(), parallax_report.flatten());
         return Ok(FittedTextures { fitted, views, samples, parallax: maps, parallax_report });
     }
@@ -161,10 +161,10 @@ pub(crate) fn fit_views(
     let showing = Showing::new(&solving, |snapshot| seen.complete(snapshot, maps.as_ref())).only_if(is_seen);
     let (mut start, mut schedule) = (start.clone(), plan.schedule);
     if schedule.normal_steps > 0 && !options.fits_normals_to_headlight() {
-        let (samples, _) = sampled(maps.as_ref());
+        let (mut samples, _) = sampled(maps.as_ref());
         let (normals, schedule_of_normals) = (start.only(MapKind::Normal), plan.material_schedule());
         let fitted =
-            fit_separate_maps(&samples, atlas, &normals, backend, srgb, &schedule_of_normals, &showing);
+            fit_separate_maps(&mut samples, atlas, &normals, backend, srgb, &schedule_of_normals, &showing);
         for (kind, image) in fitted.images {
             start.insert(kind, from_image(kind, &image, srgb));
         }

@@ -1,10 +1,14 @@
-//! Whether views of the high-poly look at the backs of its triangles: open sheets show them, closed surfaces do
-//! not. What is closed may be shown from both sides, so that small holes of a low-poly do not show; an open
-//! sheet whose material is single-sided must not be, since viewers see through it from behind.
+//! Which materials of a low-poly show the backs of their triangles.
+//!
+//! Open sheets show them, closed surfaces do not. What is closed may be shown from both sides, so that small holes of a
+//! low-poly do not show; an open sheet whose material is single-sided must not be, since viewers see through it from
+//! behind. Engines draw single-sided materials faster.
 
-use crate::alpha_layers::{LayerKind, high_kind};
+use crate::alpha_layers::{LayerKind, high_kind, high_layers};
 use crate::high_poly::{HighPoly, ViewSet};
+use crate::layer_factors::Shares;
 use crate::reference::Sampling;
+use parbake_model::AlphaMode;
 use parbake_render::on_screen::Raster;
 use parbake_render::raster::{NOTHING, Visibility};
 use rayon::prelude::*;
@@ -16,8 +20,19 @@ const SIZE: usize = 96;
 /// triangles only wind the other way.
 const SHEET: std::ops::Range<f64> = 0.1..0.9;
 
+/// The high-poly's layers, and whether each is to be double-sided. `keeps`: as most of its area in the high-poly; else
+/// a closed surface always is.
+pub fn sides(high: &HighPoly, keeps: bool) -> Vec<(LayerKind, bool)> {
+    let of = |(kind, triangles): (LayerKind, Vec<u32>)| {
+        let shows_through = kind.transmits || kind.mode == AlphaMode::Blend;
+        let is_kept = keeps || (high.is_whole_material && (shows_through || shows_backs(high, kind)));
+        (kind, !is_kept || Shares::of(&triangles, high).double_sided(high))
+    };
+    high_layers(high).into_iter().map(of).collect()
+}
+
 /// Whether a layer is an open sheet: a part of what views see of it, but not nearly all, are backs.
-pub fn shows_backs(high: &HighPoly, kind: LayerKind) -> bool {
+pub(crate) fn shows_backs(high: &HighPoly, kind: LayerKind) -> bool {
     let sampling = Sampling { size: SIZE, filter: 1.0, samples: 1 };
     let set = ViewSet { count: VIEWS, seed: 0, jitter: false, sampling };
     let mesh = high.scene.mesh();

@@ -9,7 +9,6 @@
 //! kept is said in words.
 
 use crate::alpha_layers::{AlphaLayer, LayerKind, alpha_layers};
-use crate::backs::shows_backs;
 use crate::coat_normals::coat_normals;
 use crate::extension_values::{Group, tangent_frame};
 use crate::gutter;
@@ -46,10 +45,6 @@ pub struct LayerLook {
     /// Whether the clearcoat has the normals of the surface below it, which are yet to be fitted. Else those that it
     /// has are among the extensions, if the mesh's do not do.
     pub coats_normals: bool,
-    /// Whether the materials of most of its area show their backs.
-    pub double_sided: bool,
-    /// Whether it is an open sheet, of which views see backs.
-    pub shows_backs: bool,
 }
 
 /// Less than this share of the largest value makes no difference.
@@ -65,8 +60,6 @@ pub fn extension_maps(low: &LowPoly, kinds: &[LayerKind], high: &HighPoly) -> Ex
         let mut look = LayerLook {
             kind,
             coats_normals: shares.coats_normals(high),
-            double_sided: shares.double_sided(high),
-            shows_backs: shows_backs(high, kind),
             extensions: MaterialExtensions::default(),
         };
         if !high.scene.is_unlit() {

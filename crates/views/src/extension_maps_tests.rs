@@ -1,5 +1,6 @@
 use super::*;
 use crate::alpha_layers::layer_kinds;
+use crate::backs::sides;
 use crate::high_poly::Conventions;
 use crate::pool::Rig;
 use parbake_image::display::{Curve, Display};
@@ -28,7 +29,7 @@ fn maps_of(model: &Model) -> ExtensionMaps {
     maps_on(model, model)
 }
 
-fn maps_on(low: &Model, model: &Model) -> ExtensionMaps {
+fn high_of(model: &Model) -> HighPoly {
     let conventions = Conventions {
         interpretation: Interpretation::default(),
         display: Display { gain: 1.0, curve: Curve::Srgb },
@@ -36,7 +37,11 @@ fn maps_on(low: &Model, model: &Model) -> ExtensionMaps {
         rig: Rig { radius: 3.5, projection: Projection::Perspective(0.4) },
         max_distance: 0.1,
     };
-    let high = HighPoly::new(model, conventions).expect("it has an extent");
+    HighPoly::new(model, conventions).expect("it has an extent")
+}
+
+fn maps_on(low: &Model, model: &Model) -> ExtensionMaps {
+    let high = high_of(model);
     assert!(high.is_whole_material, "extensions ask for whole materials");
     let placed = LowPoly::new(low, &high.frame, 16).expect("it has coordinates");
     extension_maps(&placed, &layer_kinds(&placed.placed, low, &high), &high)
@@ -78,19 +83,25 @@ fn one_value_is_a_factor() {
     let expected =
         MaterialExtensions { clearcoat: Some(expected), ior: Some(1.8), ..MaterialExtensions::default() };
     assert_eq!((&layer.extensions, maps.images.len()), (&expected, 0));
-    assert!(layer.coats_normals && !layer.double_sided);
+    assert!(layer.coats_normals);
+}
+
+/// Whether the one layer of a model of single-sided materials is written double-sided.
+fn is_double_sided(model: &Model, keeps: bool) -> bool {
+    let [(_, double_sided)] = sides(&high_of(model), keeps)[..] else { panic!("one layer") };
+    double_sided
 }
 
 /// Protects open sheets from backs that they do not have, and closed surfaces from holes: views see backs of
-/// two squares, and none of the sides of a box.
+/// two squares, and none of the sides of a box. That may be written as it was, too.
 #[test]
 fn open_sheets_show_their_backs() {
     let coat = |e: &mut MaterialExtensions| e.ior = Some(1.8);
     let open = squares(vec![material(coat), material(coat)], Vec::new());
-    assert!(maps_of(&open).layers[0].shows_backs);
+    assert!(!is_double_sided(&open, false));
     let mut unlit = open.clone();
     unlit.materials.iter_mut().for_each(|m| m.unlit = true);
-    assert!(maps_of(&unlit).layers[0].shows_backs);
+    assert!(!is_double_sided(&unlit, false));
     let mut closed = open;
     let mesh = &mut closed.mesh;
     // The lower square looks down, and four walls join both.
@@ -99,7 +110,9 @@ fn open_sheets_show_their_backs() {
         mesh.triangles.extend([[a, b, b + 4], [a, b + 4, a + 4]]);
     }
     mesh.triangle_materials = vec![0; mesh.triangles.len()];
-    assert!(!maps_of(&closed).layers[0].shows_backs);
+    assert!(is_double_sided(&closed, false) && !is_double_sided(&closed, true));
+    closed.materials.iter_mut().for_each(|m| m.double_sided = true);
+    assert!(is_double_sided(&closed, true));
 }
 
 /// Protects what is seen through glass: the glass is a layer of its own, which has the volume, and the rest

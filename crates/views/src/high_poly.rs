@@ -9,6 +9,7 @@
 //! Contract: everything depends on the model and the [`Conventions`] alone, not on the low-poly.
 //! Reference views depend on their [`ViewSet`] and not on the number of threads.
 
+use crate::alpha_in_effect::with_alpha_in_effect;
 use crate::error::PrepareError;
 use crate::extension_values::ExtensionSource;
 use crate::frame::{common_frame, needs_whole_material, placed};
@@ -103,8 +104,9 @@ pub struct HighPoly {
     pub emissive_strength: f32,
     /// What its materials' extensions say.
     pub extensions: ExtensionSource,
-    /// What became of materials without lighting beside lit ones, if there are some.
-    pub unlit: Option<String>,
+    /// Sentences about materials that are not baked as the model has them: what asks for transparency and is opaque,
+    /// what is unlit beside lit ones.
+    pub changed: Vec<String>,
     /// How much each triangle counts, for texels and for triangles of a low-poly; empty where all count alike.
     pub importances: Vec<f32>,
     /// Rendered view sets that are kept; none where they are not to be.
@@ -122,9 +124,10 @@ impl HighPoly {
         let is_whole_material =
             conventions.whole_material.unwrap_or_else(|| conventions.srgb() && needs_whole_material(model));
         // A headlight on matte surfaces lights all materials, here and where bakes are judged.
+        let (materials, alpha) = with_alpha_in_effect(model);
         let (materials, unlit) = match is_whole_material {
-            true => with_unlit_as_emission(model),
-            false => (Cow::Borrowed(&model.materials[..]), None),
+            true => with_unlit_as_emission(&materials, &model.mesh),
+            false => (Cow::Borrowed(&materials[..]), None),
         };
         let (mut scene, surface) = rayon::join(
             || Scene::new(mesh.clone(), &materials, &model.images, conventions.interpretation),
@@ -150,7 +153,7 @@ impl HighPoly {
             is_whole_material,
             emissive_strength,
             extensions,
-            unlit,
+            changed: alpha.into_iter().chain(unlit).collect(),
             importances: Vec::new(),
             kept: None,
         })

@@ -9,8 +9,9 @@
 //!
 //! Everything here is made once and read by the fits of vertices, texture coordinates and maps.
 
+pub mod alpha_in_effect;
 pub mod alpha_layers;
-mod backs;
+pub mod backs;
 pub mod chart_labels;
 mod coat_normals;
 mod error;
@@ -24,6 +25,7 @@ mod layer_factors;
 pub mod low_poly;
 pub mod material_sample;
 pub mod material_sampler;
+pub mod named;
 mod packing;
 pub mod pool;
 pub mod projection;

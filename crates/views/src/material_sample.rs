@@ -71,6 +71,12 @@ impl MaterialSample {
         }
     }
 
+    /// Asks for another roughness, 0 … 1.
+    #[inline]
+    pub fn set_roughness(&mut self, roughness: f32) {
+        self.occlusion_roughness_metallic[1] = unit(roughness);
+    }
+
     /// How much its opacity counts, 0 … 1.
     #[inline]
     pub fn opacity_weight(&self) -> f32 {

@@ -139,6 +139,14 @@ impl<S> SampleSet<S> {
         self.samples.iter()
     }
 
+    /// Changes each sample by itself; where it falls on the texture stays.
+    pub fn update(&mut self, change: impl Fn(&mut S) + Sync + Send)
+    where
+        S: Send,
+    {
+        self.samples.par_iter_mut().for_each(change);
+    }
+
     /// How many bands there are.
     pub fn bands(&self) -> usize {
         self.first.len().saturating_sub(1)

@@ -7,41 +7,35 @@
 //! Contract: vertex colours multiply base colours alone, so of a mesh that has some nothing is changed; the warning
 //! tells which of both happened.
 
-use parbake_model::{AlphaMode, Material, MaterialExtensions, Model, Specular};
+use crate::named::named;
+use parbake_model::{AlphaMode, Material, MaterialExtensions, Mesh, Specular};
 use std::borrow::Cow;
-use std::collections::BTreeSet;
 
-/// Materials that a warning names; the others are counted.
-const MOST_NAMES: usize = 5;
-
-/// The materials of a model as a bake shows them, and a warning where that is not as the model has them.
-pub fn with_unlit_as_emission(model: &Model) -> (Cow<'_, [Material]>, Option<String>) {
-    let mut is_used = vec![false; model.materials.len()];
-    for &material in &model.mesh.triangle_materials {
+/// The materials of a mesh as a bake shows them, and a warning where that is not as the model has them.
+pub fn with_unlit_as_emission<'a>(
+    materials: &'a [Material],
+    mesh: &Mesh,
+) -> (Cow<'a, [Material]>, Option<String>) {
+    let mut is_used = vec![false; materials.len()];
+    for &material in &mesh.triangle_materials {
         is_used[material as usize] = true;
     }
-    let used = || model.materials.iter().zip(&is_used).filter(|(_, is_used)| **is_used).map(|(own, _)| own);
+    let used = || materials.iter().zip(&is_used).filter(|(_, is_used)| **is_used).map(|(own, _)| own);
     let unlit: Vec<&Material> = used().filter(|material| material.unlit).collect();
     if unlit.is_empty() || unlit.len() == used().count() {
-        return (Cow::Borrowed(&model.materials), None);
+        return (Cow::Borrowed(materials), None);
     }
-    let can_glow = model.mesh.colors.is_empty();
-    // Primitives of one material may have a copy each.
-    let all: BTreeSet<&str> = unlit.iter().map(|material| material.name.as_str()).collect();
-    let names: Vec<String> = all.iter().take(MOST_NAMES).map(|name| format!("{name:?}")).collect();
-    let more = match all.len() - names.len() {
-        0 => String::new(),
-        n => format!(" and {n} more"),
-    };
+    let can_glow = mesh.colors.is_empty();
+    let names = named(unlit.iter().map(|material| material.name.as_str()));
     let becomes = match can_glow {
         true => "emission",
         false => "lit, since its vertex colours cannot become emission",
     };
-    let told = format!("what is unlit beside lit materials becomes {becomes}: {}{more}", names.join(", "));
+    let told = format!("what is unlit beside lit materials becomes {becomes}: {names}");
     if !can_glow {
-        return (Cow::Borrowed(&model.materials), Some(told));
+        return (Cow::Borrowed(materials), Some(told));
     }
-    let glowing = model.materials.iter().map(|own| if own.unlit { as_emission(own) } else { own.clone() });
+    let glowing = materials.iter().map(|own| if own.unlit { as_emission(own) } else { own.clone() });
     (Cow::Owned(glowing.collect()), Some(told))
 }
 
@@ -81,7 +75,7 @@ fn as_emission(unlit: &Material) -> Material {
 mod tests {
     use super::*;
     use glam::Vec4;
-    use parbake_model::Mesh;
+    use parbake_model::Model;
 
     fn screen_and_case() -> Model {
         let screen = Material {
@@ -98,7 +92,7 @@ mod tests {
     #[test]
     fn what_is_unlit_beside_lit_glows() {
         let model = screen_and_case();
-        let (materials, told) = with_unlit_as_emission(&model);
+        let (materials, told) = with_unlit_as_emission(&model.materials, &model.mesh);
         assert_eq!((materials[0].emissive, materials[0].unlit), ([0.2, 0.4, 0.6], false));
         assert_eq!(materials[0].base_color, [0.0, 0.0, 0.0, 1.0]);
         assert_eq!(materials[0].extensions.specular.map(|s| s.factor), Some(0.0));
@@ -112,10 +106,13 @@ mod tests {
     fn one_kind_alone_stays() {
         let mut model = screen_and_case();
         model.mesh.triangle_materials = vec![0, 0];
-        assert_eq!(with_unlit_as_emission(&model), (Cow::Borrowed(&model.materials[..]), None));
+        assert_eq!(
+            with_unlit_as_emission(&model.materials, &model.mesh),
+            (Cow::Borrowed(&model.materials[..]), None)
+        );
         model.mesh.triangle_materials = vec![0, 1];
         model.mesh.colors = vec![Vec4::ONE];
-        let (materials, told) = with_unlit_as_emission(&model);
+        let (materials, told) = with_unlit_as_emission(&model.materials, &model.mesh);
         assert!(materials[0].unlit && told.is_some_and(|text| text.contains("becomes lit")));
     }
 }

@@ -40,7 +40,9 @@ use options::LodOptions;
 pub use parbake_levels::search;
 use parbake_levels::viewed::as_viewers_do;
 use parbake_model::Model;
-use parbake_progress::Watcher;
+use parbake_progress::{Message, Watcher};
+use parbake_views::alpha_in_effect::with_alpha_in_effect;
+use std::borrow::Cow;
 use std::time::Instant;
 use switch::Subject;
 use written::as_written;
@@ -61,7 +63,8 @@ pub fn make_levels<E: From<BakeError>>(
     options.check()?;
     let start = Instant::now();
     let kept = with_kept_parts(model, &options.keep_parts)?;
-    let model = &*with_parted_materials(&kept);
+    let parted = with_parted_materials(&kept);
+    let model = &*with_settled_alpha(&parted, watcher);
     let maker = Maker::new(model, options)?;
     let sizes = (0..options.screen_size.len())
         .map(|level| (maker.wanted[level], maker.texture_size(model, options.screen_size[level])));
@@ -114,4 +117,12 @@ pub fn make_levels<E: From<BakeError>>(
         on_level(Level { baked, write, report })?;
     }
     Ok(count)
+}
+
+/// The model with the alpha modes that have an effect; levels that keep its materials have them, too.
+fn with_settled_alpha<'a>(model: &'a Model, watcher: &dyn Watcher) -> Cow<'a, Model> {
+    let (materials, told) = with_alpha_in_effect(model);
+    let Some(told) = told else { return Cow::Borrowed(model) };
+    watcher.message(Message::Warning(format!("{}: {told}", model.name)));
+    Cow::Owned(Model { materials: materials.into_owned(), ..model.clone() })
 }

@@ -83,6 +83,11 @@ pub struct LodOptions {
     #[serde(flatten)]
     pub write: WriteOptions,
 
+    /// Write materials double-sided only where the high-poly's are; else closed surfaces are, so that small holes
+    /// of the low-poly do not show
+    #[cfg_attr(feature = "clap", arg(long, help_heading = heading::ADVANCED))]
+    pub keep_sides: bool,
+
     /// Direction of the green channel of the normal maps that are written
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = NormalY::Up, help_heading = heading::ADVANCED))]
     pub normal_y: NormalY,
@@ -119,6 +124,7 @@ impl Default for LodOptions {
             importance_attribute: None,
             time_budget: None,
             write: WriteOptions::default(),
+            keep_sides: false,
             normal_y: NormalY::Up,
             seed: 0,
             threads: 0,
@@ -189,6 +195,7 @@ impl LodOptions {
             shading: self.shading,
             importance: self.importance.clone(),
             importance_attribute: self.importance_attribute.clone(),
+            keep_sides: self.keep_sides,
             normal_y: self.normal_y,
             seed: self.seed,
             threads: self.threads,
