@@ -89,9 +89,10 @@ pub fn run(command: &LodCommand, given: &ArgMatches) -> Result<Ending, Failure> 
         }
         console.finish();
         console.say(&format!(
-            "{}: {} levels, {all_file}, {DOCUMENT}; {:.1} s",
+            "{}: {} level{}, {all_file}, {DOCUMENT}; {:.1} s",
             command.output.display(),
             levels.len(),
+            if levels.len() == 1 { "" } else { "s" },
             console.seconds()
         ));
         Ok(ending(&reports, options.screen_size.len()))

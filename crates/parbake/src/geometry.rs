@@ -15,15 +15,12 @@ use crate::options::{BakeOptions, UvMode};
 use crate::snapshots::of_surface;
 use crate::work::Work;
 use parbake_model::Model;
-use parbake_progress::{Clock, Portion, ProgressScope, Showing, Stage};
+use parbake_progress::{Clock, ProgressScope, Showing, Stage};
 use parbake_render::parallax::ParallaxCoefficients;
 use parbake_shape::paper_joint_fit::paper_joint_fit;
-use parbake_shape::stage::{ShapeReport, grow_for_cutout, shape, smooth_references};
+use parbake_shape::stage::{ShapeReport, grow_for_cutout, shape};
 use parbake_uv::surface::{Source, UvStageResult, optimise_uvs, repair_uvs_with_room};
 use parbake_views::high_poly::HighPoly;
-
-/// Share of the time for vertices that pictures of the high-poly take.
-const LOOKING: f64 = 0.2;
 
 /// What moved.
 #[derive(Default)]
@@ -70,20 +67,14 @@ pub fn move_geometry(
     let shown = |snapshot| Some(of_surface(&name, high, snapshot));
     let share = scope.share(shares::SHAPE);
     let share = &Showing::new(&share, shown);
-    let (looking, moving) = (0.0..LOOKING, LOOKING..1.0);
-    let looking = Portion::new(share, looking).of_stage(Stage::Reference, Stage::Shape);
-    let mut references = shape_plan.as_ref().map(|plan| {
-        smooth_references(high, plan.views, plan.view_size, plan.samples, options.seed, &looking)
-    });
-    if let (Some(plan), Some(references)) = (&shape_plan, &references) {
-        let share = &Portion::new(share, moving);
-        geometry.shape = Some(shape(&low.name, &mut low.mesh, high, references, plan, share)?);
+    let mut seen = None;
+    if let Some(plan) = &shape_plan {
+        let (report, views) = shape(&low.name, &mut low.mesh, high, plan, share)?;
+        (geometry.shape, seen) = (Some(report), Some(views));
         clock.lap(Stage::Shape);
     }
     let growth_plan = options.growth_plan(geometry.shape.as_ref()).filter(|_| !same);
-    if growth_plan.is_none() {
-        references = None;
-    }
+    let seen = seen.filter(|_| growth_plan.is_some());
     let importances = importances_of(&low.mesh, high);
     if options.uv != UvMode::Keep {
         low.weigh_charts(&importances, &uv_options)?;
@@ -101,11 +92,11 @@ pub fn move_geometry(
     let share = &Showing::new(&share, shown);
     let mut uv_stage = optimise_uvs(low, &high.frame, &source, &uv_options, share);
     clock.lap(Stage::Uv);
-    if let (Some(plan), Some(references)) = (growth_plan, &references) {
+    if let (Some(plan), Some(seen)) = (growth_plan, &seen) {
         let share = scope.share(shares::GROWTH);
         let share = &Showing::new(&share, shown);
         let mesh = &mut uv_stage.model.mesh;
-        geometry.growth = Some(grow_for_cutout(&name, mesh, high, references, &plan, share)?);
+        geometry.growth = Some(grow_for_cutout(&name, mesh, high, seen, &plan, share)?);
         clock.lap(Stage::Shape);
     }
     if let Some(plan) = &paper_joint_plan {

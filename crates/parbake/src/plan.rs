@@ -84,15 +84,16 @@ impl BakeOptions {
         // Where triangles are many, outlines are a fraction of a pixel apart, and larger pictures
         // bring vertices closer: with some 900 triangles 0.4 dB from 160 to 256 pixels, 0.2 from 256
         // to 320. The larger the pictures, the fewer samples a pixel needs.
-        let (views, view_size, samples, texture_size, steps) = match self.preset {
-            Preset::Fast => (96, 160, 3, 128, 60),
-            Preset::Balanced => (192, 320, 2, 256, 200),
-            Preset::Best => (384, 384, 2, 256, 400),
+        let (views, view_size, largest_size, samples, texture_size, steps) = match self.preset {
+            Preset::Fast => (96, 160, 256, 3, 128, 60),
+            Preset::Balanced => (192, 320, 320, 2, 256, 200),
+            Preset::Best => (384, 384, 384, 2, 256, 400),
         };
         let laplacian = if self.shape == ShapeMode::Laplacian { LAPLACIAN } else { 0.0 };
         (self.method == Method::Fit && !self.hurried()).then_some(ShapePlan {
             views: self.at_most_views(views),
             view_size: self.at_most_pixels(view_size),
+            largest_size: self.at_most_pixels(largest_size),
             texture_size,
             samples,
             fit: ShapeOptions { motion, steps, laplacian, seed: self.seed, ..ShapeOptions::default() },

@@ -13,8 +13,8 @@
 //!
 //! How far vertices go depends on how far outlines are apart at first: the step, what holds a
 //! vertex near its rest position, and the discount on overhang all follow that one length. A mesh whose
-//! outlines fit already stays as it is, and so does one whose outlines did not come closer. Where
-//! outlines are more than a pixel apart, steps begin with views of half the size, which show the
+//! outlines fit already stays as it is, and so does one whose outlines did not come closer in views that it was not
+//! fitted to: those that it was fitted to would always say so. Where outlines are more than a pixel apart, steps begin with views of half the size, which show the
 //! way as well and take a third of the time.
 //!
 //! Contract: the mesh has texture coordinates and lies in the common frame; triangles stay
@@ -25,16 +25,18 @@ use crate::laplacian::Laplacian;
 use crate::moving_points::MovingPoints;
 use crate::points::{Motion, Points};
 use crate::provisional::{MovingTexture, Provisional};
+use crate::seen::{Seen, ShapeViews};
 use crate::views::{Judgement, Outline, Views};
 use crate::walls::crossings;
 use glam::{Vec3, Vec4};
+use parbake_image::FloatImage;
 use parbake_image::display::Display;
 use parbake_model::Mesh;
 use parbake_progress::{Message, Snapshot, Stage, Watcher};
 use parbake_render::background::Background;
-use parbake_render::camera::{Camera, Projection};
+use parbake_render::camera::Camera;
 use parbake_render::edges::EdgeAdjacency;
-use parbake_render::loss::{Comparison, LossValue};
+use parbake_render::loss::LossValue;
 use parbake_render::surface::{Surface, Textures};
 use parbake_solve::adam::rate_at;
 use parbake_solve::random::mixed;
@@ -73,7 +75,8 @@ pub struct ShapeOptions {
     pub reach: f32,
     /// Weight of the Laplacian term (`laplacian.rs`); 0 leaves it out.
     pub laplacian: f32,
-    /// Vertices stay where they are unless outlines differ by this share or less of what they differed before: those
+    /// Vertices stay where they are unless outlines differ by this share or less of what they differed before, in views
+    /// that they were not fitted to: those
     /// that agree hardly better are not worth another shape than the artist's. 0 to 1.
     pub worth_moving: f64,
     /// Whether a thin wall whose sides would cross (`walls.rs`) moves less where pictures are better for it: for textures that
@@ -133,7 +136,18 @@ struct Fit<'a> {
     views: Views<'a>,
 }
 
-impl Fit<'_> {
+impl<'a> Fit<'a> {
+    fn new(mesh: &'a Mesh, points: &'a Points, views: Views<'a>) -> Self {
+        let count = mesh.positions.len();
+        Self {
+            mesh,
+            edges: EdgeAdjacency::new(&mesh.positions, &mesh.triangles),
+            points,
+            frames: (vec![Vec3::Z; count], vec![Vec4::new(1.0, 0.0, 0.0, 1.0); count]),
+            views,
+        }
+    }
+
     fn look(&self, at: &[Vec3], texture: &Provisional, views: &[(usize, u64)]) -> Judgement {
         let positions = self.points.vertices(at);
         let surface = Surface {
@@ -156,8 +170,6 @@ impl Fit<'_> {
 
 /// Side in pixels of a view of half the size at least: smaller ones show no outlines.
 const LEAST_COARSE: usize = 64;
-/// Views at most whose outlines are measured before and after.
-const MEASURED: usize = 48;
 /// Share of the pictures' area in which walls may be seen inside out besides what was so before.
 const INSIDE_OUT: f64 = 2e-4;
 /// Times that points of walls inside out are put back at most: each may lay bare others.
@@ -167,31 +179,31 @@ const WIDE_GAP: f64 = 1.0;
 /// The shortest distance that is told from rounding, in pixels.
 const LEAST_GAP: f64 = 0.02;
 
-/// Fits the positions of a mesh to `references`, pictures of `size`² pixels that were
-/// rendered without jitter.
+/// How far the outlines of a mesh are apart from those of the high-poly in the mean, in the common frame.
+pub(crate) fn gap(mesh: &Mesh, seen: &Seen, display: Display) -> f32 {
+    let blank =
+        Provisional { color: FloatImage::solid(1, Vec4::ZERO), normal: FloatImage::solid(1, Vec4::Z) };
+    let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
+    let fit = Fit::new(mesh, &points, seen.views(display, &ShapeOptions::default()));
+    fit.look(&points.rest, &blank, &seen.measured()).outline.gap() as f32 * seen.pixel_width()
+}
+
+/// Fits the positions of a mesh to what was seen of the high-poly.
 pub fn fit_shape(
     mesh: &Mesh,
     start: Provisional,
-    references: &[Rendered],
-    size: usize,
+    seen: &ShapeViews,
     display: Display,
     options: &ShapeOptions,
     watcher: &dyn Watcher,
 ) -> Shaped {
     let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
     let laplacian = Laplacian::new(points.rest.len(), &points.triangles);
-    let comparison = Comparison { coverage: options.coverage, ..Comparison::default() };
-    let count = mesh.positions.len();
-    let mut fit = Fit {
-        mesh,
-        edges: EdgeAdjacency::new(&mesh.positions, &mesh.triangles),
-        points: &points,
-        frames: (vec![Vec3::Z; count], vec![Vec4::new(1.0, 0.0, 0.0, 1.0); count]),
-        views: Views { references, size, display, comparison, background: options.background },
-    };
-    let measured: Vec<(usize, u64)> = (0..references.len().min(MEASURED)).map(|i| (i, i as u64)).collect();
+    let mut fit = Fit::new(mesh, &points, seen.fitted.views(display, options));
+    let Seen { references, size } = &seen.fitted;
+    let (measured, size) = (seen.fitted.measured(), *size);
     let before = fit.look(&points.rest, &start, &measured);
-    let pixel = references.first().map_or(0.0, |r| pixel_width(&r.view.camera, size));
+    let pixel = seen.fitted.pixel_width();
     let least_gap = if pixel > 0.0 { f64::from(options.least_gap / pixel) } else { 0.0 };
     let gap_in_pixels = before.outline.gap().max(LEAST_GAP).max(least_gap);
     let discount = options.overhang_discount * (gap_in_pixels / WIDE_GAP).min(1.0) as f32;
@@ -246,8 +258,12 @@ pub fn fit_shape(
         keep_sides(&mut moving, &fit, projected, &measured);
     }
     let mut after = fit.look(moving.at(), &provisional.texture, &measured).outline;
-    let cost = |outline: &Outline| f64::from(1.0 - discount) * outline.overhang + outline.underhang;
-    if cost(&after) > options.worth_moving * cost(&before.outline) {
+    fit.views = seen.checked.views(display, options);
+    let cost = |at: &[Vec3]| {
+        let outline = fit.look(at, &provisional.texture, &seen.checked.measured()).outline;
+        f64::from(1.0 - discount) * outline.overhang + outline.underhang
+    };
+    if cost(moving.at()) > options.worth_moving * cost(&points.rest) {
         moving.reset();
         after = before.outline;
     }
@@ -303,15 +319,6 @@ fn needed_steps(gap_in_pixels: f64, options: &ShapeOptions) -> usize {
 fn scaled(mut gradient: Vec<Vec3>, by: f32) -> Vec<Vec3> {
     gradient.iter_mut().for_each(|g| *g *= by);
     gradient
-}
-
-/// Width of a pixel in the common frame, around its origin.
-fn pixel_width(camera: &Camera, size: usize) -> f32 {
-    let half = match camera.projection {
-        Projection::Perspective(half) => half * camera.eye.length(),
-        Projection::Orthographic(half) => half,
-    };
-    2.0 * half / size as f32
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 //! guard         what keeps triangles from turning over, shrinking to nothing or spiking
 //! laplacian     the smoothness term of earlier work, for comparison
 //! normals       vertex normals that turn with the faces around them
+//! seen          what the high-poly looks like from the views that vertices follow, and from others
 //! views         what rendered views say: loss, gradients
 //! moving_points points that follow them by Adam, behind the guard
 //! walls         thin walls whose sides crossed
@@ -23,6 +24,7 @@ pub mod paper;
 pub mod paper_joint_fit;
 pub mod points;
 pub mod provisional;
+pub mod seen;
 pub mod stage;
 pub mod triangle_quality;
 pub mod views;

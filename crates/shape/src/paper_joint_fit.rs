@@ -6,7 +6,8 @@
 //! Contract: as of `stage.rs`.
 
 use crate::paper::{PaperOptions, paper_fit};
-use crate::stage::{ShapeReport, move_vertices, smooth_references};
+use crate::seen::smooth_references;
+use crate::stage::{ShapeReport, move_vertices};
 use crate::views::Views;
 use parbake_model::Model;
 use parbake_progress::Watcher;

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! repaired low-poly ─┬ provisional texture (projected) ─┬ fit ─ positions, turned normals
-//! high-poly ─────────┴ small smooth views ──────────────┘
+//! high-poly ─────────┴ small smooth views (seen) ───────┘
 //! ```
 //!
 //! Contract: what is not moved keeps its position and its normal to the bit; triangles stay in their
@@ -13,6 +13,7 @@
 use crate::joint::{ShapeOptions, Shaped, fit_shape};
 use crate::normals::turned_normals;
 use crate::provisional::Provisional;
+use crate::seen::ShapeViews;
 use crate::views::Outline;
 use glam::{Mat3, Vec3, Vec4};
 use parbake_image::{FloatImage, MapKind, MapSet};
@@ -21,21 +22,21 @@ use parbake_model::{Material, Mesh, Model, Placement};
 use parbake_progress::Watcher;
 use parbake_render::interpolate::interpolate;
 use parbake_views::PrepareError;
-use parbake_views::high_poly::{HighPoly, ViewSet};
+use parbake_views::high_poly::HighPoly;
 use parbake_views::low_poly::LowPoly;
 use parbake_views::projection::project;
-use parbake_views::reference::{Reference, Sampling};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapePlan {
     /// Views that vertices are fitted to.
     pub views: usize,
-    /// Side of these views in pixels.
+    /// Side of these views in pixels, at least.
     pub view_size: usize,
+    /// Their side at most, where outlines are so close that smaller views would not show it.
+    pub largest_size: usize,
     /// Side of the provisional texture in texels.
     pub texture_size: usize,
     /// Samples along a side of each pixel of the high-poly's views.
@@ -60,8 +61,8 @@ pub struct ShapeReport {
     pub after: [f64; 2],
 }
 
-/// Moves the vertices of a low-poly to where its outlines and pictures agree with `references`
-/// ([`smooth_references`]).
+/// Moves the vertices of a low-poly to where its outlines and pictures agree with the high-poly's. Returns what it
+/// looked at, too.
 ///
 /// # Errors
 /// Where its texture coordinates are absent or have no area.
@@ -69,13 +70,14 @@ pub fn shape(
     name: &str,
     mesh: &mut Mesh,
     high: &HighPoly,
-    references: &[Reference],
     plan: &ShapePlan,
     watcher: &dyn Watcher,
-) -> Result<ShapeReport, PrepareError> {
-    let (placed, shaped) = fitted(name, mesh, high, references, plan, watcher)?;
+) -> Result<(ShapeReport, ShapeViews), PrepareError> {
+    let low = prepared(name, mesh, high, plan)?;
+    let seen = ShapeViews::new(&low.placed, high, plan, watcher);
+    let (placed, shaped) = fitted(low, high, &seen, plan, &ShapeViews::moving(watcher));
     move_vertices(mesh, &placed, &shaped.positions, &high.frame);
-    Ok(report(&shaped))
+    Ok((report(&shaped), seen))
 }
 
 /// Sets the offsets of a low-poly's vertices from which a cutout can take away what stands out: where outlines are
@@ -88,11 +90,12 @@ pub fn grow_for_cutout(
     name: &str,
     mesh: &mut Mesh,
     high: &HighPoly,
-    references: &[Reference],
+    seen: &ShapeViews,
     plan: &ShapePlan,
     watcher: &dyn Watcher,
 ) -> Result<ShapeReport, PrepareError> {
-    let (placed, shaped) = fitted(name, mesh, high, references, plan, watcher)?;
+    let low = prepared(name, mesh, high, plan)?;
+    let (placed, shaped) = fitted(low, high, seen, plan, watcher);
     let ways = shaped.positions.iter().zip(&placed.positions).map(|(after, before)| *after - *before);
     // Copies for tangents are at the end, and of what is here.
     let offsets: Vec<Vec3> = ways.take(mesh.positions.len()).map(|way| way / high.frame.scale).collect();
@@ -102,15 +105,8 @@ pub fn grow_for_cutout(
     Ok(report(&shaped))
 }
 
-/// The low-poly in the common frame, and where its vertices are to go.
-fn fitted(
-    name: &str,
-    mesh: &Mesh,
-    high: &HighPoly,
-    references: &[Reference],
-    plan: &ShapePlan,
-    watcher: &dyn Watcher,
-) -> Result<(Mesh, Shaped), PrepareError> {
+/// The low-poly in the common frame, with a small texture.
+fn prepared(name: &str, mesh: &Mesh, high: &HighPoly, plan: &ShapePlan) -> Result<LowPoly, PrepareError> {
     let model = Model {
         name: name.into(),
         mesh: mesh.clone(),
@@ -118,14 +114,24 @@ fn fitted(
         images: Vec::new(),
         ..Model::default()
     };
-    let low = LowPoly::new(&model, &high.frame, plan.texture_size)?;
+    LowPoly::new(&model, &high.frame, plan.texture_size)
+}
+
+/// The low-poly in the common frame, and where its vertices are to go.
+fn fitted(
+    low: LowPoly,
+    high: &HighPoly,
+    seen: &ShapeViews,
+    plan: &ShapePlan,
+    watcher: &dyn Watcher,
+) -> (Mesh, Shaped) {
     let start = project(&low, high);
     let LowPoly { placed, map, .. } = low;
     let start = provisional(start.maps, &placed, &map);
     let display = high.conventions.display;
     let fit = ShapeOptions { keeps_sides: high.is_whole_material, ..plan.fit };
-    let shaped = fit_shape(&placed, start, references, plan.view_size, display, &fit, watcher);
-    Ok((placed, shaped))
+    let shaped = fit_shape(&placed, start, seen, display, &fit, watcher);
+    (placed, shaped)
 }
 
 fn report(shaped: &Shaped) -> ShapeReport {
@@ -137,20 +143,6 @@ fn report(shaped: &Shaped) -> ShapeReport {
         before: outlines(&shaped.outline[0]),
         after: outlines(&shaped.outline[1]),
     }
-}
-
-/// Views of the high-poly for gradients through silhouettes: edges are told from each other by
-/// how much of a pixel they cover, so whole pixels are averaged, and none is shifted.
-pub fn smooth_references(
-    high: &HighPoly,
-    views: usize,
-    size: usize,
-    samples: usize,
-    seed: u64,
-    watcher: &dyn Watcher,
-) -> Arc<Vec<Reference>> {
-    let sampling = Sampling { size, filter: 1.0, samples };
-    high.references(&ViewSet { count: views, seed, jitter: false, sampling }, watcher)
 }
 
 /// Moves a mesh as its copy in the common frame has moved, its normals with it; vertices are split

@@ -1,15 +1,20 @@
 //! The fit of vertices on an octahedron whose high-poly is a ball: outlines come closer, the mesh stays what
 //! it was, and one that fits already does not move.
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
+use parbake_image::FloatImage;
 use parbake_image::display::{Curve, Display};
 use parbake_model::{Material, Mesh, Model};
 use parbake_render::camera::Projection;
 use parbake_render::interpretation::Interpretation;
-use parbake_shape::ShapeOptions;
 use parbake_shape::points::Motion;
-use parbake_shape::stage::{ShapePlan, ShapeReport, grow_for_cutout, shape, smooth_references};
+use parbake_shape::provisional::Provisional;
+use parbake_shape::seen::{ShapeViews, smooth_references};
+use parbake_shape::stage::{ShapePlan, ShapeReport, grow_for_cutout, shape};
+use parbake_shape::{ShapeOptions, fit_shape};
+use parbake_views::frame::{placed, scene};
 use parbake_views::high_poly::{Conventions, HighPoly};
+use parbake_views::low_poly::LowPoly;
 use parbake_views::pool::Rig;
 
 /// An octahedron whose triangles were halved along all edges so often, on the ball of this radius. Each of the
@@ -63,19 +68,27 @@ fn prepared(high: &Model) -> HighPoly {
 
 fn plan(motion: Motion) -> ShapePlan {
     let fit = ShapeOptions { motion, steps: 30, views_per_step: 6, seed: 5, ..ShapeOptions::default() };
-    ShapePlan { views: 24, view_size: 64, texture_size: 32, samples: 2, fit }
+    ShapePlan { views: 24, view_size: 64, largest_size: 64, texture_size: 32, samples: 2, fit }
 }
 
 fn fitted(high: &Model, low: &Model, motion: Motion, threads: usize) -> (Mesh, ShapeReport) {
+    let (mesh, report, _) = fitted_and_seen(high, low, motion, threads);
+    (mesh, report)
+}
+
+fn fitted_and_seen(
+    high: &Model,
+    low: &Model,
+    motion: Motion,
+    threads: usize,
+) -> (Mesh, ShapeReport, ShapeViews) {
     let (high, plan) = (prepared(high), plan(motion));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
     let mut mesh = low.mesh.clone();
-    let report = pool.install(|| {
-        let references = smooth_references(&high, plan.views, plan.view_size, plan.samples, 5, &());
-        shape("low", &mut mesh, &high, &references, &plan, &())
-            .expect("every face has its place in the texture")
+    let (report, seen) = pool.install(|| {
+        shape("low", &mut mesh, &high, &plan, &()).expect("every face has its place in the texture")
     });
-    (mesh, report)
+    (mesh, report, seen)
 }
 
 /// Protects what the stage is for: vertices of a coarse ball move out until its outlines lie about the
@@ -112,18 +125,48 @@ fn a_mesh_that_fits_stays() {
     assert_eq!(report.moved, [0.0; 2]);
 }
 
+/// Protects outlines that are close from views whose pixels do not show how close, and time where they are far apart.
+#[test]
+fn close_outlines_are_looked_at_closely() {
+    let high = prepared(&ball("high", 4, 1.0));
+    let plan = ShapePlan { largest_size: 72, ..plan(Motion::Free) };
+    let sizes = [1, 3].map(|halvings| {
+        let placed = placed(&ball("low", halvings, 1.0), &high.frame);
+        ShapeViews::new(&placed, &high, &plan, &()).fitted.size
+    });
+    assert_eq!(sizes, [64, 72]);
+}
+
+/// Protects vertices from views that they were fitted to: where others show outlines no closer, they stay.
+#[test]
+fn other_views_have_the_last_word() {
+    let (high, low) = (prepared(&ball("high", 3, 1.0)), ball("low", 1, 1.0));
+    let plan = plan(Motion::Free);
+    let mesh = LowPoly::new(&low, &high.frame, plan.texture_size).expect("it has coordinates").placed;
+    let mut seen = ShapeViews::new(&mesh, &high, &plan, &());
+    let has_moved = |seen: &ShapeViews| {
+        let texture = |value| FloatImage::solid(plan.texture_size, value);
+        let start = Provisional { color: texture(Vec4::ONE), normal: texture(Vec4::Z) };
+        fit_shape(&mesh, start, seen, high.conventions.display, &plan.fit, &()).positions != mesh.positions
+    };
+    assert!(has_moved(&seen));
+    // These show the low-poly as it is.
+    let mut same = prepared(&low);
+    same.scene = scene(&low, &high.frame, Interpretation::default());
+    seen.checked.references = smooth_references(&same, 12, plan.view_size, plan.samples, 9, &());
+    assert!(!has_moved(&seen));
+}
+
 /// Protects the surface that a cutout is taken from: beyond where the vertices are by themselves there is less of the
 /// high-poly that it does not cover; what other viewers show stays to the bit, and seams stay closed.
 #[test]
 fn what_will_be_cut_reaches_further() {
     let (high, low) = (ball("high", 3, 1.0), ball("low", 1, 1.0));
-    let (mut mesh, before) = fitted(&high, &low, Motion::Free, 2);
+    let (mut mesh, before, seen) = fitted_and_seen(&high, &low, Motion::Free, 2);
     let (high, mut plan) = (prepared(&high), plan(Motion::Free));
     plan.fit = ShapeOptions { overhang_discount: 0.9, least_gap: 2.0 * before.gap[0], ..plan.fit };
-    let references = smooth_references(&high, plan.views, plan.view_size, plan.samples, 5, &());
     let plain = mesh.clone();
-    let report =
-        grow_for_cutout("low", &mut mesh, &high, &references, &plan, &()).expect("it has coordinates");
+    let report = grow_for_cutout("low", &mut mesh, &high, &seen, &plan, &()).expect("it has coordinates");
     assert!(report.after[1] < 0.7 * report.before[1], "{:?} {:?}", report.before, report.after);
     let outwards = |(p, offset): (&Vec3, &Vec3)| offset.dot(p.normalize());
     assert!(mesh.positions.iter().zip(&mesh.parallax_offsets).map(outwards).sum::<f32>() > 0.0);
