@@ -1,6 +1,6 @@
 //! Nodes of a model that a user names.
 //!
-//! Contract: only nodes on which triangles hang, by themselves or below, can be named; a name in vain is told with the
+//! Contract: where something is asked of triangles, only nodes on which some hang, by themselves or below, can be named; a name in vain is told with the
 //! names that there are, the most similar ones first.
 
 use crate::error::BakeError;
@@ -11,15 +11,32 @@ use wildmatch::WildMatch;
 /// Names that an error shows.
 const SHOWN: usize = 8;
 
-/// Which nodes of a model a pattern names; in it `*` stands for any letters and `?` for one. `option` is what asks, as
-/// typed.
+/// Which nodes with triangles a pattern names; in it `*` stands for any letters and `?` for one. `option` is what asks,
+/// as typed.
 ///
 /// # Errors
 /// A pattern that names none.
 pub fn named_nodes(model: &Model, pattern: &str, option: &'static str) -> Result<Vec<bool>, BakeError> {
+    named_among(model, pattern, option, with_triangles)
+}
+
+/// The same among all nodes, also those without triangles: sockets and markers.
+///
+/// # Errors
+/// A pattern that names none.
+pub fn all_named_nodes(model: &Model, pattern: &str, option: &'static str) -> Result<Vec<bool>, BakeError> {
+    named_among(model, pattern, option, |hierarchy| vec![true; hierarchy.nodes.len()])
+}
+
+fn named_among(
+    model: &Model,
+    pattern: &str,
+    option: &'static str,
+    among: impl Fn(&Hierarchy) -> Vec<bool>,
+) -> Result<Vec<bool>, BakeError> {
     let none = Hierarchy::default();
     let hierarchy = model.nodes.as_ref().unwrap_or(&none);
-    let is_used = with_triangles(hierarchy);
+    let is_used = among(hierarchy);
     let wild = WildMatch::new(pattern);
     let named: Vec<bool> =
         hierarchy.nodes.iter().zip(&is_used).map(|(node, &used)| used && wild.matches(&node.name)).collect();
@@ -103,6 +120,8 @@ mod tests {
             "{message}"
         );
         assert!(named("lamp").is_err());
+        let all = all_named_nodes(&model, "l*", "keep-parts").unwrap_or_default();
+        assert_eq!(all, [false, false, false, false, true]);
         let message = named_nodes(&Model::default(), "a", "keep-parts").expect_err("no nodes").to_string();
         assert!(message.contains("only glTF"), "{message}");
     }

@@ -1,11 +1,13 @@
 //! Parts of a model that no triangle may join: what moves by itself (`parbake_mesh::rig_parts`), or nodes that stay apart
 //! (`--keep-parts`).
 //!
+//! Named nodes without triangles, sockets and markers, stay where they are.
+//!
 //! While triangles are chosen, parts are told by their materials: each material is of one part. Stages after that leave
 //! triangles in their order, so that a triangle of the result is of the part that it came from.
 
 use crate::error::BakeError;
-use crate::nodes::named_nodes;
+use crate::nodes::all_named_nodes;
 use parbake_mesh::rig_parts;
 use parbake_model::glam::DAffine3;
 use parbake_model::{Hierarchy, Material, Mesh, Model};
@@ -25,7 +27,8 @@ pub struct PartReport {
     pub triangles: usize,
 }
 
-/// The model in which all nodes that patterns name stay apart, each with what hangs below it and is not named itself.
+/// The model in which all nodes that patterns name stay apart, each with what hangs below it and is not named itself;
+/// those without triangles stay, too.
 ///
 /// # Errors
 /// A pattern that names no node; a model that moves; a node that is flat.
@@ -38,7 +41,7 @@ pub fn with_kept_parts<'m>(model: &'m Model, patterns: &[String]) -> Result<Cow<
     }
     let mut is_named: Vec<bool> = Vec::new();
     for pattern in patterns {
-        let more = named_nodes(model, pattern, "keep-parts")?;
+        let more = all_named_nodes(model, pattern, "keep-parts")?;
         is_named.resize(more.len(), false);
         is_named.iter_mut().zip(more).for_each(|(named, more)| *named |= more);
     }
@@ -51,7 +54,7 @@ pub fn with_kept_parts<'m>(model: &'m Model, patterns: &[String]) -> Result<Cow<
     }
     let owner = |&node: &u32| owners.get(node as usize).copied().unwrap_or(Hierarchy::NONE);
     let of_triangles = all.of_triangles.iter().map(owner).collect();
-    let parts = pruned(&Hierarchy { nodes: all.nodes.clone(), of_triangles });
+    let parts = pruned(&Hierarchy { nodes: all.nodes.clone(), of_triangles }, &is_named);
     let counts = parts.counts();
     let is_flat = |world: &DAffine3| !world.inverse().is_finite();
     if let Some(flat) = (0..counts.len()).find(|&node| counts[node] > 0 && is_flat(&parts.worlds()[node])) {
@@ -60,9 +63,11 @@ pub fn with_kept_parts<'m>(model: &'m Model, patterns: &[String]) -> Result<Cow<
     Ok(Cow::Owned(Model { parts: Some(parts), ..model.clone() }))
 }
 
-/// The nodes that have triangles, and those above them.
-fn pruned(hierarchy: &Hierarchy) -> Hierarchy {
-    let mut is_kept: Vec<bool> = hierarchy.counts().iter().map(|&count| count > 0).collect();
+/// The nodes that have triangles or are named, and those above them.
+fn pruned(hierarchy: &Hierarchy, is_named: &[bool]) -> Hierarchy {
+    let counts = hierarchy.counts();
+    let mut is_kept: Vec<bool> =
+        counts.iter().zip(is_named).map(|(&count, &named)| count > 0 || named).collect();
     for (index, node) in hierarchy.nodes.iter().enumerate().rev() {
         if let Some(parent) = node.parent.filter(|_| is_kept[index]) {
             is_kept[parent] = true;
@@ -246,6 +251,20 @@ mod tests {
         let told: Vec<(String, usize)> =
             part_reports(&apart).into_iter().map(|p| (p.name, p.triangles)).collect();
         assert_eq!(told, [("wheel".to_string(), 2), ("hub".into(), 1), ("lamp".into(), 1)]);
+    }
+
+    /// Protects sockets and markers, which engines look up by name: they keep their node and its place, if they are named.
+    #[test]
+    fn nodes_without_triangles_stay() {
+        let mut model = car();
+        let nodes = &mut model.nodes.as_mut().unwrap().nodes;
+        nodes.extend(
+            ["socket_hook", "socket_light"].map(|name| Node { name: name.into(), ..nodes[2].clone() }),
+        );
+        let kept = kept(&model, &["lamp", "*_hook"]).unwrap().parts.unwrap();
+        let names: Vec<&str> = kept.nodes.iter().map(|node| node.name.as_str()).collect();
+        assert_eq!(names, ["scene", "body", "lamp", "socket_hook"]);
+        assert_eq!((kept.nodes[3].parent, kept.counts()), (Some(1), vec![0, 0, 1, 0]));
     }
 
     /// Protects who asks for what cannot be: the model moves, or the node has no size.
