@@ -4,13 +4,12 @@ use crate::arguments::{DemoCommand, DemoScene};
 use crate::bake::{Pair, bake_and_write, compare, ending, tell, write_report};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
-use crate::outputs::{check_folder, check_place};
+use crate::outputs::{check_folder, check_place, make_folder};
 use crate::pictures::write_pictures;
 use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;
 use parbake::{Detail, Work, check_budget, demo_pair, wall_pair, with_threads, write_glb};
-use std::path::Path;
 
 /// File of the pictures.
 const PICTURE: &str = "demo.webp";
@@ -54,9 +53,4 @@ pub fn run(command: &DemoCommand, given: &ArgMatches) -> Result<Ending, Failure>
         console.say(&format!("look at {}", report.display()));
         Ok(ending(&baked.report))
     })?
-}
-
-fn make_folder(folder: &Path) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder)
-        .map_err(|e| Failure::Output(format!("{}: cannot make the folder: {e}", folder.display())))
 }

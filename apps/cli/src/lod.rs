@@ -4,7 +4,7 @@ use crate::arguments::LodCommand;
 use crate::bake::read_painted;
 use crate::failure::{Ending, Failure};
 use crate::lod_text::{line, target_lines};
-use crate::outputs::{check_beside, check_folder, check_not_input};
+use crate::outputs::{check_beside, check_folder, check_not_input, make_folder};
 use crate::progress::{Console, interrupted};
 use crate::rules;
 use clap::ArgMatches;
@@ -14,8 +14,6 @@ use parbake::{
     write_glb_with, write_lod_glb,
 };
 use parbake_report::lod_report;
-use std::fs::create_dir_all;
-use std::path::Path;
 
 /// The name of what tells of all levels.
 const DOCUMENT: &str = "lods.json";
@@ -28,6 +26,7 @@ pub fn run(command: &LodCommand, given: &ArgMatches) -> Result<Ending, Failure> 
     check_folder(&command.output)?;
     let name =
         command.model.file_stem().map_or_else(|| "model".into(), |stem| stem.to_string_lossy().into_owned());
+    let is_new = !command.output.exists();
     make_folder(&command.output)?;
     let all_file = command.layout.all_levels_file(&name);
     let files = (0..options.screen_size.len()).map(|level| command.layout.level_file(&name, level));
@@ -37,8 +36,12 @@ pub fn run(command: &LodCommand, given: &ArgMatches) -> Result<Ending, Failure> 
     check_beside(None, None, command.report.as_ref(), &[&command.model])?;
     let console = Console::for_levels(command.talk, options.time_budget).confined(command.reading);
     with_threads(options.threads, || {
-        let mut model =
-            read_painted(&command.model, options.importance_attribute.as_deref(), &console)?.model;
+        let read = read_painted(&command.model, options.importance_attribute.as_deref(), &console);
+        if read.is_err() && is_new {
+            // The error of the model is the one to tell; a folder that has something in it stays.
+            std::fs::remove_dir(&command.output).ok();
+        }
+        let mut model = read?.model;
         if model.name.is_empty() {
             model.name.clone_from(&name);
         }
@@ -108,13 +111,4 @@ fn ending(reports: &[LevelReport], wanted: usize) -> Ending {
         () if reports.iter().any(is_missed) => Ending::Missed,
         () => Ending::Finished,
     }
-}
-
-fn make_folder(path: &Path) -> Result<(), Failure> {
-    create_dir_all(path).map_err(|error| {
-        Failure::Output(format!(
-            "{}: the folder cannot be made ({error}); choose another one",
-            path.display()
-        ))
-    })
 }

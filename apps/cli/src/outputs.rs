@@ -21,6 +21,16 @@ pub fn check_folder(path: &Path) -> Result<(), Failure> {
     }
 }
 
+/// Makes a folder for files, and those above it.
+pub fn make_folder(path: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(path).map_err(|error| {
+        Failure::Output(format!(
+            "{}: the folder cannot be made ({error}); choose another one",
+            path.display()
+        ))
+    })
+}
+
 /// Refuses a model that cannot be written.
 pub fn check_output(path: &Path) -> Result<(), Failure> {
     check_extension(path, &["glb", "obj"], "the output")?;

@@ -132,3 +132,16 @@ fn a_bake_makes_its_low_poly() {
     let wrong = parbake(folder).args(["lod", "demo_high.glb", "--screen-size", "50,100"]).output().unwrap();
     assert!(text(&wrong.stderr).contains("descending"), "{}", text(&wrong.stderr));
 }
+
+/// Protects folders from being made for nothing: where the model is not there, neither is the output.
+#[test]
+fn a_model_that_is_missing_leaves_no_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let try_it = || parbake(folder.path()).args(["lod", "nothing.glb", "-o", "lods"]).output().unwrap();
+    let output = try_it();
+    assert!(!output.status.success() && text(&output.stderr).contains("nothing.glb"));
+    assert!(!folder.path().join("lods").exists());
+    fs::create_dir(folder.path().join("lods")).unwrap();
+    try_it();
+    assert!(folder.path().join("lods").exists(), "a folder that was there stays");
+}
