@@ -90,10 +90,10 @@ pub fn fit_separate_maps<K: Backend>(
         let share = |maps: usize| maps as f64 / kinds.len() as f64;
         let own = Portion::new(watcher, share(place)..share(place + 1));
         let fitted = fit_maps(&problem, &start.only(kind), backend, srgb, &schedule.of(kind), &own);
-        if kind == MapKind::Normal && start.get(MapKind::MetallicRoughness).is_some() {
-            if let Some((_, image)) = fitted.images.iter().find(|(own, _)| *own == kind) {
-                widen_highlights(samples, &from_image(kind, image, srgb));
-            }
+        // Roughness comes after normals.
+        let own = fitted.images.iter().find(|(own, _)| *own == MapKind::Normal);
+        if let Some((_, image)) = own.filter(|_| start.get(MapKind::MetallicRoughness).is_some()) {
+            widen_highlights(samples, &from_image(MapKind::Normal, image, srgb));
         }
         fits.push(fitted);
     }

@@ -184,7 +184,7 @@ pub(crate) fn gap(mesh: &Mesh, seen: &Seen, display: Display) -> f32 {
     let blank =
         Provisional { color: FloatImage::solid(1, Vec4::ZERO), normal: FloatImage::solid(1, Vec4::Z) };
     let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
-    let fit = Fit::new(mesh, &points, seen.views(display, &ShapeOptions::default()));
+    let fit = Fit::new(mesh, &points, seen.views(display, 0.0, Background::Black));
     fit.look(&points.rest, &blank, &seen.measured()).outline.gap() as f32 * seen.pixel_width()
 }
 
@@ -199,7 +199,9 @@ pub fn fit_shape(
 ) -> Shaped {
     let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
     let laplacian = Laplacian::new(points.rest.len(), &points.triangles);
-    let mut fit = Fit::new(mesh, &points, seen.fitted.views(display, options));
+    let [fitted, checks] =
+        [&seen.fitted, &seen.checked].map(|seen| seen.views(display, options.coverage, options.background));
+    let mut fit = Fit::new(mesh, &points, fitted);
     let Seen { references, size } = &seen.fitted;
     let (measured, size) = (seen.fitted.measured(), *size);
     let before = fit.look(&points.rest, &start, &measured);
@@ -258,7 +260,7 @@ pub fn fit_shape(
         keep_sides(&mut moving, &fit, projected, &measured);
     }
     let mut after = fit.look(moving.at(), &provisional.texture, &measured).outline;
-    fit.views = seen.checked.views(display, options);
+    fit.views = checks;
     let cost = |at: &[Vec3]| {
         let outline = fit.look(at, &provisional.texture, &seen.checked.measured()).outline;
         f64::from(1.0 - discount) * outline.overhang + outline.underhang

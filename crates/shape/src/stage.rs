@@ -10,17 +10,18 @@
 //! order, and so do their corners' texture coordinates. Vertices are split where a normal would end up on its
 //! face's back.
 
-use crate::joint::{ShapeOptions, Shaped, fit_shape};
+use crate::joint::{ShapeOptions, Shaped, fit_shape, gap};
 use crate::normals::turned_normals;
 use crate::provisional::Provisional;
-use crate::seen::ShapeViews;
+use crate::seen::{Seen, ShapeViews, smooth_references};
 use crate::views::Outline;
 use glam::{Mat3, Vec3, Vec4};
 use parbake_image::{FloatImage, MapKind, MapSet};
 use parbake_mesh::{TexelMap, face_outwards};
 use parbake_model::{Material, Mesh, Model, Placement};
-use parbake_progress::Watcher;
+use parbake_progress::{Portion, Stage, Watcher};
 use parbake_render::interpolate::interpolate;
+use parbake_solve::random::mixed;
 use parbake_views::PrepareError;
 use parbake_views::high_poly::HighPoly;
 use parbake_views::low_poly::LowPoly;
@@ -61,6 +62,15 @@ pub struct ShapeReport {
     pub after: [f64; 2],
 }
 
+/// Views that vertices are checked with.
+const CHECKED: usize = 24;
+/// Their seed differs from that of the views that vertices are fitted to.
+const OF_CHECKS: u64 = 0x5eed_c4ec;
+/// Distance between outlines, in pixels, that views show well enough to move vertices by.
+const SHOWN: f32 = 0.25;
+/// Share of the time that the pictures of the high-poly take.
+const LOOKING: f64 = 0.2;
+
 /// Moves the vertices of a low-poly to where its outlines and pictures agree with the high-poly's. Returns what it
 /// looked at, too.
 ///
@@ -74,10 +84,25 @@ pub fn shape(
     watcher: &dyn Watcher,
 ) -> Result<(ShapeReport, ShapeViews), PrepareError> {
     let low = prepared(name, mesh, high, plan)?;
-    let seen = ShapeViews::new(&low.placed, high, plan, watcher);
-    let (placed, shaped) = fitted(low, high, &seen, plan, &ShapeViews::moving(watcher));
+    let seen = shape_views(&low.placed, high, plan, watcher);
+    let (placed, shaped) = fitted(low, high, &seen, plan, &Portion::new(watcher, LOOKING..1.0));
     move_vertices(mesh, &placed, &shaped.positions, &high.frame);
     Ok((report(&shaped), seen))
+}
+
+/// What vertices of a low-poly in the common frame are fitted to. Where its outlines are close to the high-poly's already,
+/// views are larger, up to [`ShapePlan::largest_size`].
+pub fn shape_views(placed: &Mesh, high: &HighPoly, plan: &ShapePlan, watcher: &dyn Watcher) -> ShapeViews {
+    let look = |views, size, seed, share| {
+        let watcher = Portion::new(watcher, share).of_stage(Stage::Reference, Stage::Shape);
+        Seen { references: smooth_references(high, views, size, plan.samples, seed, &watcher), size }
+    };
+    let seed = plan.fit.seed;
+    let checked = look(CHECKED.min(plan.views), plan.view_size, mixed(seed ^ OF_CHECKS), 0.0..0.2 * LOOKING);
+    let apart = gap(placed, &checked, high.conventions.display) / checked.pixel_width().max(1e-9);
+    let wanted = (plan.view_size as f32 * SHOWN / apart.max(1e-3)) as usize / 2 * 2;
+    let size = wanted.clamp(plan.view_size, plan.view_size.max(plan.largest_size));
+    ShapeViews { fitted: look(plan.views, size, seed, 0.2 * LOOKING..LOOKING), checked }
 }
 
 /// Sets the offsets of a low-poly's vertices from which a cutout can take away what stands out: where outlines are

@@ -10,7 +10,7 @@ use parbake_render::interpretation::Interpretation;
 use parbake_shape::points::Motion;
 use parbake_shape::provisional::Provisional;
 use parbake_shape::seen::{ShapeViews, smooth_references};
-use parbake_shape::stage::{ShapePlan, ShapeReport, grow_for_cutout, shape};
+use parbake_shape::stage::{ShapePlan, ShapeReport, grow_for_cutout, shape, shape_views};
 use parbake_shape::{ShapeOptions, fit_shape};
 use parbake_views::frame::{placed, scene};
 use parbake_views::high_poly::{Conventions, HighPoly};
@@ -132,7 +132,7 @@ fn close_outlines_are_looked_at_closely() {
     let plan = ShapePlan { largest_size: 72, ..plan(Motion::Free) };
     let sizes = [1, 3].map(|halvings| {
         let placed = placed(&ball("low", halvings, 1.0), &high.frame);
-        ShapeViews::new(&placed, &high, &plan, &()).fitted.size
+        shape_views(&placed, &high, &plan, &()).fitted.size
     });
     assert_eq!(sizes, [64, 72]);
 }
@@ -143,7 +143,7 @@ fn other_views_have_the_last_word() {
     let (high, low) = (prepared(&ball("high", 3, 1.0)), ball("low", 1, 1.0));
     let plan = plan(Motion::Free);
     let mesh = LowPoly::new(&low, &high.frame, plan.texture_size).expect("it has coordinates").placed;
-    let mut seen = ShapeViews::new(&mesh, &high, &plan, &());
+    let mut seen = shape_views(&mesh, &high, &plan, &());
     let has_moved = |seen: &ShapeViews| {
         let texture = |value| FloatImage::solid(plan.texture_size, value);
         let start = Provisional { color: texture(Vec4::ONE), normal: texture(Vec4::Z) };
