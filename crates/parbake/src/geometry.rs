@@ -52,8 +52,9 @@ pub fn move_geometry(
     let same = work == Work::Compress;
     let mut shape_plan = options.shape_plan().filter(|_| !same);
     if let Some(plan) = shape_plan.as_mut().filter(|_| work == Work::Level) {
-        // There is no artist's shape to keep.
-        plan.fit.worth_moving = 1.0;
+        // There is no artist's shape to keep. Outlines that come hardly closer cost more inside than they gain: a barrel
+        // of 1,692 triangles at 0.97 loses 0.4 dB on grey, a controller of 1,000 at 0.94 gains 0.5.
+        plan.fit.worth_moving = 0.96;
     }
     let paper_joint_plan = options.paper_joint_plan().filter(|_| !same);
     let mut geometry = Geometry::default();

@@ -223,7 +223,8 @@ fn chosen_triangles_fit_and_are_the_same_for_any_threads() {
 #[test]
 fn what_is_behind_glass_is_kept() {
     let mesh = nested(10, 8);
-    let glass = Material { alpha_mode: AlphaMode::Blend, ..Material::default() };
+    let base_color = [1.0, 1.0, 1.0, 0.3];
+    let glass = Material { alpha_mode: AlphaMode::Blend, base_color, ..Material::default() };
     let high = prepared_of(mesh, vec![Material::default(), glass]);
     let options = ChooseOptions {
         triangles: 120,
