@@ -8,6 +8,7 @@
 //! samples ─ schedule ─ step ─ assemble ─ solve        the maps, in turns
 //!              │        └ membrane, outliers          unseen texels, robust loss
 //! material samples ─ separate_maps ┘                  maps that do not depend on each other
+//!                         └ normal_spread             roughness for what normals do within a texel
 //! layers ─ cutout                                     where the low-poly is left out
 //! view samples ─ parallax ─ view_gradient ─ texels    how coordinates shift
 //!              └ chart_ownership                      shifts stay within their chart
