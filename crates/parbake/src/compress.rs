@@ -164,7 +164,7 @@ fn plain(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<
         && kept.low.model.mesh.uvs != written.low.model.mesh.uvs
         && !watcher.stopped()
     {
-        let finished = |of: &Solved| textured(of.low.model.clone(), &of.solved);
+        let finished = |of: &Solved| own.finished(of.low.model.clone(), &of.solved);
         if let Some(lost) = kept::lost(model, &finished(kept), &finished(&written), options)? {
             written = kept.clone();
             written.low.report.repaired.extend(kept::sentences(model, lost));
@@ -177,7 +177,7 @@ fn plain(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<
     let mut report = own.report(baseline, &written, watcher);
     (report.losses, report.stages) = (losses, clock.stages);
     let finished = |of: Model, solved: &SurfaceTexture| {
-        let made = textured(of, solved);
+        let made = own.finished(of, solved);
         Model { rig: carried(model, &made.mesh), ..made }
     };
     Ok(Baked {
@@ -264,6 +264,29 @@ impl OwnSurface<'_> {
         Solved { low, solved }
     }
 
+    /// A model with its one texture; it shows backs where any of the original's materials does.
+    fn finished(&self, mut model: Model, solved: &SurfaceTexture) -> Model {
+        let size = solved.texture.width;
+        let texel = |t: &parbake_model::glam::Vec4| {
+            let [r, g, b, _] = t.to_array().map(|x| (x * 255.0).round() as u8);
+            [r, g, b, 255]
+        };
+        let pixels = solved.texture.texels.iter().map(texel).collect();
+        model.mesh.colors.clear();
+        model.mesh.uvs1.clear();
+        model.mesh.parallax_offsets.clear();
+        let slot = TextureSlot { image: 0, wrap: [Wrap::Clamp; 2], ..TextureSlot::default() };
+        let shows_backs = |&material: &u32| self.model.materials[material as usize].double_sided;
+        model.materials = vec![Material {
+            name: model.name.clone(),
+            base_color_texture: Some(slot),
+            double_sided: self.model.mesh.triangle_materials.iter().any(shows_backs),
+            ..Material::default()
+        }];
+        model.images = vec![Image { name: "base color".into(), width: size, height: size, pixels }];
+        model
+    }
+
     /// What was done, and said to the user where he should know; losses and stages are left to be told.
     fn report(&self, baseline: &Solved, written: &Solved, watcher: &ProgressScope) -> BakeReport {
         let name = &self.model.name;
@@ -306,24 +329,6 @@ impl OwnSurface<'_> {
 
 fn loss(moved: &str, solved: &SurfaceTexture) -> LossStep {
     LossStep { moved: moved.into(), seconds: 0.0, mean_square: solved.errors[0] }
-}
-
-/// The model with its one texture.
-fn textured(mut model: Model, solved: &SurfaceTexture) -> Model {
-    let size = solved.texture.width;
-    let texel = |t: &parbake_model::glam::Vec4| {
-        let [r, g, b, _] = t.to_array().map(|x| (x * 255.0).round() as u8);
-        [r, g, b, 255]
-    };
-    let pixels = solved.texture.texels.iter().map(texel).collect();
-    model.mesh.colors.clear();
-    model.mesh.uvs1.clear();
-    model.mesh.parallax_offsets.clear();
-    let slot = TextureSlot { image: 0, wrap: [Wrap::Clamp; 2], ..TextureSlot::default() };
-    model.materials =
-        vec![Material { name: model.name.clone(), base_color_texture: Some(slot), ..Material::default() }];
-    model.images = vec![Image { name: "base color".into(), width: size, height: size, pixels }];
-    model
 }
 
 #[cfg(test)]
@@ -446,6 +451,20 @@ mod tests {
         assert_eq!(baked.model.mesh.uvs, uvs);
         let slot = baked.model.materials[0].base_color_texture.expect("it has a texture");
         assert_eq!(slot.wrap, [Wrap::Repeat; 2]);
+    }
+
+    /// Protects frame rates: what is single-sided stays so, and what shows its back does.
+    #[test]
+    fn sides_are_kept() {
+        for double_sided in [false, true] {
+            let mut mesh = Mesh::default();
+            add_box(&mut mesh, 1.0, 0.1);
+            let mut model = noisy(mesh);
+            model.materials[0].double_sided = double_sided;
+            let options = BakeOptions { uv: UvMode::Repair, preset: crate::options::Preset::Fast, ..small() };
+            let baked = compress(&model, &options, &()).expect("a box can be compressed");
+            assert_eq!(baked.model.materials[0].double_sided, double_sided);
+        }
     }
 
     /// Protects models that have colours and no coordinates yet: they are unwrapped, and what lies between

@@ -19,7 +19,7 @@ pub(crate) struct Look {
     pub kinds: Vec<LayerKind>,
     /// What the layers have of the high-poly's material extensions.
     pub extensions: ExtensionMaps,
-    /// Which of the high-poly's layers are double-sided; others are.
+    /// Layers, and whether their materials are double-sided; those that are not in the list are.
     pub sides: Vec<(LayerKind, bool)>,
     /// What emission was divided by.
     pub emissive_strength: f32,
@@ -28,8 +28,8 @@ pub(crate) struct Look {
 }
 
 impl Look {
-    /// Of a low-poly whose triangles are in these layers. `keeps_sides`: no more layers are double-sided than in the
-    /// high-poly.
+    /// Of a low-poly whose triangles are in these layers. With `keeps_sides` layers are double-sided only where most of
+    /// the high-poly's is ([`sides`]).
     pub fn new(high: &HighPoly, low: &LowPoly, kinds: Vec<LayerKind>, keeps_sides: bool) -> Self {
         let extensions = match high.is_whole_material {
             true => extension_maps(low, &kinds, high),

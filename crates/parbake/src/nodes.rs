@@ -1,7 +1,7 @@
 //! Nodes of a model that a user names.
 //!
-//! Contract: where something is asked of triangles, only nodes on which some hang, by themselves or below, can be named; a name in vain is told with the
-//! names that there are, the most similar ones first.
+//! Contract: `named_nodes` looks only among nodes on which triangles hang, by themselves or below. A name in vain is told
+//! with the names that there are, the most similar ones first.
 
 use crate::error::BakeError;
 use parbake_model::{Hierarchy, Model};

@@ -284,7 +284,8 @@ pub struct BakeOptions {
     pub importance_attribute: Option<String>,
 
     /// Nodes of the high-poly that stay apart, with --triangles, each with its child nodes, as a part with its name,
-    /// pivot and material's name; all share one set of textures. NAME may hold * and ?. A list, or several times
+    /// pivot and material's name; all share one set of textures. Nodes without triangles, such as sockets, stay in
+    /// place. NAME may hold * and ?. A list, or several times
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", value_delimiter = ',', help_heading = heading::SHAPE))]
     pub keep_parts: Vec<String>,
 
@@ -310,8 +311,8 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, help_heading = heading::ADVANCED))]
     pub keep_normals: bool,
 
-    /// Write materials double-sided only where the high-poly's are; else closed surfaces are, so that small holes
-    /// of the low-poly do not show
+    /// Make materials double-sided only where the high-poly's are. By default closed surfaces are, too, so that small
+    /// holes of the low-poly do not show
     #[cfg_attr(feature = "clap", arg(long, help_heading = heading::ADVANCED))]
     pub keep_sides: bool,
 

@@ -116,8 +116,8 @@ pub struct RaycastOptions {
     #[serde(flatten)]
     pub write: WriteOptions,
 
-    /// Write materials double-sided only where the high-poly's are; else closed surfaces are, so that small holes
-    /// of the low-poly do not show
+    /// Make materials double-sided only where the high-poly's are. By default closed surfaces are, too, so that small
+    /// holes of the low-poly do not show
     #[cfg_attr(feature = "clap", arg(long, help_heading = heading::ADVANCED))]
     pub keep_sides: bool,
 

@@ -23,12 +23,12 @@ pub struct Seen {
     pub size: usize,
 }
 
-/// What vertices are fitted to, and what they are checked with.
+/// Two sets of views from different directions.
 #[derive(Clone)]
 pub struct ShapeViews {
     /// Views whose gradients vertices follow.
     pub fitted: Seen,
-    /// Others.
+    /// Views that tell whether outlines came closer.
     pub checked: Seen,
 }
 
@@ -59,7 +59,8 @@ impl Seen {
     }
 }
 
-/// Views of the high-poly for gradients through silhouettes.
+/// The high-poly from so many views of `size`² pixels, with `samples`² samples a pixel: pictures for gradients through
+/// silhouettes. `seed` chooses the directions. Fewer views where the watcher stops them.
 pub fn smooth_references(
     high: &HighPoly,
     views: usize,

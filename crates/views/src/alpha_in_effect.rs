@@ -46,7 +46,7 @@ pub fn with_alpha_in_effect(model: &Model) -> (Cow<'_, [Material]>, Option<Strin
         false => own.clone(),
     });
     let names = named(changed().map(|(material, _)| material.name.as_str()));
-    let told = format!("what asks for transparency but is opaque all over is baked as opaque: {names}");
+    let told = format!("set to blend or to cut out, but nothing shows through, so baked as opaque: {names}");
     (Cow::Owned(settled.collect()), Some(told))
 }
 

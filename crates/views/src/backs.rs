@@ -20,12 +20,15 @@ const SIZE: usize = 96;
 /// triangles only wind the other way.
 const SHEET: std::ops::Range<f64> = 0.1..0.9;
 
-/// The high-poly's layers, and whether each is to be double-sided. `keeps`: as most of its area in the high-poly; else
-/// a closed surface always is.
+/// Layers of the high-poly, and whether their materials are to be double-sided; those that are not in the list are.
+/// Open sheets and what is seen through are as most of their area in the high-poly, with `keeps` all layers are.
 pub fn sides(high: &HighPoly, keeps: bool) -> Vec<(LayerKind, bool)> {
+    if !keeps && !high.is_whole_material {
+        return Vec::new();
+    }
     let of = |(kind, triangles): (LayerKind, Vec<u32>)| {
         let shows_through = kind.transmits || kind.mode == AlphaMode::Blend;
-        let is_kept = keeps || (high.is_whole_material && (shows_through || shows_backs(high, kind)));
+        let is_kept = keeps || shows_through || shows_backs(high, kind);
         (kind, !is_kept || Shares::of(&triangles, high).double_sided(high))
     };
     high_layers(high).into_iter().map(of).collect()
