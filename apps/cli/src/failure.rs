@@ -89,3 +89,9 @@ impl From<parbake::FileError> for Failure {
         Failure::Bake(error.into())
     }
 }
+
+impl From<parbake::EvaluateError> for Failure {
+    fn from(error: parbake::EvaluateError) -> Self {
+        Failure::Bake(error.into())
+    }
+}

@@ -10,7 +10,7 @@ use crate::progress::Console;
 use image::codecs::webp::WebPEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 use parbake::{
-    BakeOptions, Baked, EvaluateOptions, Model, Parallax, ShapeMode, Studio, UvMode, bake, write_file,
+    BakeOptions, Baked, EvaluateOptions, Model, Parallax, Renderer, ShapeMode, UvMode, bake, write_file,
 };
 use parbake_model::glam::Vec3;
 use std::path::Path;
@@ -44,10 +44,11 @@ pub fn write_pictures(path: &Path, pair: &Pair, baked: &Baked, console: &Console
         convention: own.convention,
         ..EvaluateOptions::default()
     };
-    let studio = Studio::new(&pair.high, &options)?;
+    let renderer = Renderer::new(&pair.high, &options)?;
     let mut squares = Vec::new();
     let mut render = |model: &Model| {
-        squares.push(studio.develop(&studio.shot(&studio.subject(model), FROM.normalize()), BACKGROUND));
+        squares
+            .push(renderer.tonemap(&renderer.render(&renderer.place(model), FROM.normalize()), BACKGROUND));
     };
     render(&pair.high);
     for low in lows {

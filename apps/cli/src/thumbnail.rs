@@ -6,7 +6,7 @@ use crate::arguments::ThumbnailCommand;
 use crate::bake::read;
 use crate::failure::{Ending, Failure};
 use crate::progress::Console;
-use parbake::{EvaluateOptions, Picture, Studio, encode_png, write_file};
+use parbake::{EvaluateOptions, Picture, Renderer, encode_png, write_file};
 use parbake_model::glam::Vec3;
 
 /// Side of the picture in pixels.
@@ -26,8 +26,8 @@ pub fn run(command: &ThumbnailCommand) -> Result<Ending, Failure> {
     let console = Console::new(command.talk);
     let model = read(&command.model, &console)?.model;
     let options = EvaluateOptions { resolution: SIDE, fov: FIELD_OF_VIEW, ..EvaluateOptions::default() };
-    let studio = Studio::new(&model, &options)?;
-    let shown = studio.develop(&studio.shot(&studio.subject(&model), FROM.normalize()), BACKGROUND);
+    let renderer = Renderer::new(&model, &options)?;
+    let shown = renderer.tonemap(&renderer.render(&renderer.place(&model), FROM.normalize()), BACKGROUND);
     let byte = |x: f32| (255.0 * x).round() as u8;
     let pixels = shown.pixels.iter().map(|&[r, g, b]| [byte(r), byte(g), byte(b), 255]).collect();
     let picture = Picture { name: String::new(), width: SIDE, height: SIDE, pixels };

@@ -1,4 +1,4 @@
-//! The seam for a GPU: the five coarse operations in which a bake spends its time, on flat buffers of
+//! The seam for a GPU: the six coarse operations in which a bake spends its time, on flat buffers of
 //! plain elements.
 //!
 //! ```text
@@ -9,8 +9,8 @@
 //!
 //! Elements are `repr(C)`: [`Sample`](parbake_views::samples::Sample), [`MaterialSample`],
 //! [`ViewSample`], [`Row`] and `Vec4`. A kernel for each operation can
-//! stand in the place of the [`Cpu`]'s; nothing is kept between calls. Sampling of views has two functions, for
-//! views that were not rasterised before and for those that were. Functions of this crate take the
+//! stand in the place of the [`Cpu`]'s; nothing is kept between calls. Sampling of views has three functions: one that keeps each view's samples,
+//! and two that gather those of all views by texels, of views that were not rasterised before and of those that were. Functions of this crate take the
 //! implementation as an argument, so that their callers choose it.
 //!
 //! Contract: results depend on the arguments alone, not on the number of threads.
@@ -34,11 +34,14 @@ use parbake_views::material_sample::MaterialSample;
 use parbake_views::material_sampler::MaterialSampler;
 use parbake_views::reference::Reference;
 use parbake_views::samples::{SampleSet, collect_samples, shifted_samples};
-use parbake_views::view_sample::ViewSample;
+use parbake_views::view_sample::{ViewSample, sample_views};
 use parbake_views::view_sampler::ViewSampler;
 
 /// What a bake asks of the machine.
 pub trait Backend: Sync {
+    /// The samples of each view, for what reads views again and again: shifts, cutouts and their gradients.
+    fn sample_views(&self, sampler: &ViewSampler, references: &[Reference]) -> Vec<Vec<ViewSample>>;
+
     /// The samples of all views on a texture of `texture_size`² texels.
     fn view_samples(
         &self,
@@ -104,6 +107,10 @@ pub trait Backend: Sync {
 pub struct Cpu;
 
 impl Backend for Cpu {
+    fn sample_views(&self, sampler: &ViewSampler, references: &[Reference]) -> Vec<Vec<ViewSample>> {
+        sample_views(sampler, references)
+    }
+
     fn view_samples(
         &self,
         sampler: &ViewSampler,

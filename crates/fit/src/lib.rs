@@ -15,10 +15,12 @@
 //! backend                                             the coarse operations, for a GPU to replace
 //! ```
 //!
-//! `parallax_maps` is the stage of a bake that makes cutout and parallax map.
+//! `parallax_maps` is the stage of a bake that makes cutout and parallax map; `baked_materials` turns fitted maps into the
+//! low-poly's materials.
 
 pub(crate) mod assemble;
 pub mod backend;
+pub mod baked_materials;
 pub mod chart_ownership;
 pub mod cutout;
 pub mod material_problem;

@@ -35,7 +35,7 @@ use parbake_views::high_poly::HighPoly;
 use parbake_views::low_poly::LowPoly;
 use parbake_views::projection::{ProjectedMaps, project};
 use parbake_views::reference::Reference;
-use parbake_views::view_sample::{ViewSample, sample_views};
+use parbake_views::view_sample::ViewSample;
 use parbake_views::view_sampler::ViewSampler;
 use serde::{Deserialize, Serialize};
 
@@ -196,7 +196,7 @@ pub fn fit_parallax_maps<B: Brdf, K: Backend>(
         shift
     };
 
-    let views = sample_views(&sampler, references);
+    let views = backend.sample_views(&sampler, references);
     let display = DisplayTable::new(&display);
     let mut map = ParallaxCoefficients::zeros(plan.parallax.basis, plan.parallax.size);
     let mut losses = Vec::new();

@@ -12,6 +12,8 @@
 //! topology                      pieces, holes, handles, and where a surface is none
 //! exposure                      how much of a surface is seen from outside
 //! material_uvs                  texture coordinates as materials read them
+//! rig_parts, rig_transfer, rigs what moves by itself, and how a rig comes along
+//! named_nodes, parts            nodes that a user names, parts that stay apart
 //! weld, vertices, union_find    what these share
 //! demo                          the built-in pairs of models
 //! ```
@@ -30,10 +32,13 @@ pub mod deviation;
 pub mod distance;
 pub mod facing;
 pub mod material_uvs;
+pub mod named_nodes;
 pub mod normals;
+pub mod parts;
 pub mod projection;
 pub mod rig_parts;
 pub mod rig_transfer;
+pub mod rigs;
 pub mod simplify;
 pub mod simplify_in_layout;
 pub mod subdivide;

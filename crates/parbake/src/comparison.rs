@@ -7,10 +7,11 @@
 use crate::bake::Baked;
 pub use crate::comparison_figures::{BACKGROUNDS, BeforeAndAfter, Comparison, OnBackground, OnChannel};
 use crate::error::BakeError;
-use crate::evaluate::channels::Channel;
-use crate::evaluate::options::EvaluateOptions;
-use crate::evaluate::{Compared, ViewFigures, evaluate_each, mean};
 use crate::options::BakeOptions;
+use parbake_evaluate::channels::Channel;
+use parbake_evaluate::evaluate::{Compared, ComparedView, evaluate_each};
+use parbake_evaluate::figures::{ViewFigures, mean};
+use parbake_evaluate::options::EvaluateOptions;
 use parbake_model::Model;
 use parbake_progress::Watcher;
 
@@ -63,7 +64,7 @@ pub fn compare_bake(
         OnBackground { background: BACKGROUNDS[k].into(), mean: mean_of(&pairs), views: pairs }
     };
     let of_channel = |(k, &channel): (usize, &Channel)| {
-        let pair = |view: &crate::evaluate::ComparedView| BeforeAndAfter {
+        let pair = |view: &ComparedView| BeforeAndAfter {
             ray_cast: view.channels[0][k],
             baked: view.channels[1][k],
         };

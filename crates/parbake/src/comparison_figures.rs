@@ -1,9 +1,9 @@
 //! Figures of a bake and of the ray-cast bake of the same pair, as plain data; `comparison.rs` makes them.
 
-use crate::evaluate::ViewFigures;
-use crate::evaluate::channels::Channel;
-use crate::evaluate::options::EvaluateOptions;
-use crate::options::Shading;
+use parbake_evaluate::channels::Channel;
+use parbake_evaluate::conventions::Shading;
+use parbake_evaluate::figures::ViewFigures;
+use parbake_evaluate::options::EvaluateOptions;
 use serde::{Deserialize, Serialize};
 
 /// What lies behind the models, as `evaluate` knows it; the first is its default.

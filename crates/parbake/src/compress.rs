@@ -20,12 +20,11 @@ use crate::bake::{Baked, bake_onto_itself, bake_prepared_onto_itself, prepare_hi
 use crate::budget::check_budget;
 use crate::error::BakeError;
 use crate::kept;
-use crate::lost::lost;
 use crate::options::{BakeOptions, Convention, Parallax, Shading, UvMode};
 use crate::report::{BakeReport, LossStep, layout_warning};
-use crate::rigs::carried;
 use crate::work::Work;
 use parbake_atlas::{check_mesh, in_one_tile};
+use parbake_mesh::rigs::carried;
 use parbake_mesh::{HighSurface, visibilities};
 use parbake_model::glam::DVec2;
 use parbake_model::{AlphaMode, Image, Material, Mesh, Model, Placement, TextureSlot, Wrap};
@@ -37,6 +36,7 @@ use parbake_uv::surface::{
 };
 use parbake_views::PrepareError;
 use parbake_views::frame::{common_frame, placed};
+use parbake_views::lost::lost;
 use std::cell::Cell;
 use std::time::Instant;
 

@@ -1,6 +1,9 @@
 //! What can keep a bake or an evaluation from a result.
 
+use parbake_evaluate::EvaluateError;
 use parbake_files::FileError;
+use parbake_mesh::parts::PartsError;
+use parbake_views::importance::ImportanceError;
 
 /// One clear sentence, and what to do next where there is something to do.
 #[derive(Debug, thiserror::Error)]
@@ -22,48 +25,12 @@ pub enum BakeError {
         /// What may be asked.
         range: String,
     },
-    /// A pattern that fits no node.
-    #[error("--{option} {pattern:?}: {model} has no node of that name with triangles; {has}")]
-    NoNode {
-        /// The option that names it.
-        option: &'static str,
-        /// What was asked for.
-        pattern: String,
-        /// The model.
-        model: String,
-        /// What there is.
-        has: String,
-    },
-    /// A model that was read without what is painted on it.
-    #[error(
-        "--importance-attribute {attribute}: {model} was read without it; read it by read_painted_model with the same name"
-    )]
-    NotPainted {
-        /// The model.
-        model: String,
-        /// The attribute.
-        attribute: String,
-    },
-    /// Parts of a model that moves.
-    #[error(
-        "--keep-parts: {model} has skins, morph targets or animations, and so becomes one mesh with a skeleton, in which \
-         nodes that move stay as joints; leave --keep-parts out, or take a copy of the model that nothing moves"
-    )]
-    PartsOfRig {
-        /// The model.
-        model: String,
-    },
-    /// A node of which positions cannot be told in its own space.
-    #[error(
-        "--keep-parts: node {node:?} of {model} is scaled to nothing along an axis, so that it cannot keep its pivot; \
-         apply its scale to its mesh"
-    )]
-    FlatPart {
-        /// The model.
-        model: String,
-        /// The node.
-        node: String,
-    },
+    /// Parts that cannot stay apart.
+    #[error(transparent)]
+    Parts(#[from] PartsError),
+    /// Importances that a model cannot have.
+    #[error(transparent)]
+    Importance(ImportanceError),
     /// Triangles that cannot be shared by all parts.
     #[error(
         "--triangles {triangles} is too few for {model} with its parts apart, of which none may vanish; give {least} or \
@@ -98,6 +65,9 @@ pub enum BakeError {
         /// Its name.
         image: String,
     },
+    /// Models could not be compared.
+    #[error(transparent)]
+    Evaluate(EvaluateError),
     /// A model could not be made ready.
     #[error(transparent)]
     Prepare(#[from] parbake_views::PrepareError),
@@ -142,4 +112,26 @@ pub enum BakeError {
         /// Why not.
         source: rayon::ThreadPoolBuildError,
     },
+}
+
+impl From<EvaluateError> for BakeError {
+    fn from(error: EvaluateError) -> Self {
+        match error {
+            EvaluateError::Option { option, value, range } => Self::Option { option, value, range },
+            EvaluateError::Prepare(error) => Self::Prepare(error),
+            other => Self::Evaluate(other),
+        }
+    }
+}
+
+impl From<ImportanceError> for BakeError {
+    fn from(error: ImportanceError) -> Self {
+        match error {
+            // As of any option that is out of range.
+            ImportanceError::NoMaterial { name, range } => {
+                Self::Option { option: "importance", value: name, range }
+            }
+            other => Self::Importance(other),
+        }
+    }
 }

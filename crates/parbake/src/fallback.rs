@@ -11,11 +11,11 @@
 
 use crate::budget::solving_share;
 use crate::error::BakeError;
-use crate::look::add_fallback;
 use crate::options::{BakeOptions, Parallax};
 use crate::order::Order;
 use crate::plan::Plan;
 use crate::textures::{Subject, fit_views};
+use parbake_fit::baked_materials::add_fallback;
 use parbake_image::MapKind;
 use parbake_image::display::Display;
 use parbake_image::reduced::reduced;
@@ -43,7 +43,7 @@ const WORTH_THEIR_BYTES: f64 = 0.12;
 /// The least side, in texels.
 const LEAST: usize = 16;
 
-/// Training views that judge.
+/// Training views that score.
 const JUDGING: usize = 48;
 
 /// What was tried.

@@ -10,7 +10,6 @@
 
 use crate::budget::shares;
 use crate::error::BakeError;
-use crate::importance::importances_of;
 use crate::options::{BakeOptions, UvMode};
 use crate::snapshots::of_surface;
 use crate::work::Work;
@@ -21,6 +20,7 @@ use parbake_shape::paper_joint_fit::paper_joint_fit;
 use parbake_shape::stage::{ShapeReport, grow_for_cutout, shape};
 use parbake_uv::surface::{Source, UvStageResult, optimise_uvs, repair_uvs_with_room};
 use parbake_views::high_poly::HighPoly;
+use parbake_views::importance::importances_of;
 
 /// What moved.
 #[derive(Default)]

@@ -35,34 +35,25 @@ mod comparison;
 mod comparison_figures;
 mod compress;
 mod error;
-pub mod evaluate;
 mod fallback;
 mod geometry;
 mod image;
 mod image_options;
-pub mod importance;
 mod kept;
 pub mod lod;
-mod look;
-mod lost;
 mod low_poly;
 mod map_images;
 mod memory;
 mod models;
-mod nodes;
-mod normal_y;
 mod options;
 mod order;
-pub mod parts;
 mod plan;
 mod raycast;
 mod raycast_options;
 mod report;
-mod rigs;
 mod shortlist;
 mod snapshots;
 mod stats;
-pub mod studio;
 mod texels;
 mod textures;
 mod threads;
@@ -78,9 +69,6 @@ pub use comparison::{
 };
 pub use compress::{compress, has_colour_alone};
 pub use error::BakeError;
-pub use evaluate::channels::{Channel, ChannelFigures};
-pub use evaluate::options::EvaluateOptions;
-pub use evaluate::{Evaluation, ViewFigures, evaluate, evaluate_on};
 pub use fallback::FallbackReport;
 pub use image::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
 pub use lod::options::LodOptions;
@@ -90,21 +78,28 @@ pub use lod::{Candidate, Level, LevelReport, Way, make_levels};
 pub use low_poly::low_poly;
 pub use memory::peak_memory;
 pub use models::{demo_pair, laid_out, simplified, subdivided, wall_pair, with_tangents};
-pub use normal_y::{NormalY, with_normal_y};
 #[cfg(feature = "clap")]
 pub use options::heading;
 pub use options::{
     BakeOptions, Convention, Method, Parallax, Preset, Shading, ShapeMode, SilhouetteBackground, UvMode,
 };
 pub use parbake_atlas::{LayoutCheck, ModelCheck, UvCheck, check_mesh, check_model};
+pub use parbake_evaluate::EvaluateError;
+pub use parbake_evaluate::channels::{Channel, ChannelFigures};
+pub use parbake_evaluate::evaluate::{Evaluation, evaluate, evaluate_on};
+pub use parbake_evaluate::figures::{ViewFigures, compare as compare_pictures, mean as mean_figures};
+pub use parbake_evaluate::options::EvaluateOptions;
+pub use parbake_evaluate::renderer::{PlacedModel, RenderedView, Renderer, tonemapped};
+pub use parbake_evaluate::screen_size::AtSize;
 pub use parbake_files::{
-    Contents, DEFAULT_TEXTURE_QUALITY, FileError, Limits, Loaded, MeshCompression, PictureFormat,
+    Contents, DEFAULT_TEXTURE_QUALITY, FileError, Limits, Loaded, MeshCompression, NormalY, PictureFormat,
     StoredPicture, TextureFormat, Warning, WarningKind, WriteOptions, Written, WrittenMesh, WrittenTexture,
-    encode_png, read_image, read_model, read_painted_model, write_atomically as write_file, write_glb,
-    write_glb_with, write_lod_glb, write_obj,
+    encode_png, read_image, read_model, read_painted_model, with_normal_y, write_atomically as write_file,
+    write_glb, write_glb_with, write_lod_glb, write_obj,
 };
 pub use parbake_fit::parallax_maps::ParallaxReport;
 pub use parbake_mesh::distance::{OneWay, SurfaceDistance};
+pub use parbake_mesh::parts::PartReport;
 pub use parbake_mesh::topology::{Component, Topology};
 pub use parbake_model::{Image as Picture, Model};
 pub use parbake_progress::{Estimate, Message, ProgressScope, Snapshot, Stage, StageTime, Watcher};
@@ -116,6 +111,7 @@ pub use parbake_uv::moves::UvMoves;
 pub use parbake_uv::surface::UvStageReport;
 pub use parbake_views::PrepareError;
 pub use parbake_views::high_poly::HighPoly;
+pub use parbake_views::importance::{Importance, importances};
 pub use plan::Plan;
 pub use raycast::{
     Match, RayNormals, Raycast, RaycastOptions, RaycastReport, RaycastUv, ShapeMapReport, ShapePicture,
@@ -125,7 +121,6 @@ pub use report::{BakeReport, LossStep};
 pub use stats::{
     FileStats, LayoutStats, ModelStats, StatsOptions, TexelDensity, TextureStats, model_distance, model_stats,
 };
-pub use studio::{Shot, Studio, Subject};
 pub use texels::parse_texels;
 pub use threads::{MOST_THREADS, join, with_threads};
 pub use work::Work;

@@ -3,10 +3,10 @@
 
 use crate::error::BakeError;
 use crate::options::{BakeOptions, Preset};
-use crate::parts::{kept_parts_of, parts_of_materials};
-use crate::rigs::transferred;
 use crate::shortlist::{ATTEMPTS, CoarseModel, best_baked};
 use crate::snapshots::of_surface;
+use parbake_mesh::parts::{kept_parts_of, parts_of_materials};
+use parbake_mesh::rigs::transferred;
 use parbake_model::{AlphaMode, Material, MaterialExtensions, Model};
 use parbake_progress::{Portion, Showing, Watcher};
 use parbake_simplify::polish::PolishOptions;

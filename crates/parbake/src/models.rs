@@ -2,10 +2,10 @@
 
 use crate::error::BakeError;
 use crate::options::{BakeOptions, UvMode};
-use crate::parts::{parts_of_materials, with_parted_materials};
-use crate::rigs::{carried, transferred};
 use parbake_mesh::compute_tangents;
 use parbake_mesh::demo::{demo_low, demo_model, wall_low, wall_model};
+use parbake_mesh::parts::{parts_of_materials, with_parted_materials};
+use parbake_mesh::rigs::{carried, transferred};
 use parbake_mesh::simplify::{SimplifyOptions, simplify};
 use parbake_mesh::subdivide::subdivide;
 use parbake_model::{Material, Mesh, Model};

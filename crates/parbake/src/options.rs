@@ -3,15 +3,14 @@
 //! or other options decide.
 
 use crate::error::BakeError;
-use crate::importance::Importance;
-use crate::normal_y::NormalY;
 #[cfg(feature = "clap")]
 use crate::texels::parse_texels;
 use crate::texels::{some_texels, texels};
-use parbake_files::WriteOptions;
-use parbake_image::display::{Curve, Display};
-use parbake_render::interpretation::Interpretation;
+use parbake_evaluate::conventions::check_shading;
+pub use parbake_evaluate::conventions::{Convention, GREY, Shading};
+use parbake_files::{NormalY, WriteOptions};
 pub use parbake_uv::mode::{Method, UvMode};
+use parbake_views::importance::Importance;
 use serde::{Deserialize, Serialize};
 
 /// Headings of options in `--help`.
@@ -45,36 +44,6 @@ pub enum Preset {
     Best,
 }
 
-/// Shading convention of compared pictures.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-#[serde(rename_all = "lowercase")]
-pub enum Convention {
-    /// As glTF viewers show models: base colour decoded from sRGB, a light of strength 1.
-    #[default]
-    Gltf,
-    /// As in the paper's pictures: base colour as stored, a light of strength 1.59.
-    Paper,
-}
-
-impl Convention {
-    /// Whether base colour is decoded from sRGB before shading.
-    pub fn decodes_srgb(self) -> bool {
-        self == Convention::Gltf
-    }
-
-    /// How textures are read.
-    pub fn interpretation(self) -> Interpretation {
-        Interpretation { decode_srgb: self.decodes_srgb(), trilinear: true, parallax: true }
-    }
-
-    /// Light strength and display curve.
-    pub fn display(self) -> Display {
-        let gain = if self == Convention::Paper { 1.59 } else { 1.0 };
-        Display { gain, curve: Curve::Srgb }
-    }
-}
-
 /// How vertices are moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
@@ -90,21 +59,6 @@ pub enum ShapeMode {
     /// Vertices move until outlines agree.
     #[default]
     Free,
-}
-
-/// What of the high-poly's materials is fitted, and shown in comparisons.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-#[serde(rename_all = "lowercase")]
-pub enum Shading {
-    /// `pbr` where a material of the high-poly has more than colour, normals and emission; else `lambert`, but
-    /// under glTF's convention with normals that are right under any light.
-    #[default]
-    Auto,
-    /// Colours, normals and emission, as a headlight shows them on a matte surface (the paper's shading).
-    Lambert,
-    /// The whole metallic-roughness material; needs --convention gltf.
-    Pbr,
 }
 
 /// Whether depth is faked by maps.
@@ -123,15 +77,6 @@ pub enum Parallax {
     Sh,
 }
 
-/// Checks that whole materials are asked for only where colours are decoded.
-pub(crate) fn check_shading(shading: Shading, convention: Convention) -> Result<(), BakeError> {
-    if shading == Shading::Pbr && convention == Convention::Paper {
-        let range = "auto or lambert with --convention paper".into();
-        return Err(BakeError::Option { option: "shading", value: "pbr".into(), range });
-    }
-    Ok(())
-}
-
 /// Checks that the paper's switch is only used with the paper's method.
 pub(crate) fn check_content_aware(method: Method, no_content_aware: bool) -> Result<(), BakeError> {
     if no_content_aware && method != Method::Paper {
@@ -140,9 +85,6 @@ pub(crate) fn check_content_aware(method: Method, no_content_aware: bool) -> Res
     }
     Ok(())
 }
-
-/// Linear light of a grey background, the independent evaluator's too.
-pub const GREY: f32 = 0.5;
 
 /// Background of the training views: what the low-poly shall look like where it overhangs the
 /// high-poly's outline.

@@ -1,13 +1,13 @@
 //! Options of `parbake raycast`.
 
 use crate::error::BakeError;
-use crate::normal_y::NormalY;
 #[cfg(feature = "clap")]
 use crate::options::heading;
 use crate::options::{BakeOptions, UvMode};
 #[cfg(feature = "clap")]
 use crate::texels::parse_texels;
 use crate::texels::texels;
+use parbake_files::NormalY;
 use parbake_files::WriteOptions;
 use parbake_raycast::{CastOptions, GeometryMap};
 use parbake_views::projection::Search;

@@ -7,10 +7,10 @@
 
 use crate::bake::bake_as;
 use crate::error::BakeError;
-use crate::evaluate::options::EvaluateOptions;
 use crate::options::{BakeOptions, GREY, Parallax, Preset};
-use crate::studio::{Studio, Subject};
 use crate::work::Work;
+use parbake_evaluate::options::EvaluateOptions;
+use parbake_evaluate::renderer::{PlacedModel, Renderer};
 use parbake_metric::{mean_squared_error, psnr_from_mse};
 use parbake_model::Model;
 use parbake_model::glam::Vec3;
@@ -51,7 +51,7 @@ pub(crate) fn best_baked(
     let mut best = 0;
     if low_polys.len() > 1 && high.importances.is_empty() {
         let brief = brief(options);
-        let judge = Judge::new(model, options)?;
+        let score = BriefScore::new(model, options)?;
         let mut most = f64::NEG_INFINITY;
         let rest = Portion::new(watcher, ATTEMPTS..1.0);
         for (k, (low, _)) in low_polys.iter().enumerate() {
@@ -61,7 +61,7 @@ pub(crate) fn best_baked(
             if watcher.stopped() {
                 break;
             }
-            let psnr = judge.psnr(&baked.model);
+            let psnr = score.psnr(&baked.model);
             if psnr > most {
                 (best, most) = (k, psnr);
             }
@@ -87,13 +87,13 @@ fn brief(options: &BakeOptions) -> BakeOptions {
 }
 
 /// Compares baked models with the original in pictures.
-struct Judge {
-    studio: Studio,
+struct BriefScore {
+    renderer: Renderer,
     directions: Vec<Vec3>,
-    original: Subject,
+    original: PlacedModel,
 }
 
-impl Judge {
+impl BriefScore {
     fn new(model: &Model, options: &BakeOptions) -> Result<Self, BakeError> {
         let options = EvaluateOptions {
             resolution: RESOLUTION,
@@ -101,19 +101,19 @@ impl Judge {
             shading: options.shading,
             ..EvaluateOptions::default()
         };
-        let studio = Studio::new(model, &options)?;
-        let original = studio.subject(model);
-        Ok(Self { studio, directions: fibonacci_sphere(VIEWS, 0.0), original })
+        let renderer = Renderer::new(model, &options)?;
+        let original = renderer.place(model);
+        Ok(Self { renderer, directions: fibonacci_sphere(VIEWS, 0.0), original })
     }
 
     /// PSNR in dB, the mean over views and backgrounds.
     fn psnr(&self, model: &Model) -> f64 {
-        let Self { studio, directions, original } = self;
-        let subject = studio.subject(model);
+        let Self { renderer, directions, original } = self;
+        let placed = renderer.place(model);
         let of_view = |&direction: &Vec3| {
-            let shots = [original, &subject].map(|subject| studio.shot(subject, direction));
+            let views = [original, &placed].map(|model| renderer.render(model, direction));
             BACKGROUNDS.map(|behind| {
-                let [a, b] = [0, 1].map(|k: usize| studio.develop(&shots[k], behind));
+                let [a, b] = [0, 1].map(|k: usize| renderer.tonemap(&views[k], behind));
                 psnr_from_mse(mean_squared_error(&a, &b).unwrap_or(f64::NAN))
             })
         };

@@ -5,8 +5,8 @@
 //!
 //! Contract: made only where someone looks; nothing that is computed depends on it.
 
-use crate::look::Look;
 use crate::map_images::images;
+use parbake_fit::baked_materials::Look;
 use parbake_fit::parallax_maps::ParallaxMaps;
 use parbake_image::quantise::to_image;
 use parbake_image::reduced::at_most;

@@ -7,11 +7,11 @@
 
 use crate::budget::{shares, solving_share};
 use crate::error::BakeError;
-use crate::look::Look;
 use crate::order::Order;
 use crate::snapshots::OfMaps;
 use crate::work::Work;
 use parbake_fit::backend::Backend;
+use parbake_fit::baked_materials::Look;
 use parbake_fit::parallax_maps::{
     FittedMaps, ParallaxInput, ParallaxMaps, ParallaxPlan, ParallaxReport, fit_parallax_maps,
 };
@@ -30,7 +30,6 @@ use parbake_views::low_poly::LowPoly;
 use parbake_views::material_sampler::MaterialSampler;
 use parbake_views::projection::ProjectedMaps;
 use parbake_views::reference::Reference;
-use parbake_views::view_sample::sample_views;
 use parbake_views::view_sampler::ViewSampler;
 use std::sync::Arc;
 
@@ -149,7 +148,7 @@ pub(crate) fn fit_views(
         }
         Some(FittedMaps { maps, views: mut view_samples, report }) => {
             let sampler = sampler.with_cutout(maps.cutout.as_ref());
-            view_samples.extend(sample_views(&sampler, &references[view_samples.len()..]));
+            view_samples.extend(backend.sample_views(&sampler, &references[view_samples.len()..]));
             drop(references);
             (backend.shifted_view_samples(view_samples, size, &maps.parallax, scope), Some(maps), report)
         }

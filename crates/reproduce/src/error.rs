@@ -1,6 +1,6 @@
 //! What can keep a reproduction from going on.
 
-use parbake::{BakeError, FileError};
+use parbake::{BakeError, EvaluateError, FileError};
 use std::path::PathBuf;
 
 /// One clear sentence, and what to do next where there is something to do.
@@ -56,5 +56,11 @@ impl ReproduceError {
     pub(crate) fn disk(path: &std::path::Path) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.to_path_buf();
         move |source| Self::Disk { path, source }
+    }
+}
+
+impl From<EvaluateError> for ReproduceError {
+    fn from(error: EvaluateError) -> Self {
+        Self::Bake(error.into())
     }
 }

@@ -46,7 +46,7 @@ impl ReproduceOptions {
     /// # Errors
     /// Names the option and what it may be.
     pub fn check(&self) -> Result<(), BakeError> {
-        self.evaluate().check()
+        Ok(self.evaluate().check()?)
     }
 
     /// How results are compared with the high-poly: by the paper's convention (`eval --convention paper`).

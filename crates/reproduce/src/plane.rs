@@ -6,7 +6,7 @@
 //!
 //! Contract: pixels are the stored values, row 0 on top, of the picture's size.
 
-use parbake::{BakeError, EvaluateOptions, Studio};
+use parbake::{BakeError, EvaluateOptions, Renderer};
 use parbake_metric::Rgb;
 use parbake_model::glam::Vec3;
 use parbake_model::{Image, Model};
@@ -21,9 +21,9 @@ pub fn as_shown(plane: &Model, picture: &Image) -> Result<Rgb, BakeError> {
         gain: Some(1.0),
         ..EvaluateOptions::paper()
     };
-    let studio = Studio::new(plane, &options)?;
-    let shot = studio.shot(&studio.subject(plane), Vec3::Z);
-    let square = studio.develop(&shot, [0.0; 3]);
+    let renderer = Renderer::new(plane, &options)?;
+    let view = renderer.render(&renderer.place(plane), Vec3::Z);
+    let square = renderer.tonemap(&view, [0.0; 3]);
     let (left, top) = ((square.width - picture.width) / 2, (square.height - picture.height) / 2);
     let pixels = (0..picture.height)
         .flat_map(|y| (0..picture.width).map(move |x| (x, y)))

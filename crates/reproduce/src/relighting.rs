@@ -5,7 +5,7 @@
 //! Contract: lights depend on their number alone (SplitMix64, Steele et al. 2014), views on the options. Whole
 //! materials are shown by glTF's BRDF; both models stand in the frame of the first.
 
-use parbake::{BakeError, EvaluateOptions, Shading, Studio, Subject};
+use parbake::{BakeError, EvaluateOptions, PlacedModel, Renderer, Shading};
 use parbake_metric::{Rgb, mean_squared_error, ms_ssim, psnr_from_mse};
 use parbake_model::Model;
 use parbake_model::glam::Vec3;
@@ -77,7 +77,7 @@ pub fn random_light(number: usize) -> Lighting {
 /// Compares models with the high-poly. Runs on rayon's current thread pool.
 ///
 /// # Errors
-/// As of [`Studio::new`].
+/// As of [`Renderer::new`].
 pub fn relight(
     high: &Model,
     models: &[(&str, &Model)],
@@ -85,15 +85,15 @@ pub fn relight(
 ) -> Result<Relighting, BakeError> {
     let (views, resolution) = (options.views, options.resolution);
     let options = EvaluateOptions { views, resolution, shading: Shading::Pbr, ..EvaluateOptions::default() };
-    let studio = Studio::new(high, &options)?;
-    let subjects: Vec<Subject> =
-        std::iter::once(high).chain(models.iter().map(|(_, m)| *m)).map(|m| studio.subject(m)).collect();
+    let renderer = Renderer::new(high, &options)?;
+    let placed: Vec<PlacedModel> =
+        std::iter::once(high).chain(models.iter().map(|(_, m)| *m)).map(|m| renderer.place(m)).collect();
     // Every so many are shown, none of them from straight above.
     let is_shown = |view: usize| view % (views / SHOWN).max(1) == (views / SHOWN / 2).min(views - 1);
     let view = |(view, direction): (usize, Vec3)| {
-        let studio = studio.clone().under(random_light(view));
-        let taken = |subject: &Subject| studio.develop(&studio.shot(subject, direction), BACKGROUND);
-        let pictures: Vec<Rgb> = subjects.iter().map(taken).collect();
+        let renderer = renderer.clone().under(random_light(view));
+        let taken = |model: &PlacedModel| renderer.tonemap(&renderer.render(model, direction), BACKGROUND);
+        let pictures: Vec<Rgb> = placed.iter().map(taken).collect();
         let figures: Vec<Figures> = pictures[1..]
             .iter()
             .map(|low| {

@@ -1,7 +1,7 @@
 //! `parbake view` as scripts and people meet it, and its page in a real browser beside the CPU renderer.
 
 use crate::common::{demo_files, parbake, run, text};
-use parbake::{EvaluateOptions, Limits, Shading, Studio, read_model, write_glb};
+use parbake::{EvaluateOptions, Limits, Renderer, Shading, read_model, write_glb};
 use parbake_model::TextureSlot;
 use parbake_model::glam::Vec3;
 use serde_json::{Value, json};
@@ -198,11 +198,11 @@ fn the_page_shows_what_the_cpu_renders() {
         let model = model(name);
         let options =
             EvaluateOptions { shading, resolution: SIZE, supersample: 2, ..EvaluateOptions::default() };
-        let studio = Studio::new(&model, &options).unwrap();
-        let subject = studio.subject(&model);
+        let renderer = Renderer::new(&model, &options).unwrap();
+        let placed = renderer.place(&model);
         for (view, direction) in directions.into_iter().enumerate() {
-            let shot = studio.shot(&subject, Vec3::from(direction).normalize());
-            let ours = studio.develop(&shot, [0.0; 3]).pixels;
+            let rendered = renderer.render(&placed, Vec3::from(direction).normalize());
+            let ours = renderer.tonemap(&rendered, [0.0; 3]).pixels;
             let page = std::fs::read(file(case, view)).unwrap();
             let error = |(ours, page): (&[f32; 3], &[u8])| -> f64 {
                 (0..3).map(|k| f64::from(ours[k] - f32::from(page[k]) / 255.0).powi(2)).sum()

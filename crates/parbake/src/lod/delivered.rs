@@ -14,42 +14,16 @@
 
 use super::candidate::Way;
 use super::chain::Chain;
-use super::judge::Judge;
 use super::maker::{Draft, Maker};
+use super::picture_score::PictureScore;
 use crate::error::BakeError;
 use crate::options::ShapeMode;
-use crate::rigs::transferred;
-use parbake_image::MapKind;
-use parbake_image::material_maps::texture_slot;
-use parbake_image::reduced::reduced;
-use parbake_mesh::{Collapses, Seams, simplify_in_layout};
-use parbake_model::{Material, Mesh, Model};
-use std::borrow::Cow;
+use parbake_levels::collapses::best_collapsed;
+use parbake_levels::fewer_texels::with_maps_at_most;
+use parbake_mesh::rigs::transferred;
+use parbake_model::{Mesh, Model};
 use std::time::Instant;
 
-/// A model with more than so many triangles for each wanted one is first collapsed to a quarter of that number, once for all ways.
-/// This saves time. What it costs: from 16 for each wanted one up to half a decibel was lost, from 64 it was not measured.
-const MANY: usize = 256;
-/// Ways to collapse edges that are tried first.
-const COLLAPSES: [Collapses; 9] = [
-    Collapses { seams: Seams::Kept, normal_weight: 0.5, uv_weight: 0.5, moves: false },
-    Collapses { seams: Seams::OfTextures, normal_weight: 0.1, uv_weight: 0.5, moves: false },
-    Collapses { seams: Seams::OfTextures, normal_weight: 0.1, uv_weight: 0.5, moves: true },
-    Collapses { seams: Seams::OfTextures, normal_weight: 0.3, uv_weight: 0.2, moves: true },
-    Collapses { seams: Seams::OfTextures, normal_weight: 0.5, uv_weight: 0.5, moves: false },
-    Collapses { seams: Seams::OfTextures, normal_weight: 0.5, uv_weight: 0.5, moves: true },
-    Collapses { seams: Seams::Crossed, normal_weight: 0.1, uv_weight: 0.5, moves: true },
-    Collapses { seams: Seams::Crossed, normal_weight: 0.5, uv_weight: 0.5, moves: false },
-    Collapses { seams: Seams::Crossed, normal_weight: 0.5, uv_weight: 0.5, moves: true },
-];
-/// Weights of normals and of texture coordinates that are tried around the best of these.
-const NORMAL_WEIGHTS: [f32; 6] = [0.03, 0.1, 0.2, 0.3, 0.5, 1.0];
-const UV_WEIGHTS: [f32; 4] = [0.05, 0.2, 0.5, 1.0];
-/// Ways that are tried around the best one with the same seams, at most; only where that is at most so many decibels below
-/// the best one of all, and that still shows what it lacks.
-const MOST_SEARCHED: usize = 8;
-const PROMISING: f64 = 2.0;
-const INVISIBLE: f64 = 60.0;
 /// Texels of a map along a line for each pixel that the surface covers, at most.
 const DENSITY: f64 = 4.0;
 
@@ -106,12 +80,12 @@ pub(crate) struct Coarser {
     pub psnr: f64,
 }
 
-/// The model with at most `triangles` triangles and its own layout, by those collapses whose pictures show most: the best of
-/// [`COLLAPSES`], or what a search from there finds. None where seams leave too many triangles. `side` is how many texels
-/// along a line its surface needs. Without `searches` there is no search.
+/// The model with at most `triangles` triangles and its own layout, by those collapses whose pictures show most
+/// ([`best_collapsed`]). None where seams leave too many triangles. `side` is how many texels along a line its surface needs.
+/// Without `searches` only a few ways are tried.
 pub(crate) fn coarser(
     maker: &Maker,
-    judge: &Judge,
+    score: &PictureScore,
     triangles: usize,
     side: f64,
     searches: bool,
@@ -119,161 +93,15 @@ pub(crate) fn coarser(
 ) -> Result<Option<Coarser>, BakeError> {
     let model = maker.model;
     let look = with_maps_at_most(model, maker.power_of_two(DENSITY * side));
-    let fine = begun(&model.mesh, triangles);
-    let mut best: Option<Coarser> = None;
-    let mut tried: Vec<(Collapses, f64)> = Vec::new();
-    let mut weigh = |tried: &mut Vec<(Collapses, f64)>, own: Collapses| -> Result<(), BakeError> {
-        let mesh = simplify_in_layout(&fine, triangles, own);
-        if mesh.triangles.is_empty() || mesh.triangles.len() > triangles {
-            tried.push((own, f64::NEG_INFINITY));
-            return Ok(());
-        }
+    let judged = |mesh: Mesh| -> Result<(Model, f64), BakeError> {
         let coarse = Model { mesh, ..look.clone() };
-        let psnr = judge.psnr(&coarse)?;
-        tried.push((own, psnr));
-        if best.as_ref().is_none_or(|best| psnr > best.psnr) {
-            best = Some(Coarser { model: coarse, psnr });
-        }
-        Ok(())
+        let psnr = score.psnr(&coarse)?;
+        Ok((coarse, psnr))
     };
-    // With all triangles there is nothing to choose.
-    let has_choice = model.mesh.triangles.len() > triangles;
-    for own in COLLAPSES.into_iter().take(if has_choice { COLLAPSES.len() } else { 1 }) {
-        if is_over() {
-            break;
-        }
-        weigh(&mut tried, own)?;
-    }
-    for seams in
-        [Seams::Kept, Seams::OfTextures, Seams::Crossed].into_iter().filter(|_| has_choice && searches)
-    {
-        for _ in 0..MOST_SEARCHED {
-            let Some(next) = next(&tried, seams).filter(|_| !is_over()) else { break };
-            weigh(&mut tried, next)?;
-        }
-    }
+    let best = best_collapsed(&model.mesh, triangles, searches, is_over, judged)?;
     // Pictures are of the model at rest.
-    Ok(best.map(|own| {
-        let rig = transferred(model, &own.model.mesh, &[]);
-        Coarser { model: Model { rig, ..own.model }, ..own }
+    Ok(best.map(|(coarse, psnr)| {
+        let rig = transferred(model, &coarse.mesh, &[]);
+        Coarser { model: Model { rig, ..coarse }, psnr }
     }))
-}
-
-/// The mesh that all ways to collapse to so many triangles begin with: `mesh`, or a coarser one ([`MANY`]).
-fn begun(mesh: &Mesh, triangles: usize) -> Cow<'_, Mesh> {
-    if mesh.triangles.len() <= MANY * triangles {
-        return Cow::Borrowed(mesh);
-    }
-    let coarser = simplify_in_layout(mesh, MANY / 4 * triangles, COLLAPSES[4]);
-    if coarser.triangles.is_empty() { Cow::Borrowed(mesh) } else { Cow::Owned(coarser) }
-}
-
-/// What to try after all that was, with these seams: what is beside the best one. None where others are far better, nothing is left
-/// to be gained, or all beside it were tried.
-fn next(tried: &[(Collapses, f64)], seams: Seams) -> Option<Collapses> {
-    let best =
-        |own: &mut dyn Iterator<Item = &(Collapses, f64)>| own.copied().max_by(|a, b| a.1.total_cmp(&b.1));
-    let (_, most) = best(&mut tried.iter())?;
-    let (own, psnr) = best(&mut tried.iter().filter(|(own, _)| own.seams == seams))?;
-    let is_known = |other: &Collapses| tried.iter().any(|(known, _)| known == other);
-    (psnr.is_finite() && psnr >= most - PROMISING && most < INVISIBLE)
-        .then(|| neighbours(own).into_iter().find(|other| !is_known(other)))
-        .flatten()
-}
-
-/// Collapses with the same seams that differ in one thing, by a step.
-fn neighbours(own: Collapses) -> Vec<Collapses> {
-    let moved = Collapses { moves: !own.moves, ..own };
-    let normals = beside(&NORMAL_WEIGHTS, own.normal_weight).into_iter();
-    let uvs = beside(&UV_WEIGHTS, own.uv_weight).into_iter();
-    (uvs.map(|uv_weight| Collapses { uv_weight, ..own }))
-        .chain(normals.map(|normal_weight| Collapses { normal_weight, ..own }))
-        .chain([moved])
-        .collect()
-}
-
-/// The weights beside one of `weights`.
-fn beside(weights: &[f32], own: f32) -> Vec<f32> {
-    let place = weights.iter().position(|&weight| weight == own).unwrap_or(0);
-    (0..weights.len()).filter(|k| k.abs_diff(place) == 1).map(|k| weights[k]).collect()
-}
-
-/// A model's name, materials and maps without its surface; no map has more than `side` texels along a side.
-fn with_maps_at_most(model: &Model, side: usize) -> Model {
-    let mut images = model.images.clone();
-    for (index, kind) in kinds_of_images(&model.materials) {
-        if let Some(image) = images.get_mut(index) {
-            let times = (0..).take_while(|&times| image.width.max(image.height) >> times > side).count();
-            *image = reduced(kind, image, true, [times; 2]);
-        }
-    }
-    Model { name: model.name.clone(), materials: model.materials.clone(), images, ..Model::default() }
-}
-
-/// What images hold, each once.
-fn kinds_of_images(materials: &[Material]) -> Vec<(usize, MapKind)> {
-    let mut kinds: Vec<(usize, MapKind)> = Vec::new();
-    for (material, kind) in materials.iter().flat_map(|m| MapKind::ALL.map(|kind| (m, kind))) {
-        let image = texture_slot(material, kind).map(|slot| slot.image);
-        let is_new = |image: &usize| kinds.iter().all(|(known, _)| known != image);
-        kinds.extend(image.filter(is_new).map(|image| (image, kind)));
-    }
-    kinds
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use parbake_model::glam::{vec2, vec3};
-
-    /// Protects the search: it goes on from the best with the same seams, tries nothing twice, and leaves seams alone that show far
-    /// less; it ends.
-    #[test]
-    fn the_search_climbs_from_the_best_with_the_same_seams() {
-        let mut tried = vec![(COLLAPSES[0], 40.0), (COLLAPSES[2], 45.0), (COLLAPSES[8], 44.0)];
-        assert_eq!(next(&tried, Seams::Kept), None);
-        assert_eq!(next(&[(COLLAPSES[0], f64::NEG_INFINITY)], Seams::Kept), None);
-        for (seams, best) in [(Seams::OfTextures, COLLAPSES[2]), (Seams::Crossed, COLLAPSES[8])] {
-            let mut steps = 0;
-            while let Some(found) = next(&tried, seams) {
-                assert!(found.seams == seams && tried.iter().all(|(known, _)| *known != found));
-                assert!(neighbours(best).contains(&found));
-                tried.push((found, 43.5));
-                steps += 1;
-            }
-            assert_eq!(steps, neighbours(best).len());
-        }
-        tried.push((Collapses { uv_weight: 1.0, ..COLLAPSES[8] }, 46.0));
-        assert_eq!(next(&tried, Seams::Crossed).map(|own| own.uv_weight), Some(1.0));
-        tried.push((Collapses { moves: false, ..COLLAPSES[2] }, 61.0));
-        assert_eq!(next(&tried, Seams::OfTextures), None);
-    }
-
-    /// Protects time: ways to collapse a large mesh share what they begin with, which still leaves much to choose from.
-    #[test]
-    fn large_meshes_are_collapsed_once_for_all_ways() {
-        let (cells, mut mesh) = (40u32, Mesh::default());
-        for (row, column) in (0..=cells).flat_map(|row| (0..=cells).map(move |column| (row, column))) {
-            let (x, y) = (column as f32 / cells as f32, row as f32 / cells as f32);
-            mesh.positions.push(vec3(x, y, 0.1 * (9.0 * x).sin() * (7.0 * y).cos()));
-            mesh.uvs.push(vec2(x, y));
-        }
-        for (row, column) in (0..cells).flat_map(|row| (0..cells).map(move |column| (row, column))) {
-            let a = row * (cells + 1) + column;
-            mesh.triangles.extend([[a, a + 1, a + cells + 2], [a, a + cells + 2, a + cells + 1]]);
-        }
-        mesh.triangle_materials = vec![0; mesh.triangles.len()];
-        mesh.normals = parbake_mesh::smooth_normals(&mesh);
-        assert!(matches!(begun(&mesh, mesh.triangles.len().div_ceil(MANY)), Cow::Borrowed(_)));
-        let few = begun(&mesh, 10).triangles.len();
-        assert!((320..=640).contains(&few), "{few}");
-    }
-
-    /// Protects it from weights that lie beside none.
-    #[test]
-    fn first_ways_have_weights_that_are_searched() {
-        for own in COLLAPSES {
-            assert!(NORMAL_WEIGHTS.contains(&own.normal_weight) && UV_WEIGHTS.contains(&own.uv_weight));
-        }
-    }
 }

@@ -8,7 +8,7 @@
 
 use super::level::LevelReport;
 use super::options::LodOptions;
-use super::switch::AtSize;
+use parbake_evaluate::screen_size::AtSize;
 use parbake_model::{Bounds, Model};
 use serde::{Deserialize, Serialize};
 

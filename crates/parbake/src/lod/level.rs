@@ -1,11 +1,11 @@
 //! A finished level, and what `lods.json` holds of it.
 
 use super::candidate::{Candidate, Way};
-use super::switch::AtSize;
 use super::target::TargetReport;
 use crate::bake::Baked;
-use crate::parts::PartReport;
+use parbake_evaluate::screen_size::AtSize;
 use parbake_files::WriteOptions;
+use parbake_mesh::parts::PartReport;
 use parbake_simplify::LayerReport;
 use serde::{Deserialize, Serialize};
 

@@ -6,7 +6,6 @@
 use super::candidate::{Candidate, Way};
 use super::chain::{Chain, LevelWatcher, hurried};
 use super::options::LodOptions;
-use super::switch::{AtSize, Lineup, Subject};
 use crate::bake::{Baked, bake_as, prepare_high_poly};
 use crate::budget::check_budget;
 use crate::error::BakeError;
@@ -14,6 +13,8 @@ use crate::low_poly::{check_triangles, coarse_surfaces, least_of, low_poly};
 use crate::options::{BakeOptions, ShapeMode};
 use crate::work::Work;
 use parbake_atlas::AtlasError;
+use parbake_evaluate::renderer::PlacedModel;
+use parbake_evaluate::screen_size::{AtSize, ScreenComparison};
 use parbake_levels::viewed::as_viewers_do;
 use parbake_model::Model;
 use parbake_progress::Watcher;
@@ -29,9 +30,9 @@ pub(crate) struct Maker<'a> {
     pub high: HighPoly,
     pub options: &'a LodOptions,
     /// Pictures as viewers make them.
-    pub lineup: Lineup,
+    pub screens: ScreenComparison,
     /// The model, ready for these.
-    pub original: Subject,
+    pub original: PlacedModel,
     /// The fewest triangles that a level may have.
     pub least: usize,
     /// Triangles of each level, as its size or an option says.
@@ -72,11 +73,11 @@ impl<'a> Maker<'a> {
         let high = prepare_high_poly(model, &options.bake(options.max_texture_size))?;
         options.triangles.iter().try_for_each(|&count| check_triangles(&high, model, count))?;
         let least = least_of(&high, model);
-        let lineup = Lineup::new(model);
-        let original = lineup.subject(&as_viewers_do(model))?;
+        let screens = ScreenComparison::new(model);
+        let original = screens.place(&as_viewers_do(model))?;
         let wanted = wanted_triangles(&high, options, least);
         let start = coarse_surfaces(&high, model);
-        Ok(Self { model, high, options, lineup, original, least, wanted, start })
+        Ok(Self { model, high, options, screens, original, least, wanted, start })
     }
 
     /// Chooses so many triangles and bakes, to be finished by `until`; the texture's size follows the level's where
@@ -157,15 +158,15 @@ impl<'a> Maker<'a> {
     pub fn figures(
         &self,
         level: usize,
-        subject: &Subject,
-        before: Option<&Subject>,
+        placed: &PlacedModel,
+        before: Option<&PlacedModel>,
     ) -> Result<Figures, BakeError> {
-        let (lineup, screen_size) = (&self.lineup, self.options.screen_size[level]);
-        let at_screen_size = lineup.compare(&self.original, subject, screen_size)?;
-        let others: Vec<&Subject> = [Some(&self.original), before].into_iter().flatten().collect();
-        let switch_pixels = lineup.largest_same(subject, &others, screen_size, self.options.switch_psnr)?;
+        let (screens, screen_size) = (&self.screens, self.options.screen_size[level]);
+        let at_screen_size = screens.compare(&self.original, placed, screen_size)?;
+        let others: Vec<&PlacedModel> = [Some(&self.original), before].into_iter().flatten().collect();
+        let switch_pixels = screens.largest_same(placed, &others, screen_size, self.options.switch_psnr)?;
         let last = others[others.len() - 1];
-        let against_before = switch_pixels.map(|pixels| lineup.compare(last, subject, pixels)).transpose()?;
+        let against_before = switch_pixels.map(|pixels| screens.compare(last, placed, pixels)).transpose()?;
         Ok(Figures { at_screen_size, switch_pixels, against_before })
     }
 

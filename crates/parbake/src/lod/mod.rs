@@ -19,32 +19,31 @@ mod candidate;
 pub(crate) mod chain;
 mod delivered;
 pub mod document;
-mod judge;
 pub mod layout;
 mod level;
 mod maker;
 pub mod options;
+mod picture_score;
 mod scaled;
-pub mod switch;
 pub mod target;
 mod ways;
 mod written;
 
 use crate::error::BakeError;
-use crate::parts::{draw_calls, part_reports, with_kept_parts, with_parted_materials};
 pub use candidate::{Candidate, Way};
 use chain::Chain;
 pub use level::{Level, LevelReport};
 use maker::{Draft, Maker, largest_texture, texels_of};
 use options::LodOptions;
+use parbake_evaluate::renderer::PlacedModel;
 pub use parbake_levels::search;
 use parbake_levels::viewed::as_viewers_do;
+use parbake_mesh::parts::{draw_calls, part_reports, with_kept_parts, with_parted_materials};
 use parbake_model::Model;
 use parbake_progress::{Message, Watcher};
 use parbake_views::alpha_in_effect::with_alpha_in_effect;
 use std::borrow::Cow;
 use std::time::Instant;
-use switch::Subject;
 use written::as_written;
 
 /// Makes the levels of a model one by one and hands each over as soon as it is finished. Returns how many there are:
@@ -62,14 +61,14 @@ pub fn make_levels<E: From<BakeError>>(
 ) -> Result<usize, E> {
     options.check()?;
     let start = Instant::now();
-    let kept = with_kept_parts(model, &options.keep_parts)?;
+    let kept = with_kept_parts(model, &options.keep_parts).map_err(BakeError::from)?;
     let parted = with_parted_materials(&kept);
     let model = &*with_settled_alpha(&parted, watcher);
     let maker = Maker::new(model, options)?;
     let sizes = (0..options.screen_size.len())
         .map(|level| (maker.wanted[level], maker.texture_size(model, options.screen_size[level])));
     let mut chain = Chain::new(watcher, start, options, &sizes.collect::<Vec<_>>());
-    let mut before: Option<(Model, Subject)> = None;
+    let mut before: Option<(Model, PlacedModel)> = None;
     let mut count = 0;
     for index in 0..options.screen_size.len() {
         let finer = before.as_ref().map(|(low, _)| low);
@@ -86,8 +85,8 @@ pub fn make_levels<E: From<BakeError>>(
         let Some((draft, write, target)) = made else { break };
         let begin = Instant::now();
         let written = as_written(&draft.baked.model, &write, options.normal_y)?.model;
-        let subject = maker.lineup.subject(&as_viewers_do(&written))?;
-        let figures = maker.figures(index, &subject, before.as_ref().map(|(_, subject)| subject))?;
+        let placed = maker.screens.place(&as_viewers_do(&written)).map_err(BakeError::from)?;
+        let figures = maker.figures(index, &placed, before.as_ref().map(|(_, placed)| placed))?;
         let Draft { low, layers, baked, way, candidates, seconds: [chosen, fitted, compared] } = draft;
         let mip = baked.report.options.smallest_mip.unwrap_or(0.0);
         let gutter = baked.report.uv.gutter.as_ref().map(|gutter| (gutter.texels, mip));
@@ -112,7 +111,7 @@ pub fn make_levels<E: From<BakeError>>(
             stopped_early: baked.report.stopped_early,
             seconds: [chosen, fitted, compared + begin.elapsed().as_secs_f64()],
         };
-        before = Some((low, subject));
+        before = Some((low, placed));
         count += 1;
         on_level(Level { baked, write, report })?;
     }

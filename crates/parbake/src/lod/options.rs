@@ -1,12 +1,12 @@
 //! Options of a chain of levels of detail.
 
 use crate::error::BakeError;
-use crate::importance::Importance;
-use crate::normal_y::NormalY;
 #[cfg(feature = "clap")]
 use crate::options::heading;
 use crate::options::{BakeOptions, Preset, Shading};
+use parbake_files::NormalY;
 use parbake_files::WriteOptions;
+use parbake_views::importance::Importance;
 use serde::{Deserialize, Serialize};
 
 /// Options of a chain of levels of detail: one plain struct for library, command line and file.

@@ -1,37 +1,27 @@
 //! A level with its model's own maps, with fewer texels: no bake.
 //!
-//! Materials share one set of maps (`levels/merged.rs`). How much each map may lose is found by pictures: each is reduced by itself,
-//! step by step; of all together the errors add up, nearly enough.
+//! Materials share one set of maps (`levels/merged.rs`), of which each loses as many texels as pictures allow
+//! (`levels/fewer_texels.rs`).
 //!
 //! Contract: at most half of the model's texels. Charts are as they were delivered, shared texels and mirrored charts
 //! included. A watcher that says stop is heeded between pictures.
 
 use super::candidate::Way;
 use super::delivered::{Coarser, surface_of};
-use super::judge::Judge;
 use super::maker::{Draft, Maker, largest_texture};
+use super::picture_score::PictureScore;
 use crate::bake::Baked;
 use crate::error::BakeError;
 use crate::options::BakeOptions;
 use crate::report::BakeReport;
 use crate::work::Work;
 use parbake_atlas::check_mesh;
-use parbake_levels::maps::{
-    LevelMap, Reduction, images_of_extensions, oblong_level_maps, with_halved_extensions, with_reductions,
-};
+use parbake_levels::fewer_texels::with_fewer_texels;
 use parbake_levels::merged::with_common_maps;
-use parbake_levels::search::error_of;
-use parbake_model::{Image, Model};
+use parbake_model::Model;
 
-/// Decibels that fewer texels may cost, and those of which more show nothing, whatever is looked at.
-const UNSEEN: f64 = 0.05;
-const INVISIBLE: f64 = 60.0;
-/// Texels of all maps below which there is nothing to be gained by fewer.
-const FREE: usize = 256 * 256;
 /// Texels that a model without textures may get for the colours of its materials.
 const PALETTE: usize = 64 * 64;
-/// A map that alone costs so many times the error that may not be seen is not reduced further.
-const HOPELESS: f64 = 10.0;
 
 /// A level without a bake. `side` is how many texels along a line its surface needs, `seconds` are those of [`Draft`].
 pub(crate) fn scaled_draft(maker: &Maker, level: usize, model: Model, side: f64, seconds: [f64; 3]) -> Draft {
@@ -73,7 +63,7 @@ pub(crate) fn scaled_draft(maker: &Maker, level: usize, model: Model, side: f64,
 /// enough of them.
 pub(crate) fn scaled(
     maker: &Maker,
-    judge: &Judge,
+    score: &PictureScore,
     coarser: &Coarser,
     side: f64,
     is_over: &dyn Fn() -> bool,
@@ -85,70 +75,9 @@ pub(crate) fn scaled(
     let Some(model) = with_common_maps(&coarser.model, side, maker.options.max_texture_size, most) else {
         return Ok(None);
     };
-    let maps = oblong_level_maps(&model);
-    let shown = |choice: &[usize]| -> Result<(Model, f64), BakeError> {
-        let reductions: Vec<Reduction> = maps.iter().zip(choice).map(|(map, &k)| map.reductions[k]).collect();
-        let halvings = halvings_of_extensions(&maps, choice);
-        let reduced = with_halved_extensions(with_reductions(&model, &maps, &reductions), halvings);
-        let psnr = judge.psnr(&reduced)?;
-        Ok((reduced, psnr))
-    };
     let unreduced =
-        if model.materials == coarser.model.materials { coarser.psnr } else { judge.psnr(&model)? };
-    let whole = error_of(unreduced);
-    let allowed = error_of((unreduced - UNSEEN).min(INVISIBLE));
-    // What each map costs by itself; of all together about the sum.
-    let mut costs: Vec<Vec<f64>> = Vec::new();
-    for place in 0..maps.len() {
-        let mut own = vec![0.0];
-        for reduction in 1..maps[place].reductions.len() {
-            if is_over() || own.iter().any(|cost| *cost > HOPELESS * allowed) {
-                break;
-            }
-            let mut choice = vec![0; maps.len()];
-            choice[place] = reduction;
-            own.push((error_of(shown(&choice)?.1) - whole).max(0.0));
-        }
-        costs.push(own);
-    }
-    let texels_of = |place: usize, reduction: usize| match maps[place].reductions[reduction] {
-        Reduction::Factor => 0,
-        Reduction::Halved([u, v]) => {
-            let image = &model.images[maps[place].image];
-            (image.width >> u).max(1) * (image.height >> v).max(1)
-        }
-    };
-    // Pictures do not show what extensions say, so their maps keep as many texels as the finest of the others.
-    let others = images_of_extensions(&model);
-    let texels_of_others = |choice: &[usize]| -> usize {
-        let [u, v] = halvings_of_extensions(&maps, choice);
-        let texels = |image: &Image| (image.width >> u).max(1) * (image.height >> v).max(1);
-        others.iter().map(|(image, _)| texels(&model.images[*image])).sum()
-    };
-    let mut best: Option<((bool, f64, f64), Vec<usize>)> = None;
-    for choice in choices(&costs.iter().map(Vec::len).collect::<Vec<_>>()) {
-        let texels = choice.iter().enumerate().map(|(place, &k)| texels_of(place, k)).sum::<usize>()
-            + texels_of_others(&choice);
-        let error = whole + choice.iter().enumerate().map(|(place, &k)| costs[place][k]).sum::<f64>();
-        let is_seen = error > allowed;
-        // Where something is lost anyway, the least; else the fewest texels.
-        let rank =
-            if is_seen { (true, error, texels as f64) } else { (false, texels.max(FREE) as f64, error) };
-        if texels <= most && best.as_ref().is_none_or(|(least, _)| rank < *least) {
-            best = Some((rank, choice));
-        }
-    }
-    let Some((_, choice)) = best else { return Ok(None) };
-    shown(&choice).map(Some)
-}
-
-/// How often the maps of extensions are halved: as the finest of the others.
-fn halvings_of_extensions(maps: &[LevelMap], choice: &[usize]) -> [usize; 2] {
-    let halved = maps.iter().zip(choice).filter_map(|(map, &k)| match map.reductions[k] {
-        Reduction::Halved(times) => Some(times),
-        Reduction::Factor => None,
-    });
-    halved.min_by_key(|[u, v]| u + v).unwrap_or([2; 2])
+        if model.materials == coarser.model.materials { coarser.psnr } else { score.psnr(&model)? };
+    with_fewer_texels(&model, most, unreduced, is_over, |reduced| score.psnr(reduced))
 }
 
 /// Texels of all images that triangles show.
@@ -162,16 +91,6 @@ fn texels_read(model: &Model) -> usize {
     images.iter().filter_map(|&image| model.images.get(image)).map(|image| image.width * image.height).sum()
 }
 
-/// All choices of one of so many for each place.
-fn choices(counts: &[usize]) -> Vec<Vec<usize>> {
-    counts.iter().fold(vec![Vec::new()], |all, &count| {
-        let longer = |choice: &Vec<usize>| -> Vec<Vec<usize>> {
-            (0..count).map(|k| choice.iter().copied().chain([k]).collect()).collect()
-        };
-        all.iter().flat_map(longer).collect()
-    })
-}
-
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
@@ -180,7 +99,7 @@ mod tests {
     use super::super::{Level, make_levels};
     use super::*;
     use parbake_model::glam::{Vec2, Vec3, vec2};
-    use parbake_model::{Material, Mesh, TextureSlot, Wrap};
+    use parbake_model::{Image, Material, Mesh, TextureSlot, Wrap};
 
     /// A wavy sheet with a checkerboard of 16² fields on a texture of 32² texels: no other layout with fewer texels shows
     /// them as they are.
@@ -259,11 +178,5 @@ mod tests {
         let is_own = |(uv, p): (&Vec2, &Vec3)| (*uv - 0.5 * p.truncate()).length() < 0.01;
         assert!(mesh.uvs.iter().zip(&mesh.positions).all(is_own));
         assert!(report.at_screen_size.psnr > 40.0, "{}", report.at_screen_size.psnr);
-    }
-
-    /// Protects from choices that are forgotten.
-    #[test]
-    fn all_choices_are_weighed() {
-        assert_eq!(choices(&[2, 1, 2]), [[0, 0, 0], [0, 0, 1], [1, 0, 0], [1, 0, 1]]);
     }
 }

@@ -10,10 +10,10 @@
 use super::chain::Chain;
 use super::maker::{Draft, Maker};
 use super::options::LodOptions;
-use super::switch::{Lineup, Pictures};
 use super::written::{AsWritten, as_written};
 use crate::error::BakeError;
-use crate::normal_y::NormalY;
+use parbake_evaluate::screen_size::{Pictures, ScreenComparison};
+use parbake_files::NormalY;
 use parbake_files::{TextureFormat, WriteOptions};
 use parbake_levels::maps::{LevelMap, Reduction, level_maps, size_of, with_reductions};
 use parbake_levels::search::{Baking, Choice, Measured, Plan, Search, Step, Verdict, error_of};
@@ -98,7 +98,7 @@ pub(crate) fn find(
     let pixels = options.screen_size[level];
     let (first, most) = bounds(maker, level, finer, target);
     let mut search = Search::new(target, first, maker.least, most);
-    let original = maker.lineup.pictures(&maker.original, pixels)?;
+    let original = maker.screens.pictures(&maker.original, pixels)?;
     let until = chain.level_until(level);
     let mut tried: Vec<Tried> = Vec::new();
     let (mut stopped, mut longest, mut spent) = (false, 0f64, [0.0; 3]);
@@ -124,7 +124,7 @@ pub(crate) fn find(
         let spent_now = draft.seconds;
         (0..2).for_each(|k| spent[k] += spent_now[k]);
         let own = Tried::new(draft, options);
-        let (baking, measured) = own.measure(&maker.lineup, &original, target, plan)?;
+        let (baking, measured) = own.measure(&maker.screens, &original, target, plan)?;
         search.note(baking, measured);
         tried.push(own);
         let all = begin.elapsed().as_secs_f64();
@@ -222,14 +222,14 @@ impl Tried {
     /// Measures each reduction by itself, then some together.
     fn measure(
         &self,
-        lineup: &Lineup,
+        screens: &ScreenComparison,
         original: &Pictures,
         target: f64,
         plan: Plan,
     ) -> Result<(Baking, Vec<Measured>), BakeError> {
         let model = &self.draft.baked.model;
         let psnr = |model: &Model| -> Result<f64, BakeError> {
-            Ok(lineup.psnr(original, &lineup.subject(&as_viewers_do(model))?))
+            Ok(screens.psnr(original, &screens.place(&as_viewers_do(model))?))
         };
         let whole = error_of(psnr(model)?);
         let all = as_written(model, &self.write, self.normal_y)?.bytes;

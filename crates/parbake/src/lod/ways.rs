@@ -16,8 +16,8 @@
 use super::candidate::{Candidate, Way};
 use super::chain::Chain;
 use super::delivered::{Coarser, baked_draft, coarser, may_keep_vertices};
-use super::judge::{Judge, Tried};
 use super::maker::{Draft, Maker, texels_of};
+use super::picture_score::{PictureScore, Tried};
 use super::scaled::{scaled, scaled_draft};
 use crate::error::BakeError;
 use parbake_levels::maps::{Reduction, level_maps, with_reductions};
@@ -53,7 +53,7 @@ pub(crate) fn draft(
     }
     let begin = Instant::now();
     chain.tell(level, 0);
-    let judge = Judge::new(maker, maker.options.screen_size[level])?;
+    let score = PictureScore::new(maker, maker.options.screen_size[level])?;
     let enough = until.map(|until| begin + until.saturating_duration_since(begin).mul_f64(TRYING));
     let is_cut = Cell::new(false);
     let is_over = |chain: &Chain| {
@@ -63,12 +63,12 @@ pub(crate) fn draft(
     };
     let side = maker.texels_along(maker.model, maker.options.screen_size[level]);
     let own = if keeps {
-        coarser(maker, &judge, triangles, side, until.is_none(), &|| is_over(chain))?
+        coarser(maker, &score, triangles, side, until.is_none(), &|| is_over(chain))?
     } else {
         None
     };
     let maps =
-        own.as_ref().map(|own| scaled(maker, &judge, own, side, &|| is_over(chain))).transpose()?.flatten();
+        own.as_ref().map(|own| scaled(maker, &score, own, side, &|| is_over(chain))).transpose()?.flatten();
     let scaled = maps.map(|(model, psnr)| {
         let draft = scaled_draft(maker, level, model, side, [begin.elapsed().as_secs_f64(), 0.0, 0.0]);
         let candidate = draft.candidate(psnr);
@@ -93,7 +93,7 @@ pub(crate) fn draft(
         (Some(new), scaled) => (new, scaled),
         (None, _) => return Ok(None),
     };
-    let mut best = judge.tried(new)?;
+    let mut best = score.tried(new)?;
     let mut candidates = vec![best.1];
     if let Some(scaled) = scaled {
         weigh(&mut best, scaled, WORTHWHILE, &mut candidates);
@@ -110,14 +110,14 @@ pub(crate) fn draft(
         let baked = baked_draft(maker, chain, level, own, size)?;
         let fits = !is_beside_scaled || 2 * texels_of(&baked.baked.model) <= texels_of(maker.model);
         if fits && !chain.stopped() {
-            weigh(&mut best, judge.tried(baked)?, WORTHWHILE, &mut candidates);
+            weigh(&mut best, score.tried(baked)?, WORTHWHILE, &mut candidates);
         }
     }
     if may_bake(chain, &best)
-        && let Some(refined) = refined(maker, chain, &judge, level, &best, own.as_ref())?
+        && let Some(refined) = refined(maker, chain, &score, level, &best, own.as_ref())?
         && !chain.stopped()
     {
-        weigh(&mut best, judge.tried(refined)?, GAINED_BY_MAPS, &mut candidates);
+        weigh(&mut best, score.tried(refined)?, GAINED_BY_MAPS, &mut candidates);
     }
     finished(chain, best.0, candidates)
 }
@@ -145,7 +145,7 @@ fn weigh(best: &mut Tried, other: Tried, least: f64, candidates: &mut Vec<Candid
 fn refined(
     maker: &Maker,
     chain: &mut Chain,
-    judge: &Judge,
+    score: &PictureScore,
     level: usize,
     (draft, candidate): &Tried,
     own: Option<&Coarser>,
@@ -156,14 +156,14 @@ fn refined(
     if baked.images.is_empty() || !may_grow {
         return Ok(None);
     }
-    let shows = |judge: &Judge| -> Result<bool, BakeError> {
+    let shows = |score: &PictureScore| -> Result<bool, BakeError> {
         let maps = level_maps(baked);
         let halved: Vec<Reduction> = maps.iter().map(|_| Reduction::Halved([1; 2])).collect();
-        Ok(judge.psnr(&with_reductions(baked, &maps, &halved))? <= candidate.psnr - SHOWN_BY_MAPS)
+        Ok(score.psnr(&with_reductions(baked, &maps, &halved))? <= candidate.psnr - SHOWN_BY_MAPS)
     };
     match (draft.way, own) {
-        (Way::New, _) if shows(judge)? => maker.baked_again(chain, level, draft, size).map(Some),
-        (Way::Delivered, Some(own)) if shows(judge)? => {
+        (Way::New, _) if shows(score)? => maker.baked_again(chain, level, draft, size).map(Some),
+        (Way::Delivered, Some(own)) if shows(score)? => {
             baked_draft(maker, chain, level, own, Some(size)).map(Some)
         }
         _ => Ok(None),

@@ -1,10 +1,10 @@
 //! A level as its file holds it: figures are of that.
 
 use crate::error::BakeError;
-use crate::normal_y::{NormalY, with_normal_y};
 use parbake_files::{
     Limits, MeshCompression, NoResources, TextureFormat, WriteOptions, glb_bytes_with, read_gltf_bytes,
 };
+use parbake_files::{NormalY, with_normal_y};
 use parbake_model::Model;
 use std::borrow::Cow;
 use std::path::Path;

@@ -4,7 +4,7 @@ use super::pictures::{AMPLIFIED, PIXELS, SUPERSAMPLE, front};
 use super::scenes::Scenes;
 use crate::page::text::{NOTHING, change, decimal, escape, verdict};
 use crate::page::{amplified_difference, embed_rgb};
-use parbake::{BakeError, Channel, Comparison, OnChannel, Subject};
+use parbake::{BakeError, Channel, Comparison, OnChannel, PlacedModel};
 use parbake_metric::Rgb;
 use rayon::prelude::*;
 use std::fmt::Write;
@@ -26,8 +26,9 @@ pub fn rows(scenes: &Scenes, compared: &Comparison) -> Vec<ChannelRow> {
         return Vec::new();
     }
     let camera = front(&scenes.all());
-    let shoot = |subject: &Subject| scenes.studio.photograph(subject, &camera, (PIXELS, SUPERSAMPLE), true);
-    let (high, baked) = (shoot(&scenes.high), shoot(&scenes.baked));
+    let render =
+        |model: &PlacedModel| scenes.renderer.render_from(model, &camera, (PIXELS, SUPERSAMPLE), true);
+    let (high, baked) = (render(&scenes.high), render(&scenes.baked));
     let row = |on: &OnChannel| {
         let ([a, b], _) = on.channel.pair(&high, &baked);
         ChannelRow {

@@ -6,7 +6,7 @@
 
 use super::scenes::Scenes;
 use crate::page::amplified_difference;
-use parbake::Subject;
+use parbake::PlacedModel;
 use parbake_metric::{Rgb, mean_squared_error, psnr_from_mse};
 use parbake_model::glam::Vec3;
 use parbake_render::camera::{Camera, Projection};
@@ -68,9 +68,9 @@ fn direction(angles: [f32; 2]) -> Vec3 {
 
 fn side(scenes: &Scenes, direction: Vec3) -> Side {
     let camera = framed(&scenes.all(), direction);
-    let picture = |subject: &Subject| {
-        let shot = scenes.studio.photograph(subject, &camera, (PIXELS, SUPERSAMPLE), false);
-        scenes.studio.develop(&shot, BACKGROUND)
+    let picture = |model: &PlacedModel| {
+        let view = scenes.renderer.render_from(model, &camera, (PIXELS, SUPERSAMPLE), false);
+        scenes.renderer.tonemap(&view, BACKGROUND)
     };
     let (high, ray_cast, baked) = (picture(&scenes.high), picture(&scenes.ray_cast), picture(&scenes.baked));
     let psnr = |low| psnr_from_mse(mean_squared_error(&high, low).unwrap_or(f64::NAN));
@@ -86,9 +86,9 @@ fn side(scenes: &Scenes, direction: Vec3) -> Side {
     }
 }
 
-/// The camera of the first side, whose picture all subjects just fit into.
-pub fn front(subjects: &[&Subject]) -> Camera {
-    framed(subjects, direction(DIRECTIONS[0]))
+/// The camera of the first side, whose picture all models just fit into.
+pub fn front(models: &[&PlacedModel]) -> Camera {
+    framed(models, direction(DIRECTIONS[0]))
 }
 
 /// Where it stands, of unit length.
@@ -97,12 +97,12 @@ pub fn front_direction() -> Vec3 {
 }
 
 /// A camera whose picture all shapes just fit into.
-fn framed(subjects: &[&Subject], direction: Vec3) -> Camera {
+fn framed(models: &[&PlacedModel], direction: Vec3) -> Camera {
     let wide = Camera::towards_origin(direction, RADIUS, Projection::Perspective(1.0));
-    let reach = subjects
+    let reach = models
         .iter()
-        .flat_map(|subject| {
-            let scene = subject.scene();
+        .flat_map(|model| {
+            let scene = model.scene();
             scene.mesh().triangles.iter().flatten().map(|&i| scene.mesh().positions[i as usize])
         })
         .map(|p| {

@@ -2,9 +2,8 @@
 
 use super::settings::flags;
 use crate::page::text::{NOTHING, change, count, decimal, duration, escape, share, verdict};
-use parbake::evaluate::ViewFigures;
-use parbake::evaluate::options::EvaluateOptions;
 use parbake::{BakeReport, Comparison, Written};
+use parbake::{EvaluateOptions, ViewFigures};
 use std::fmt::Write;
 
 /// A figure: its name, decimals, whether more is better, and where it stands.

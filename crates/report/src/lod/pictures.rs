@@ -6,7 +6,7 @@
 use crate::html::pictures::{AMPLIFIED, BACKGROUND, PIXELS, SUPERSAMPLE, front, front_direction};
 use crate::page::text::escape;
 use crate::page::{amplified_difference, embed_rgb};
-use parbake::{BakeError, EvaluateOptions, LodOptions, Studio, Subject};
+use parbake::{BakeError, EvaluateOptions, LodOptions, PlacedModel, Renderer};
 use parbake_metric::{Rgb, mean_squared_error, psnr_from_mse};
 use parbake_model::Model;
 use parbake_render::camera::Camera;
@@ -20,9 +20,9 @@ const LARGE: usize = 200;
 
 /// All models in front of one camera.
 pub struct Gallery {
-    studio: Studio,
-    original: Subject,
-    levels: Vec<Subject>,
+    renderer: Renderer,
+    original: PlacedModel,
+    levels: Vec<PlacedModel>,
     camera: Camera,
 }
 
@@ -39,26 +39,26 @@ pub struct Looks {
 impl Gallery {
     /// Makes all models ready.
     pub fn new(original: &Model, levels: &[Model], options: &LodOptions) -> Result<Self, BakeError> {
-        let studio =
-            Studio::new(original, &EvaluateOptions { shading: options.shading, ..Default::default() })?;
-        let original = studio.subject(original);
-        let levels: Vec<Subject> = levels.iter().map(|level| studio.subject(level)).collect();
-        let all: Vec<&Subject> = std::iter::once(&original).chain(&levels).collect();
+        let renderer =
+            Renderer::new(original, &EvaluateOptions { shading: options.shading, ..Default::default() })?;
+        let original = renderer.place(original);
+        let levels: Vec<PlacedModel> = levels.iter().map(|level| renderer.place(level)).collect();
+        let all: Vec<&PlacedModel> = std::iter::once(&original).chain(&levels).collect();
         let camera = front(&all);
-        Ok(Self { studio, original, levels, camera })
+        Ok(Self { renderer, original, levels, camera })
     }
 
-    fn close(&self, subject: &Subject) -> Rgb {
-        let shot = self.studio.photograph(subject, &self.camera, (PIXELS, SUPERSAMPLE), false);
-        self.studio.develop(&shot, BACKGROUND)
+    fn close(&self, model: &PlacedModel) -> Rgb {
+        let view = self.renderer.render_from(model, &self.camera, (PIXELS, SUPERSAMPLE), false);
+        self.renderer.tonemap(&view, BACKGROUND)
     }
 
-    fn small(&self, subject: &Subject, pixels: f64) -> Rgb {
+    fn small(&self, model: &PlacedModel, pixels: f64) -> Rgb {
         let options = EvaluateOptions::default();
         let camera = Camera::towards_origin(front_direction(), options.radius, options.projection());
         let size = (PICTURE * pixels).round().max(8.0) as usize;
         let samples = if size > LARGE { SUPERSAMPLE } else { SMALL_SAMPLES };
-        self.studio.develop(&self.studio.photograph(subject, &camera, (size, samples), false), BACKGROUND)
+        self.renderer.tonemap(&self.renderer.render_from(model, &camera, (size, samples), false), BACKGROUND)
     }
 
     /// The close-up of the original, which other pictures show again by its name `original`.
@@ -76,8 +76,8 @@ impl Gallery {
 
     /// A level's pictures; `pixels` is the size that it was made for.
     pub fn looks(&self, level: usize, pixels: f64) -> Result<Looks, BakeError> {
-        let subject = &self.levels[level];
-        let (original, own) = (self.close(&self.original), self.close(subject));
+        let placed = &self.levels[level];
+        let (original, own) = (self.close(&self.original), self.close(placed));
         let name = format!("level {level}");
         let id = format!("level{level}");
         let thumbnail = format!(
@@ -115,12 +115,12 @@ impl Gallery {
                 None
             )?
         );
-        Ok(Looks { thumbnail, own: self.own(&name, subject, pixels)?, close })
+        Ok(Looks { thumbnail, own: self.own(&name, placed, pixels)?, close })
     }
 
     /// Pixel for pixel, and enlarged where that is small.
-    fn own(&self, name: &str, subject: &Subject, pixels: f64) -> Result<String, BakeError> {
-        let (original, own) = (self.small(&self.original, pixels), self.small(subject, pixels));
+    fn own(&self, name: &str, model: &PlacedModel, pixels: f64) -> Result<String, BakeError> {
+        let (original, own) = (self.small(&self.original, pixels), self.small(model, pixels));
         let difference = amplified_difference(&original, &own, AMPLIFIED);
         let size = own.width;
         let caption = format!("{name} <b>{} dB</b>", decibels(&original, &own));

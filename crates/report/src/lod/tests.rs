@@ -1,8 +1,8 @@
 //! The page of a made-up chain.
 
 use super::lod_report;
+use parbake::AtSize;
 use parbake::lod::document::LodDocument;
-use parbake::lod::switch::AtSize;
 use parbake::{
     Candidate, LayerReport, LevelReport, LodOptions, Start, StartReport, TargetReport, Trial, TrialMap,
     Verdict, Way, demo_pair,

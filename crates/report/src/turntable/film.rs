@@ -5,7 +5,7 @@ use super::layout::{Colors, Layout};
 use super::palette::Palette;
 use super::sheet::{Sheet, bytes};
 use parbake::BakeError;
-use parbake::studio::{Studio, Subject};
+use parbake::{PlacedModel, Renderer};
 use parbake_image::display::{Curve, Display};
 use parbake_metric::Rgb;
 use parbake_model::Model;
@@ -22,10 +22,10 @@ const PALETTE_SUPERSAMPLE: usize = 2;
 /// Everything that frames are rendered from.
 pub(super) struct Set<'a> {
     options: &'a TurntableOptions,
-    studio: Studio,
+    renderer: Renderer,
     /// A quicker one, which looks for colours.
-    scout: Studio,
-    subjects: Vec<Subject>,
+    scout: Renderer,
+    models: Vec<PlacedModel>,
     background: [f32; 3],
     colors: Colors,
     pub layout: Layout,
@@ -36,24 +36,24 @@ impl<'a> Set<'a> {
     /// Brings all models in.
     pub fn new(high: &Model, lows: &[&Model], options: &'a TurntableOptions) -> Result<Self, BakeError> {
         let background = options.background()?;
-        let studio = Studio::new(high, &options.studio(options.resolution, options.supersample))?;
+        let renderer = Renderer::new(high, &options.views_of(options.resolution, options.supersample))?;
         let (side, samples) =
             (options.resolution.min(PALETTE_SIDE), options.supersample.min(PALETTE_SUPERSAMPLE));
-        let scout = Studio::new(high, &options.studio(side, samples))?;
-        let subjects = [&[high], lows].concat().into_iter().map(|model| studio.subject(model)).collect();
+        let scout = Renderer::new(high, &options.views_of(side, samples))?;
+        let models = [&[high], lows].concat().into_iter().map(|model| renderer.place(model)).collect();
         let names: Vec<String> =
             std::iter::once("high-poly".into()).chain(lows.iter().map(|low| low.name.clone())).collect();
         let display = Display { gain: 1.0, curve: Curve::Srgb };
         let colors = Colors::before(bytes(background.map(|light| display.encode(light))));
         let layout = Layout::new(options.resolution, names.len(), !options.no_captions);
         let blank = layout.blank(&colors, &names);
-        Ok(Self { options, studio, scout, subjects, background, colors, layout, blank })
+        Ok(Self { options, renderer, scout, models, background, colors, layout, blank })
     }
 
     /// Frame `index`; the one after the last is the first.
     pub fn frame(&self, index: usize) -> Sheet {
         let mut sheet = self.blank.clone();
-        for (column, picture) in self.pictures(&self.studio, index).enumerate() {
+        for (column, picture) in self.pictures(&self.renderer, index).enumerate() {
             self.layout.place(&mut sheet, column, &picture);
         }
         sheet
@@ -73,11 +73,11 @@ impl<'a> Set<'a> {
         Palette::new(&self.colors, &seen.concat())
     }
 
-    fn pictures<'b>(&'b self, studio: &'b Studio, index: usize) -> impl Iterator<Item = Rgb> + 'b {
+    fn pictures<'b>(&'b self, renderer: &'b Renderer, index: usize) -> impl Iterator<Item = Rgb> + 'b {
         let direction = self.direction(index);
-        self.subjects.iter().map(move |subject| {
-            let shot = studio.shot(subject, direction);
-            studio.develop(&shot, self.background)
+        self.models.iter().map(move |model| {
+            let view = renderer.render(model, direction);
+            renderer.tonemap(&view, self.background)
         })
     }
 

@@ -4,7 +4,7 @@ use super::FilmFormat;
 use super::layout::Layout;
 use parbake::BakeError;
 use parbake::Convention;
-use parbake::evaluate::options::EvaluateOptions;
+use parbake::EvaluateOptions;
 use serde::{Deserialize, Serialize};
 
 /// Options of a turntable; all models are filmed alike.
@@ -125,13 +125,13 @@ impl TurntableOptions {
         Err(BakeError::Option { option: "resolution", value: self.resolution.to_string(), range })
     }
 
-    /// The background's linear light; checks what the studio asks for as well.
+    /// The background's linear light; checks what the renderer asks for as well.
     pub(super) fn background(&self) -> Result<[f32; 3], BakeError> {
-        self.studio(self.resolution, self.supersample).checked_background()
+        Ok(self.views_of(self.resolution, self.supersample).checked_background()?)
     }
 
-    /// The studio for pictures of this size.
-    pub(super) fn studio(&self, resolution: usize, supersample: usize) -> EvaluateOptions {
+    /// Options of pictures of this size.
+    pub(super) fn views_of(&self, resolution: usize, supersample: usize) -> EvaluateOptions {
         EvaluateOptions {
             resolution,
             supersample,

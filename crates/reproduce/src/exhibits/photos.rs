@@ -6,7 +6,7 @@
 
 use crate::error::ReproduceError;
 use crate::outcome::Outcome;
-use parbake::{EvaluateOptions, Limits, Studio, read_model};
+use parbake::{EvaluateOptions, Limits, Renderer, read_model};
 use parbake_metric::Rgb;
 use parbake_model::Model;
 use parbake_model::glam::Vec3;
@@ -48,13 +48,13 @@ pub fn row(title: &str, high: &Path, plates: &[Plate]) -> Result<String, Reprodu
     let limits = Limits::default();
     let high = read_model(high, &limits)?.model;
     let (direction, fov) = framing(&high)?;
-    let studio =
-        |resolution| Studio::new(&high, &EvaluateOptions { resolution, fov, ..EvaluateOptions::paper() });
-    let (whole, fine) = (studio(PICTURE)?, studio(FINER * PICTURE)?);
+    let renderer =
+        |resolution| Renderer::new(&high, &EvaluateOptions { resolution, fov, ..EvaluateOptions::paper() });
+    let (whole, fine) = (renderer(PICTURE)?, renderer(FINER * PICTURE)?);
     let taken = |model: &Model| {
-        let taken = [&whole, &fine].map(|studio| {
-            let subject = studio.subject(model);
-            studio.develop(&studio.shot(&subject, direction), BACKGROUND)
+        let taken = [&whole, &fine].map(|renderer| {
+            let placed = renderer.place(model);
+            renderer.tonemap(&renderer.render(&placed, direction), BACKGROUND)
         });
         let [picture, detail] = taken;
         Pictures { picture, detail }
@@ -87,13 +87,13 @@ struct Pictures {
 /// usual front, as a photographer would take it, unless another side shows much more.
 fn framing(high: &Model) -> Result<(Vec3, f32), ReproduceError> {
     let options = EvaluateOptions { resolution: 96, supersample: 1, ..EvaluateOptions::paper() };
-    let studio = Studio::new(high, &options)?;
-    let subject = studio.subject(high);
+    let renderer = Renderer::new(high, &options)?;
+    let placed = renderer.place(high);
     let sides = [[0.413, 0.208, 0.887], [-0.54, 0.45, 0.71], [0.35, 0.8, 0.49], [0.3, -0.45, -0.84]];
     let mut best = (0, Vec3::Z, options.fov);
     for direction in sides.map(|side| Vec3::from(side).normalize()) {
-        let shot = studio.shot(&subject, direction);
-        let [black, white] = [[0.0; 3], [1.0; 3]].map(|background| studio.develop(&shot, background));
+        let view = renderer.render(&placed, direction);
+        let [black, white] = [[0.0; 3], [1.0; 3]].map(|background| renderer.tonemap(&view, background));
         let size = black.width;
         // What a background does not change is the model.
         let covered: Vec<usize> = (0..size * size).filter(|&i| black.pixels[i] == white.pixels[i]).collect();

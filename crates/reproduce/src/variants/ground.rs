@@ -6,10 +6,8 @@ use super::measured_heights::MeasuredHeights;
 use super::options::VariantsOptions;
 use super::report::VariantFigures;
 use super::stored::Stored;
-use parbake::evaluate::options::EvaluateOptions;
-use parbake::evaluate::{compare, mean};
-use parbake::studio::shown;
 use parbake::{BakeError, Message, Watcher};
+use parbake::{EvaluateOptions, compare_pictures, mean_figures, tonemapped};
 use parbake_fit::backend::Cpu;
 use parbake_fit::parallax::{State, fit_parallax_of};
 use parbake_fit::schedule::{Comparison, Fitted, fit_textures};
@@ -159,7 +157,7 @@ impl<'a> Ground<'a> {
                 let camera = Camera::towards_origin(direction, evaluate.radius, evaluate.projection());
                 let (size, supersample) = (evaluate.resolution, evaluate.supersample);
                 let picture = subject.high.scene.render(&HEADLIGHT_BRDF, &camera, size, supersample);
-                (camera, shown(&picture, &display, [0.0; 3]))
+                (camera, tonemapped(&picture, &display, [0.0; 3]))
             })
             .collect();
         Self { views, begin: maps, subject, options, evaluate, wanted }
@@ -174,7 +172,7 @@ impl<'a> Ground<'a> {
     }
 
     fn grey(&self, picture: &parbake_render::scene::Picture) -> Rgb {
-        shown(picture, &self.subject.high.conventions.display, GREY)
+        tonemapped(picture, &self.subject.high.conventions.display, GREY)
     }
 
     /// The next variant, unless it shall stop: half a fit would be no fair comparison.
@@ -225,11 +223,11 @@ impl<'a> Ground<'a> {
         let (size, supersample) = (self.evaluate.resolution, self.evaluate.supersample);
         let views: Vec<_> = (self.wanted.iter())
             .map(|(camera, wanted)| {
-                let picture = shown(&look.render(camera, size, supersample), display, [0.0; 3]);
-                compare(wanted, &picture, false)
+                let picture = tonemapped(&look.render(camera, size, supersample), display, [0.0; 3]);
+                compare_pictures(wanted, &picture, false)
             })
             .collect();
-        let figures = mean(&views);
+        let figures = mean_figures(&views);
         let average = |losses: &[f64]| losses.iter().sum::<f64>() / losses.len().max(1) as f64;
         let few = REPORTED.min(losses.len());
         let fitted = [average(&losses[..few]), average(&losses[losses.len() - few..])];

@@ -3,10 +3,23 @@
 //! Contract: `named_nodes` looks only among nodes on which triangles hang, by themselves or below. A name in vain is told
 //! with the names that there are, the most similar ones first.
 
-use crate::error::BakeError;
 use parbake_model::{Hierarchy, Model};
 use std::cmp::Reverse;
 use wildmatch::WildMatch;
+
+/// A pattern that fits no node.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("--{option} {pattern:?}: {model} has no node of that name with triangles; {has}")]
+pub struct NodeError {
+    /// The option that names it.
+    pub option: &'static str,
+    /// What was asked for.
+    pub pattern: String,
+    /// The model.
+    pub model: String,
+    /// What there is.
+    pub has: String,
+}
 
 /// Names that an error shows.
 const SHOWN: usize = 8;
@@ -16,7 +29,7 @@ const SHOWN: usize = 8;
 ///
 /// # Errors
 /// A pattern that names none.
-pub fn named_nodes(model: &Model, pattern: &str, option: &'static str) -> Result<Vec<bool>, BakeError> {
+pub fn named_nodes(model: &Model, pattern: &str, option: &'static str) -> Result<Vec<bool>, NodeError> {
     named_among(model, pattern, option, with_triangles)
 }
 
@@ -24,7 +37,7 @@ pub fn named_nodes(model: &Model, pattern: &str, option: &'static str) -> Result
 ///
 /// # Errors
 /// A pattern that names none.
-pub fn all_named_nodes(model: &Model, pattern: &str, option: &'static str) -> Result<Vec<bool>, BakeError> {
+pub fn all_named_nodes(model: &Model, pattern: &str, option: &'static str) -> Result<Vec<bool>, NodeError> {
     named_among(model, pattern, option, |hierarchy| vec![true; hierarchy.nodes.len()])
 }
 
@@ -33,7 +46,7 @@ fn named_among(
     pattern: &str,
     option: &'static str,
     among: impl Fn(&Hierarchy) -> Vec<bool>,
-) -> Result<Vec<bool>, BakeError> {
+) -> Result<Vec<bool>, NodeError> {
     let none = Hierarchy::default();
     let hierarchy = model.nodes.as_ref().unwrap_or(&none);
     let is_used = among(hierarchy);
@@ -44,7 +57,7 @@ fn named_among(
         return Ok(named);
     }
     let names = hierarchy.nodes.iter().zip(&is_used).filter(|(_, used)| **used).map(|(n, _)| n.name.as_str());
-    Err(BakeError::NoNode {
+    Err(NodeError {
         option,
         pattern: pattern.into(),
         model: model.name.clone(),

@@ -16,16 +16,42 @@
 //!
 //! Contract: without any all counts alike, and nothing is computed.
 
-use crate::error::BakeError;
-use crate::nodes::named_nodes;
+use crate::high_poly::HighPoly;
+use parbake_mesh::named_nodes::{NodeError, named_nodes};
 use parbake_model::{Hierarchy, Mesh, Model};
 use parbake_render::interpolate::interpolate;
-use parbake_views::high_poly::HighPoly;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 use wildmatch::WildMatch;
+
+/// Importances that a model cannot have.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ImportanceError {
+    /// A pattern that fits no node.
+    #[error(transparent)]
+    Node(#[from] NodeError),
+    /// A name that fits no material.
+    #[error("--importance {name} is out of range: it may be {range}")]
+    NoMaterial {
+        /// What was asked for.
+        name: String,
+        /// What may be asked for.
+        range: String,
+    },
+    /// A model that was read without what is painted on it.
+    #[error(
+        "--importance-attribute {attribute}: {model} was read without it; read it by read_painted_model with the same name"
+    )]
+    NotPainted {
+        /// The model.
+        model: String,
+        /// The attribute.
+        attribute: String,
+    },
+}
 
 /// How much the materials or nodes of a name count.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -124,7 +150,7 @@ pub fn importances(
     model: &Model,
     options: &[Importance],
     attribute: Option<&str>,
-) -> Result<Vec<f32>, BakeError> {
+) -> Result<Vec<f32>, ImportanceError> {
     if options.is_empty() && attribute.is_none() {
         return Ok(Vec::new());
     }
@@ -134,7 +160,7 @@ pub fn importances(
             Named::Material => (&model.mesh.triangle_materials, named_materials(model, name)?),
             Named::Node => {
                 let Some(nodes) = &model.nodes else {
-                    return named_nodes(model, name, OPTION).map(|_| weights);
+                    return Ok(named_nodes(model, name, OPTION).map(|_| weights)?);
                 };
                 (&nodes.of_triangles, with_those_below(nodes, named_nodes(model, name, OPTION)?))
             }
@@ -148,7 +174,7 @@ pub fn importances(
     if let Some(attribute) = attribute {
         if model.painted.len() != weights.len() {
             let (model, attribute) = (model.name.clone(), attribute.into());
-            return Err(BakeError::NotPainted { model, attribute });
+            return Err(ImportanceError::NotPainted { model, attribute });
         }
         for (weight, &painted) in weights.iter_mut().zip(&model.painted) {
             let times = PAINTED.powf(2.0 * painted - 1.0);
@@ -161,7 +187,7 @@ pub fn importances(
 /// The option, for errors.
 const OPTION: &str = "importance";
 
-fn named_materials(model: &Model, name: &str) -> Result<Vec<bool>, BakeError> {
+fn named_materials(model: &Model, name: &str) -> Result<Vec<bool>, ImportanceError> {
     let pattern = WildMatch::new(name);
     let is_named: Vec<bool> = model.materials.iter().map(|m| pattern.matches(&m.name)).collect();
     if is_named.contains(&true) {
@@ -170,7 +196,7 @@ fn named_materials(model: &Model, name: &str) -> Result<Vec<bool>, BakeError> {
     let names: Vec<String> = model.materials.iter().map(|m| format!("{:?}", m.name)).collect();
     let range =
         format!("one of {}'s materials: {}; for a node write node:{name}", model.name, names.join(", "));
-    Err(BakeError::Option { option: OPTION, value: name.into(), range })
+    Err(ImportanceError::NoMaterial { name: name.into(), range })
 }
 
 /// These nodes and all below them.

@@ -1,21 +1,17 @@
 //! Compares two models picture by picture: PSNR, MS-SSIM and FLIP (`figures.rs`) over views spread
 //! around them; where whole materials are compared, of what is seen and of each channel (`channels.rs`).
 
-pub mod channels;
-mod figures;
-pub mod options;
-
-use crate::error::BakeError;
-use crate::lost::not_judged;
-use crate::options::Shading;
-use crate::studio::{Shot, Studio, Subject};
-use channels::{Channel, ChannelFigures};
-pub use figures::{ViewFigures, compare, mean};
-use options::EvaluateOptions;
+use crate::channels::{Channel, ChannelFigures};
+use crate::conventions::Shading;
+use crate::error::EvaluateError;
+use crate::figures::{ViewFigures, compare, mean};
+use crate::options::EvaluateOptions;
+use crate::renderer::{PlacedModel, RenderedView, Renderer};
 use parbake_metric::Rgb;
 use parbake_model::Model;
 use parbake_progress::{Message, Stage, Watcher};
 use parbake_render::camera::fibonacci_sphere;
+use parbake_views::lost::not_judged;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -44,7 +40,7 @@ pub fn evaluate(
     low: &Model,
     options: &EvaluateOptions,
     watcher: &dyn Watcher,
-) -> Result<Evaluation, BakeError> {
+) -> Result<Evaluation, EvaluateError> {
     let mut all = evaluate_on(high, low, options, &[&options.background], watcher)?;
     Ok(all.remove(0))
 }
@@ -60,7 +56,7 @@ pub fn evaluate_on(
     options: &EvaluateOptions,
     backgrounds: &[&str],
     watcher: &dyn Watcher,
-) -> Result<Vec<Evaluation>, BakeError> {
+) -> Result<Vec<Evaluation>, EvaluateError> {
     let unjudged = not_judged(high.materials.iter().chain(&low.materials));
     unjudged.into_iter().for_each(|text| watcher.message(Message::Warning(text)));
     let Compared { shading, channels, views } =
@@ -79,7 +75,7 @@ pub fn evaluate_on(
 }
 
 /// What became of a comparison.
-pub(crate) struct Compared {
+pub struct Compared {
     /// How all were shaded.
     pub shading: Shading,
     /// The channels that were compared.
@@ -89,7 +85,7 @@ pub(crate) struct Compared {
 }
 
 /// One view.
-pub(crate) struct ComparedView {
+pub struct ComparedView {
     /// The figures of each model on each background.
     pub seen: Vec<Vec<ViewFigures>>,
     /// Those of each model's channels.
@@ -101,42 +97,42 @@ pub(crate) struct ComparedView {
 ///
 /// # Errors
 /// As of [`evaluate`].
-pub(crate) fn evaluate_each(
+pub fn evaluate_each(
     high: &Model,
     low: &[&Model],
     options: &EvaluateOptions,
     backgrounds: &[&str],
     with_channels: bool,
     watcher: &dyn Watcher,
-) -> Result<Compared, BakeError> {
+) -> Result<Compared, EvaluateError> {
     let color =
         |&name: &&str| EvaluateOptions { background: name.into(), ..options.clone() }.checked_background();
     let colors: Vec<[f32; 3]> = backgrounds.iter().map(color).collect::<Result<_, _>>()?;
-    let studio = Studio::new(high, options)?;
-    let shading = studio.shading();
-    let high = studio.subject(high);
-    let low: Vec<Subject> = low.iter().map(|low| studio.subject(low)).collect();
+    let renderer = Renderer::new(high, options)?;
+    let shading = renderer.shading();
+    let high = renderer.place(high);
+    let low: Vec<PlacedModel> = low.iter().map(|low| renderer.place(low)).collect();
     let channels = match with_channels && shading == Shading::Pbr {
         true => Channel::of(std::iter::once(&high).chain(&low)),
         false => Vec::new(),
     };
     let done = AtomicUsize::new(0);
     let views = fibonacci_sphere(options.views, 0.0).into_par_iter().map(|direction| {
-        let shoot = |subject: &Subject| match channels.is_empty() {
-            true => studio.shot(subject, direction),
-            false => studio.shot_with_channels(subject, direction),
+        let render = |model: &PlacedModel| match channels.is_empty() {
+            true => renderer.render(model, direction),
+            false => renderer.render_with_channels(model, direction),
         };
-        let shot = shoot(&high);
-        let pictures: Vec<Rgb> = colors.iter().map(|&color| studio.develop(&shot, color)).collect();
+        let wanted = render(&high);
+        let pictures: Vec<Rgb> = colors.iter().map(|&color| renderer.tonemap(&wanted, color)).collect();
         let mut view = ComparedView { seen: Vec::new(), channels: Vec::new() };
         for low in &low {
-            let own: Shot = shoot(low);
+            let own: RenderedView = render(low);
             let pairs = colors.iter().zip(&pictures);
             let on = |(&color, high): (&[f32; 3], &Rgb)| {
-                compare(high, &studio.develop(&own, color), !options.no_flip)
+                compare(high, &renderer.tonemap(&own, color), !options.no_flip)
             };
             view.seen.push(pairs.map(on).collect());
-            let of = |channel: &Channel| channel.compare(&shot, &own, !options.no_flip);
+            let of = |channel: &Channel| channel.compare(&wanted, &own, !options.no_flip);
             view.channels.push(channels.iter().map(of).collect());
         }
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;

@@ -1,4 +1,4 @@
-//! Parts of a model that no triangle may join: what moves by itself (`parbake_mesh::rig_parts`), or nodes that stay apart
+//! Parts of a model that no triangle may join: what moves by itself (`rig_parts.rs`), or nodes that stay apart
 //! (`--keep-parts`).
 //!
 //! Named nodes without triangles, sockets and markers, stay where they are.
@@ -6,9 +6,8 @@
 //! While triangles are chosen, parts are told by their materials: each material is of one part. Stages after that leave
 //! triangles in their order, so that a triangle of the result is of the part that it came from.
 
-use crate::error::BakeError;
-use crate::nodes::all_named_nodes;
-use parbake_mesh::rig_parts;
+use crate::named_nodes::{NodeError, all_named_nodes};
+use crate::rig_parts::rig_parts;
 use parbake_model::glam::DAffine3;
 use parbake_model::{Hierarchy, Material, Mesh, Model};
 use serde::{Deserialize, Serialize};
@@ -17,6 +16,35 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// No part: of materials that no triangle has.
 const NONE: u32 = u32::MAX;
+
+/// What can keep parts from staying apart.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PartsError {
+    /// A pattern that fits no node.
+    #[error(transparent)]
+    Node(#[from] NodeError),
+    /// Parts of a model that moves.
+    #[error(
+        "--keep-parts: {model} has skins, morph targets or animations, and so becomes one mesh with a skeleton, in which \
+         nodes that move stay as joints; leave --keep-parts out, or take a copy of the model that nothing moves"
+    )]
+    OfRig {
+        /// The model.
+        model: String,
+    },
+    /// A node of which positions cannot be told in its own space.
+    #[error(
+        "--keep-parts: node {node:?} of {model} is scaled to nothing along an axis, so that it cannot keep its pivot; \
+         apply its scale to its mesh"
+    )]
+    Flat {
+        /// The model.
+        model: String,
+        /// The node.
+        node: String,
+    },
+}
 
 /// A part of a result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -32,12 +60,12 @@ pub struct PartReport {
 ///
 /// # Errors
 /// A pattern that names no node; a model that moves; a node that is flat.
-pub fn with_kept_parts<'m>(model: &'m Model, patterns: &[String]) -> Result<Cow<'m, Model>, BakeError> {
+pub fn with_kept_parts<'m>(model: &'m Model, patterns: &[String]) -> Result<Cow<'m, Model>, PartsError> {
     if patterns.is_empty() {
         return Ok(Cow::Borrowed(model));
     }
     if model.rig.is_some() {
-        return Err(BakeError::PartsOfRig { model: model.name.clone() });
+        return Err(PartsError::OfRig { model: model.name.clone() });
     }
     let mut is_named: Vec<bool> = Vec::new();
     for pattern in patterns {
@@ -58,7 +86,7 @@ pub fn with_kept_parts<'m>(model: &'m Model, patterns: &[String]) -> Result<Cow<
     let counts = parts.counts();
     let is_flat = |world: &DAffine3| !world.inverse().is_finite();
     if let Some(flat) = (0..counts.len()).find(|&node| counts[node] > 0 && is_flat(&parts.worlds()[node])) {
-        return Err(BakeError::FlatPart { model: model.name.clone(), node: parts.nodes[flat].name.clone() });
+        return Err(PartsError::Flat { model: model.name.clone(), node: parts.nodes[flat].name.clone() });
     }
     Ok(Cow::Owned(Model { parts: Some(parts), ..model.clone() }))
 }

@@ -8,8 +8,8 @@
 //! Contract: values are display-referred, 0 to 1: colours with sRGB's curve, clipped at 1; normals of the common
 //! frame as `(n + 1) / 2`; all else as it is, in grey.
 
-use super::figures::{PIXELS_PER_DEGREE, ViewFigures};
-use crate::studio::{Shot, Subject};
+use crate::figures::{PIXELS_PER_DEGREE, ViewFigures};
+use crate::renderer::{PlacedModel, RenderedView};
 use parbake_image::display::encode_srgb;
 use parbake_image::{MapKind, MapValues};
 use parbake_metric::Rgb;
@@ -62,10 +62,10 @@ impl Channel {
     ];
 
     /// Those that are worth a look: emission and occlusion only where one of the models has any.
-    pub fn of<'a>(subjects: impl Iterator<Item = &'a Subject> + Clone) -> Vec<Self> {
+    pub fn of<'a>(models: impl Iterator<Item = &'a PlacedModel> + Clone) -> Vec<Self> {
         let is_there = |channel: &Self| match channel {
-            Self::Emission => subjects.clone().any(|subject| subject.has(MapKind::Emissive)),
-            Self::Occlusion => subjects.clone().any(|subject| subject.has(MapKind::Occlusion)),
+            Self::Emission => models.clone().any(|model| model.has(MapKind::Emissive)),
+            Self::Occlusion => models.clone().any(|model| model.has(MapKind::Occlusion)),
             _ => true,
         };
         Self::ALL.into_iter().filter(is_there).collect()
@@ -105,17 +105,17 @@ impl Channel {
         shown.map(|x| x.clamp(0.0, 1.0))
     }
 
-    /// The channel's picture before a grey, display-referred; of a shot with channels.
-    pub fn picture(self, shot: &Shot, grey: f32) -> Rgb {
+    /// The channel's picture before a grey, display-referred; of a view with channels.
+    pub fn picture(self, view: &RenderedView, grey: f32) -> Rgb {
         let pixel = |(values, coverage): (&MapValues, f32)| match self {
             Self::Opacity => [coverage.clamp(0.0, 1.0); 3],
             _ => self.shown(values, coverage).map(|x| x * coverage + grey * (1.0 - coverage)),
         };
-        Rgb { width: shot.size(), height: shot.size(), pixels: shot.values().map(pixel).collect() }
+        Rgb { width: view.size(), height: view.size(), pixels: view.values().map(pixel).collect() }
     }
 
-    /// Both models' pictures as they are compared, and their mean squared error; of shots with channels.
-    pub fn pair(self, high: &Shot, low: &Shot) -> ([Rgb; 2], f64) {
+    /// Both models' pictures as they are compared, and their mean squared error; of views with channels.
+    pub fn pair(self, high: &RenderedView, low: &RenderedView) -> ([Rgb; 2], f64) {
         let mut pictures = [0, 1].map(|_| Rgb {
             width: high.size(),
             height: high.size(),
@@ -140,8 +140,8 @@ impl Channel {
         (pictures, if weight > 0.0 { error / weight } else { 1.0 })
     }
 
-    /// The figures of two shots with channels.
-    pub fn compare(self, high: &Shot, low: &Shot, with_flip: bool) -> ViewFigures {
+    /// The figures of two views with channels.
+    pub fn compare(self, high: &RenderedView, low: &RenderedView, with_flip: bool) -> ViewFigures {
         let ([high, low], error) = self.pair(high, low);
         let flip = || parbake_metric::flip(&high, &low, PIXELS_PER_DEGREE).ok();
         ViewFigures {

@@ -1,8 +1,7 @@
 //! Options of an evaluation, as plain data for library, command line and files.
 
-use crate::error::BakeError;
-pub use crate::options::GREY;
-use crate::options::{Convention, Shading, check_shading};
+use crate::conventions::{Convention, GREY, Shading, check_shading};
+use crate::error::EvaluateError;
 use parbake_image::display::Display;
 use parbake_render::camera::Projection;
 use parbake_render::interpretation::Interpretation;
@@ -103,7 +102,10 @@ impl EvaluateOptions {
     }
 
     /// Checks every range; the error names the option and what it may be.
-    pub fn check(&self) -> Result<(), BakeError> {
+    ///
+    /// # Errors
+    /// An option out of range.
+    pub fn check(&self) -> Result<(), EvaluateError> {
         self.checked_background().map(|_| ())
     }
 
@@ -111,10 +113,10 @@ impl EvaluateOptions {
     ///
     /// # Errors
     /// An option out of range.
-    pub fn checked_background(&self) -> Result<[f32; 3], BakeError> {
+    pub fn checked_background(&self) -> Result<[f32; 3], EvaluateError> {
         check_shading(self.shading, self.convention)?;
         let fail = |option, value: String, range: &str| {
-            Err(BakeError::Option { option, value, range: range.into() })
+            Err(EvaluateError::Option { option, value, range: range.into() })
         };
         let ranges = [
             ("views", self.views as f64, 1.0, 4096.0),

@@ -1,18 +1,18 @@
 //! Where a level may take the place of the one before: the largest size on screen at which nobody can tell the two,
 //! found by rendering both at that size.
 //!
-//! Both are photographed from some directions as viewers show them: whole materials under the built-in light, 2 × 2 samples
+//! Both are rendered from some directions as viewers show them: whole materials under the built-in light, 2 × 2 samples
 //! a pixel, each shaded, on the grey 128 of 255. The figure is the PSNR over whole pictures in which the model's longest
 //! side spans five sevenths of the width, the mean over the directions. Sizes are tried in steps of a fifth from the one
 //! that the level was made for; the largest that passes before one does not counts.
 //!
 //! Contract: deterministic, and the same for the same models, whatever the bake was.
 
-use crate::error::BakeError;
-use crate::evaluate::options::EvaluateOptions;
-use crate::options::Shading;
-use crate::studio::Studio;
-pub use crate::studio::Subject;
+use crate::conventions::Shading;
+use crate::error::EvaluateError;
+use crate::figures;
+use crate::options::EvaluateOptions;
+use crate::renderer::{PlacedModel, Renderer};
 use parbake_metric::Rgb;
 use parbake_model::Model;
 use parbake_model::glam::Vec3;
@@ -55,54 +55,54 @@ pub struct AtSize {
 
 /// A model's pictures at one size.
 pub struct Pictures {
-    studio: Studio,
+    renderer: Renderer,
     pixels: f64,
     views: Vec<Rgb>,
 }
 
-/// Models in front of cameras, as viewers show them.
-pub struct Lineup {
+/// Compares models at sizes on screen, as viewers show them, in the frame of the original.
+pub struct ScreenComparison {
     original: Arc<Model>,
 }
 
-impl Lineup {
-    /// Around the original.
+impl ScreenComparison {
+    /// In the original's frame.
     pub fn new(original: &Model) -> Self {
         Self { original: Arc::new(original.clone()) }
     }
 
-    fn studio(&self, pixels: f64) -> Result<Studio, BakeError> {
+    fn renderer(&self, pixels: f64) -> Result<Renderer, EvaluateError> {
         let resolution = (PICTURE * pixels).round().max(16.0) as usize;
         let shading = Shading::Pbr;
         let options =
             EvaluateOptions { resolution, supersample: SAMPLES, shading, ..EvaluateOptions::default() };
-        Ok(Studio::new(&self.original, &options)?.as_viewers_do())
+        Ok(Renderer::new(&self.original, &options)?.as_viewers_do())
     }
 
     /// Makes a model ready for pictures.
     ///
     /// # Errors
     /// Where the original has no extent.
-    pub fn subject(&self, model: &Model) -> Result<Subject, BakeError> {
-        Ok(self.studio(SIZES[0])?.subject(model))
+    pub fn place(&self, model: &Model) -> Result<PlacedModel, EvaluateError> {
+        Ok(self.renderer(SIZES[0])?.place(model))
     }
 
     /// Takes a model's pictures at a size, to compare any number of others with.
     ///
     /// # Errors
     /// Where the original has no extent.
-    pub fn pictures(&self, subject: &Subject, pixels: f64) -> Result<Pictures, BakeError> {
-        let studio = self.studio(pixels)?;
+    pub fn pictures(&self, model: &PlacedModel, pixels: f64) -> Result<Pictures, EvaluateError> {
+        let renderer = self.renderer(pixels)?;
         let views = directions(pixels)
             .into_par_iter()
-            .map(|direction| studio.develop(&studio.shot(subject, direction), BEHIND))
+            .map(|direction| renderer.tonemap(&renderer.render(model, direction), BEHIND))
             .collect();
-        Ok(Pictures { studio, pixels, views })
+        Ok(Pictures { renderer, pixels, views })
     }
 
-    /// PSNR in dB of a model against another one's pictures: that of [`Lineup::compare`].
-    pub fn psnr(&self, pictures: &Pictures, subject: &Subject) -> f64 {
-        let own = |(direction, other)| psnr(other, &pictures.picture(subject, direction));
+    /// PSNR in dB of a model against another one's pictures: that of [`ScreenComparison::compare`].
+    pub fn psnr(&self, pictures: &Pictures, model: &PlacedModel) -> f64 {
+        let own = |(direction, other)| psnr(other, &pictures.picture(model, direction));
         let figures: Vec<f64> = pictures.seen_from().map(own).collect();
         figures.iter().sum::<f64>() / figures.len() as f64
     }
@@ -111,11 +111,11 @@ impl Lineup {
     ///
     /// # Errors
     /// Where the original has no extent.
-    pub fn compare(&self, a: &Subject, b: &Subject, pixels: f64) -> Result<AtSize, BakeError> {
+    pub fn compare(&self, a: &PlacedModel, b: &PlacedModel, pixels: f64) -> Result<AtSize, EvaluateError> {
         let pictures = self.pictures(a, pixels)?;
-        let own = |(direction, other)| crate::evaluate::compare(other, &pictures.picture(b, direction), true);
+        let own = |(direction, other)| figures::compare(other, &pictures.picture(b, direction), true);
         let views: Vec<_> = pictures.seen_from().map(own).collect();
-        let mean = crate::evaluate::mean(&views);
+        let mean = figures::mean(&views);
         Ok(AtSize { pixels, psnr: mean.psnr, ms_ssim: mean.ms_ssim, flip: mean.flip })
     }
 
@@ -126,12 +126,12 @@ impl Lineup {
     /// Where the original has no extent.
     pub fn largest_same(
         &self,
-        level: &Subject,
-        others: &[&Subject],
+        level: &PlacedModel,
+        others: &[&PlacedModel],
         start: f64,
         same: f64,
-    ) -> Result<Option<f64>, BakeError> {
-        let passes = |pixels: f64| -> Result<bool, BakeError> {
+    ) -> Result<Option<f64>, EvaluateError> {
+        let passes = |pixels: f64| -> Result<bool, EvaluateError> {
             let pictures = self.pictures(level, pixels)?;
             Ok(others.iter().all(|other| self.psnr(&pictures, other) >= same))
         };
@@ -153,8 +153,8 @@ impl Lineup {
 }
 
 impl Pictures {
-    fn picture(&self, subject: &Subject, direction: Vec3) -> Rgb {
-        self.studio.develop(&self.studio.shot(subject, direction), BEHIND)
+    fn picture(&self, model: &PlacedModel, direction: Vec3) -> Rgb {
+        self.renderer.tonemap(&self.renderer.render(model, direction), BEHIND)
     }
 
     /// The pictures, each with the direction that it was taken from.

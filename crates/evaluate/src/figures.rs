@@ -17,7 +17,7 @@ pub struct ViewFigures {
 }
 
 /// FLIP's viewing distance: pixels per degree of its authors' default monitor.
-pub(super) const PIXELS_PER_DEGREE: f32 = 67.020_64;
+pub(crate) const PIXELS_PER_DEGREE: f32 = 67.020_64;
 
 /// All figures of one pair of pictures of equal size.
 pub fn compare(high: &Rgb, low: &Rgb, with_flip: bool) -> ViewFigures {

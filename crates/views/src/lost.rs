@@ -1,8 +1,8 @@
 //! What of the high-poly's material extensions is lost where only light on a matte surface is fitted, and what no
 //! comparison by Parbake's own renderer shows.
 
+use crate::named::named;
 use parbake_model::{Material, MaterialExtensions, Specular};
-use parbake_views::named::named;
 
 /// An extension, what is lost without it, and whether a material has it with an effect.
 type Loss = (&'static str, &'static str, fn(&MaterialExtensions) -> bool);
@@ -41,7 +41,7 @@ const LOSSES: [Loss; 10] = [
 ];
 
 /// What is lost, an extension at a time: models have many materials.
-pub(crate) fn lost(materials: &[Material]) -> Vec<String> {
+pub fn lost(materials: &[Material]) -> Vec<String> {
     let of = |&(name, lost, has): &Loss| {
         let mut having = materials.iter().filter(|m| has(&m.extensions)).map(|m| m.name.as_str()).peekable();
         having.peek()?;
@@ -54,7 +54,7 @@ pub(crate) fn lost(materials: &[Material]) -> Vec<String> {
 }
 
 /// A word about extensions that figures of Parbake's renderer say nothing of, if a material has some.
-pub(crate) fn not_judged<'a>(materials: impl IntoIterator<Item = &'a Material> + Clone) -> Option<String> {
+pub fn not_judged<'a>(materials: impl IntoIterator<Item = &'a Material> + Clone) -> Option<String> {
     let has = |&&(_, _, has): &&Loss| materials.clone().into_iter().any(|material| has(&material.extensions));
     let names: Vec<&str> = LOSSES.iter().filter(has).map(|(name, ..)| *name).collect();
     (!names.is_empty()).then(|| {

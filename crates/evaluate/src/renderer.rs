@@ -1,18 +1,18 @@
-//! A place to photograph models in: the frame of one high-poly, cameras around it, one way to
-//! read textures, one shading and one display.
+//! Renders models for comparison: in the frame of one high-poly, by cameras around it, with one way to
+//! read textures, one shading and one display curve.
 //!
 //! ```text
-//! high-poly ─ frame, shading ─┬ scene(model) ─┬ picture(scene, direction) ─ on a background
-//! conventions ────────────────┴───────────────┘                           └ channels of its material
+//! high-poly ─ frame, shading ─┬ place(model) ─┬ render(model, direction) ─┬ tonemap, on a background
+//! options ────────────────────┴───────────────┘                           └ channels of its material
 //! ```
 //!
 //! Contract: pictures are display-referred, row 0 on top, and depend on the arguments only. All
-//! models of a studio stand in the high-poly's frame, so their pictures lie on each other, and all are
+//! models of a renderer stand in the high-poly's frame, so their pictures lie on each other, and all are
 //! shaded alike.
 
-use crate::error::BakeError;
-use crate::evaluate::options::EvaluateOptions;
-use crate::options::Shading;
+use crate::conventions::Shading;
+use crate::error::EvaluateError;
+use crate::options::EvaluateOptions;
 use parbake_image::display::Display;
 use parbake_image::{MapKind, MapValues};
 use parbake_metric::Rgb;
@@ -26,9 +26,9 @@ use parbake_render::scene_material::MaterialPicture;
 use parbake_views::frame::{common_frame, needs_whole_material, scene};
 use parbake_views::high_poly::HEADLIGHT_BRDF;
 
-/// Where models are photographed.
+/// Renders models in one frame, all alike.
 #[derive(Clone, Debug)]
-pub struct Studio {
+pub struct Renderer {
     frame: Placement,
     options: EvaluateOptions,
     /// None where a headlight shines on matte surfaces.
@@ -37,21 +37,21 @@ pub struct Studio {
     widens_highlights: bool,
 }
 
-/// A model made ready for its pictures.
-pub struct Subject(Scene);
+/// A model in the renderer's frame.
+pub struct PlacedModel(Scene);
 
-/// A picture whose background is still open.
-pub struct Shot {
+/// A view whose background is still open.
+pub struct RenderedView {
     picture: Picture,
     values: Vec<MapValues>,
 }
 
-impl Studio {
-    /// The studio of a high-poly; of `options` all but the number of views and the background.
+impl Renderer {
+    /// The renderer of a high-poly's frame; of `options` all but the number of views and the background.
     ///
     /// # Errors
     /// An option out of range; a model without extent.
-    pub fn new(high: &Model, options: &EvaluateOptions) -> Result<Self, BakeError> {
+    pub fn new(high: &Model, options: &EvaluateOptions) -> Result<Self, EvaluateError> {
         options.check()?;
         let is_whole = match options.shading {
             Shading::Auto => options.convention.decodes_srgb() && needs_whole_material(high),
@@ -79,52 +79,52 @@ impl Studio {
         if self.whole.is_some() { Shading::Pbr } else { Shading::Lambert }
     }
 
-    /// Brings a model in.
-    pub fn subject(&self, model: &Model) -> Subject {
+    /// Places a model in the frame.
+    pub fn place(&self, model: &Model) -> PlacedModel {
         let mut scene = scene(model, &self.frame, self.options.interpretation());
         // As in the fit. What would stand in for an extension depends on how a file writes it.
         if self.whole.is_some() {
             scene.leave_out_extensions();
         }
-        Subject(scene)
+        PlacedModel(scene)
     }
 
-    /// Photographs it from `direction`, of unit length: the camera stands there and looks at the
+    /// Renders it from `direction`, of unit length: the camera stands there and looks at the
     /// middle, +Y up.
-    pub fn shot(&self, subject: &Subject, direction: Vec3) -> Shot {
-        self.photograph(subject, &self.camera(direction), self.size(), false)
+    pub fn render(&self, model: &PlacedModel, direction: Vec3) -> RenderedView {
+        self.render_from(model, &self.camera(direction), self.size(), false)
     }
 
-    /// The same with what its maps hold, for [`Channel`](crate::Channel)s; of matte surfaces nothing.
-    pub fn shot_with_channels(&self, subject: &Subject, direction: Vec3) -> Shot {
-        self.photograph(subject, &self.camera(direction), self.size(), true)
+    /// The same with what its maps hold, for [`Channel`](crate::channels::Channel)s; of matte surfaces nothing.
+    pub fn render_with_channels(&self, model: &PlacedModel, direction: Vec3) -> RenderedView {
+        self.render_from(model, &self.camera(direction), self.size(), true)
     }
 
-    /// Photographs it with any camera, and with what its maps hold if `with_channels`. `size` is how many pixels a
+    /// Renders it with any camera, and with what its maps hold if `with_channels`. `size` is how many pixels a
     /// side of the picture has, and how many samples a side of a pixel.
-    pub fn photograph(
+    pub fn render_from(
         &self,
-        subject: &Subject,
+        model: &PlacedModel,
         camera: &Camera,
         size: (usize, usize),
         with_channels: bool,
-    ) -> Shot {
+    ) -> RenderedView {
         match &self.whole {
-            None => Shot {
-                picture: subject.0.render(&HEADLIGHT_BRDF, camera, size.0, size.1),
+            None => RenderedView {
+                picture: model.0.render(&HEADLIGHT_BRDF, camera, size.0, size.1),
                 values: Vec::new(),
             },
             Some(brdf) => {
                 let MaterialPicture { light, values } =
-                    subject.0.render_material(brdf, camera, size, self.widens_highlights, with_channels);
-                Shot { picture: light, values }
+                    model.0.render_material(brdf, camera, size, self.widens_highlights, with_channels);
+                RenderedView { picture: light, values }
             }
         }
     }
 
-    /// The shot as a screen shows it before `background`, in linear light.
-    pub fn develop(&self, shot: &Shot, background: [f32; 3]) -> Rgb {
-        shown(&shot.picture, &self.options.display(), background)
+    /// The view as a screen shows it on `background`, which is in linear light.
+    pub fn tonemap(&self, view: &RenderedView, background: [f32; 3]) -> Rgb {
+        tonemapped(&view.picture, &self.options.display(), background)
     }
 
     /// Pixels along a side, and samples along a side of a pixel.
@@ -137,8 +137,8 @@ impl Studio {
     }
 }
 
-impl Subject {
-    /// The model in the studio's frame.
+impl PlacedModel {
+    /// The model in the renderer's frame.
     pub fn scene(&self) -> &Scene {
         &self.0
     }
@@ -149,21 +149,21 @@ impl Subject {
     }
 }
 
-impl Shot {
+impl RenderedView {
     /// Pixels along a side.
     pub fn size(&self) -> usize {
         self.picture.size
     }
 
     /// What the maps hold at each pixel, premultiplied by its coverage, and the coverage, 0 to 1; nothing where the
-    /// shot was taken without.
+    /// view was rendered without.
     pub fn values(&self) -> impl ExactSizeIterator<Item = (&MapValues, f32)> {
         self.values.iter().zip(&self.picture.rgba).map(|(values, rgba)| (values, rgba[3]))
     }
 }
 
 /// A picture as a screen shows it; light strengthens the model and not what is behind it.
-pub fn shown(picture: &Picture, display: &Display, background: [f32; 3]) -> Rgb {
+pub fn tonemapped(picture: &Picture, display: &Display, background: [f32; 3]) -> Rgb {
     let after = Display { gain: 1.0, ..*display };
     let pixel = |p: &[f32; 4]| -> [f32; 3] {
         std::array::from_fn(|k| {

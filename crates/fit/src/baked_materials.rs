@@ -3,7 +3,7 @@
 //!
 //! Factors and textures of the maps are those of `image/written_maps.rs`.
 
-use parbake_fit::parallax_maps::ParallaxMaps;
+use crate::parallax_maps::ParallaxMaps;
 use parbake_image::MapKind;
 use parbake_image::written_maps::add_maps;
 use parbake_model::{AlphaMode, Image, Material, Mesh, Model, ParallaxMap, TextureSlot};
@@ -14,7 +14,7 @@ use parbake_views::high_poly::HighPoly;
 use parbake_views::low_poly::LowPoly;
 
 /// What the materials of a bake have besides maps.
-pub(crate) struct Look {
+pub struct Look {
     /// The layer of each triangle.
     pub kinds: Vec<LayerKind>,
     /// What the layers have of the high-poly's material extensions.
@@ -124,7 +124,7 @@ impl Look {
 }
 
 /// Gives a model with parallax maps textures for viewers that do not know these: what it has then goes with the maps.
-pub(crate) fn add_fallback(model: &mut Model, maps: Vec<(MapKind, Image)>) {
+pub fn add_fallback(model: &mut Model, maps: Vec<(MapKind, Image)>) {
     for (kind, image) in maps {
         let index = model.images.len();
         let mut is_used = false;

@@ -4,8 +4,8 @@
 
 use super::candidate::Candidate;
 use super::maker::{Draft, Maker};
-use super::switch::Pictures;
 use crate::error::BakeError;
+use parbake_evaluate::screen_size::Pictures;
 use parbake_levels::viewed::as_viewers_do;
 use parbake_model::Model;
 
@@ -16,26 +16,26 @@ const LARGEST: f64 = 300.0;
 pub(crate) type Tried = (Draft, Candidate);
 
 /// Compares ways by their pictures.
-pub(crate) struct Judge<'m> {
+pub(crate) struct PictureScore<'m> {
     maker: &'m Maker<'m>,
     /// The original at the level's size, and where that is small at twice that: a level is seen from closer, too.
     pictures: Vec<Pictures>,
 }
 
-impl<'m> Judge<'m> {
+impl<'m> PictureScore<'m> {
     /// For a level of so many pixels.
     pub(crate) fn new(maker: &'m Maker<'m>, pixels: f64) -> Result<Self, BakeError> {
         let sizes = [pixels, (2.0 * pixels).min(LARGEST)];
         let sizes = sizes.into_iter().enumerate().filter(|&(k, size)| k == 0 || size > pixels);
-        let pictures = sizes.map(|(_, size)| maker.lineup.pictures(&maker.original, size));
+        let pictures = sizes.map(|(_, size)| maker.screens.pictures(&maker.original, size));
         Ok(Self { maker, pictures: pictures.collect::<Result<_, _>>()? })
     }
 
     /// PSNR in dB, the mean over the sizes.
     pub(crate) fn psnr(&self, model: &Model) -> Result<f64, BakeError> {
-        let lineup = &self.maker.lineup;
-        let subject = lineup.subject(&as_viewers_do(model))?;
-        let sum: f64 = self.pictures.iter().map(|pictures| lineup.psnr(pictures, &subject)).sum();
+        let screens = &self.maker.screens;
+        let placed = screens.place(&as_viewers_do(model))?;
+        let sum: f64 = self.pictures.iter().map(|pictures| screens.psnr(pictures, &placed)).sum();
         Ok(sum / self.pictures.len() as f64)
     }
 

@@ -1,10 +1,10 @@
 //! How skins, morph targets and animations come along.
 //!
-//! A low-poly that is made here, or has no rig of its own, takes the high-poly's (`parbake_mesh::rig_transfer`); one that
+//! A low-poly that is made here, or has no rig of its own, takes the high-poly's (`rig_transfer.rs`); one that
 //! has its own keeps it. Stages after that cut seams and move vertices, but leave triangles in their order, so a vertex of
 //! the result moves as the corner that it came from.
 
-use parbake_mesh::transfer_rig;
+use crate::rig_transfer::transfer_rig;
 use parbake_model::{Mesh, Model, Rig};
 use std::borrow::Cow;
 

@@ -1,0 +1,22 @@
+//! What can keep models from being compared.
+
+use parbake_views::PrepareError;
+
+/// One clear sentence, and what to do next.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EvaluateError {
+    /// An option is out of range.
+    #[error("--{option} {value} is out of range: it may be {range}")]
+    Option {
+        /// Its name on the command line.
+        option: &'static str,
+        /// What was asked.
+        value: String,
+        /// What may be asked.
+        range: String,
+    },
+    /// A model has no extent.
+    #[error(transparent)]
+    Prepare(#[from] PrepareError),
+}

@@ -1,0 +1,20 @@
+//! Compares models by pictures: our own judge of what people see.
+//!
+//! ```text
+//! options, conventions ─ renderer ─┬─ figures ── what is seen: PSNR, MS-SSIM, FLIP ─┬─ evaluate
+//!                                  ├─ channels ─ the same for each map ─────────────┘
+//!                                  └─ screen_size ── up to which size two models look the same
+//! ```
+//!
+//! Contract: figures depend on the models and the options only, not on how a model was made.
+
+pub mod channels;
+pub mod conventions;
+mod error;
+pub mod evaluate;
+pub mod figures;
+pub mod options;
+pub mod renderer;
+pub mod screen_size;
+
+pub use error::EvaluateError;

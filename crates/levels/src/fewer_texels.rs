@@ -1,0 +1,144 @@
+//! A model's own maps with fewer texels: how much each may lose is found by pictures.
+//!
+//! Each map is reduced by itself, step by step; of all together the errors add up, nearly enough. Of all choices within a
+//! number of texels the one with the fewest texels counts that shows nothing less; where something is lost anyway, the one that
+//! loses least.
+//!
+//! Contract: the surface stays as it is. What was measured until `is_over` says yes counts.
+
+use crate::maps::{
+    LevelMap, Reduction, images_of_extensions, oblong_level_maps, with_halved_extensions, with_reductions,
+};
+use crate::search::error_of;
+use parbake_image::MapKind;
+use parbake_image::material_maps::texture_slot;
+use parbake_image::reduced::reduced;
+use parbake_model::{Image, Material, Model};
+
+/// Decibels that fewer texels may cost, and those of which more show nothing, whatever is looked at.
+const UNSEEN: f64 = 0.05;
+const INVISIBLE: f64 = 60.0;
+/// Texels of all maps below which there is nothing to be gained by fewer.
+const FREE: usize = 256 * 256;
+/// A map that alone costs so many times the error that may not be seen is not reduced further.
+const HOPELESS: f64 = 10.0;
+
+/// The model with reduced maps, and its PSNR in dB: with the fewest texels that show nothing less, at most `most`. `unreduced` is
+/// the PSNR with its maps as they are, `psnr` that of any other. None where time was too short for enough reductions.
+///
+/// # Errors
+/// Those of `psnr`.
+pub fn with_fewer_texels<E>(
+    model: &Model,
+    most: usize,
+    unreduced: f64,
+    is_over: &dyn Fn() -> bool,
+    psnr: impl Fn(&Model) -> Result<f64, E>,
+) -> Result<Option<(Model, f64)>, E> {
+    let maps = oblong_level_maps(model);
+    let shown = |choice: &[usize]| -> Result<(Model, f64), E> {
+        let reductions: Vec<Reduction> = maps.iter().zip(choice).map(|(map, &k)| map.reductions[k]).collect();
+        let halvings = halvings_of_extensions(&maps, choice);
+        let reduced = with_halved_extensions(with_reductions(model, &maps, &reductions), halvings);
+        let shown = psnr(&reduced)?;
+        Ok((reduced, shown))
+    };
+    let whole = error_of(unreduced);
+    let allowed = error_of((unreduced - UNSEEN).min(INVISIBLE));
+    // What each map costs by itself; of all together about the sum.
+    let mut costs: Vec<Vec<f64>> = Vec::new();
+    for place in 0..maps.len() {
+        let mut own = vec![0.0];
+        for reduction in 1..maps[place].reductions.len() {
+            if is_over() || own.iter().any(|cost| *cost > HOPELESS * allowed) {
+                break;
+            }
+            let mut choice = vec![0; maps.len()];
+            choice[place] = reduction;
+            own.push((error_of(shown(&choice)?.1) - whole).max(0.0));
+        }
+        costs.push(own);
+    }
+    let texels_of = |place: usize, reduction: usize| match maps[place].reductions[reduction] {
+        Reduction::Factor => 0,
+        Reduction::Halved([u, v]) => {
+            let image = &model.images[maps[place].image];
+            (image.width >> u).max(1) * (image.height >> v).max(1)
+        }
+    };
+    // Pictures do not show what extensions say, so their maps keep as many texels as the finest of the others.
+    let others = images_of_extensions(model);
+    let texels_of_others = |choice: &[usize]| -> usize {
+        let [u, v] = halvings_of_extensions(&maps, choice);
+        let texels = |image: &Image| (image.width >> u).max(1) * (image.height >> v).max(1);
+        others.iter().map(|(image, _)| texels(&model.images[*image])).sum()
+    };
+    let mut best: Option<((bool, f64, f64), Vec<usize>)> = None;
+    for choice in choices(&costs.iter().map(Vec::len).collect::<Vec<_>>()) {
+        let texels = choice.iter().enumerate().map(|(place, &k)| texels_of(place, k)).sum::<usize>()
+            + texels_of_others(&choice);
+        let error = whole + choice.iter().enumerate().map(|(place, &k)| costs[place][k]).sum::<f64>();
+        let is_seen = error > allowed;
+        // Where something is lost anyway, the least; else the fewest texels.
+        let rank =
+            if is_seen { (true, error, texels as f64) } else { (false, texels.max(FREE) as f64, error) };
+        if texels <= most && best.as_ref().is_none_or(|(least, _)| rank < *least) {
+            best = Some((rank, choice));
+        }
+    }
+    let Some((_, choice)) = best else { return Ok(None) };
+    shown(&choice).map(Some)
+}
+
+/// How often the maps of extensions are halved: as the finest of the others.
+fn halvings_of_extensions(maps: &[LevelMap], choice: &[usize]) -> [usize; 2] {
+    let halved = maps.iter().zip(choice).filter_map(|(map, &k)| match map.reductions[k] {
+        Reduction::Halved(times) => Some(times),
+        Reduction::Factor => None,
+    });
+    halved.min_by_key(|[u, v]| u + v).unwrap_or([2; 2])
+}
+
+/// All choices of one of so many for each place.
+fn choices(counts: &[usize]) -> Vec<Vec<usize>> {
+    counts.iter().fold(vec![Vec::new()], |all, &count| {
+        let longer = |choice: &Vec<usize>| -> Vec<Vec<usize>> {
+            (0..count).map(|k| choice.iter().copied().chain([k]).collect()).collect()
+        };
+        all.iter().flat_map(longer).collect()
+    })
+}
+
+/// A model's name, materials and maps without its surface; no map has more than `side` texels along a side.
+pub fn with_maps_at_most(model: &Model, side: usize) -> Model {
+    let mut images = model.images.clone();
+    for (index, kind) in kinds_of_images(&model.materials) {
+        if let Some(image) = images.get_mut(index) {
+            let times = (0..).take_while(|&times| image.width.max(image.height) >> times > side).count();
+            *image = reduced(kind, image, true, [times; 2]);
+        }
+    }
+    Model { name: model.name.clone(), materials: model.materials.clone(), images, ..Model::default() }
+}
+
+/// What images hold, each once.
+fn kinds_of_images(materials: &[Material]) -> Vec<(usize, MapKind)> {
+    let mut kinds: Vec<(usize, MapKind)> = Vec::new();
+    for (material, kind) in materials.iter().flat_map(|m| MapKind::ALL.map(|kind| (m, kind))) {
+        let image = texture_slot(material, kind).map(|slot| slot.image);
+        let is_new = |image: &usize| kinds.iter().all(|(known, _)| known != image);
+        kinds.extend(image.filter(is_new).map(|image| (image, kind)));
+    }
+    kinds
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects from choices that are forgotten.
+    #[test]
+    fn all_choices_are_weighed() {
+        assert_eq!(choices(&[2, 1, 2]), [[0, 0, 0], [0, 0, 1], [1, 0, 0], [1, 0, 1]]);
+    }
+}
