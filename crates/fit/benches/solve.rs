@@ -11,7 +11,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use parbake_fit::backend::Cpu;
 use parbake_fit::membrane::Membrane;
-use parbake_fit::outliers::Cauchy;
+use parbake_fit::robust_loss::Cauchy;
 use parbake_fit::problem::{Problem, ShadedProblem, footprint};
 use parbake_fit::step::{StepOptions, Workspace, fit_step};
 use parbake_image::display_table::DisplayTable;
@@ -73,7 +73,7 @@ fn collect(low: &Mesh, references: &[Reference]) -> SampleSet {
 impl Bench {
     fn problem(&self) -> ShadedProblem<'_, Lambert> {
         let Self { samples, atlas, display, .. } = self;
-        ShadedProblem { samples, atlas, display, brdf: &Lambert, outliers: Cauchy::new(1.0) }
+        ShadedProblem { samples, atlas, display, brdf: &Lambert, robust: Cauchy::new(1.0) }
     }
 
     fn count(&self) -> ItemsCount {

@@ -16,7 +16,7 @@
 //! Contract: results depend on the arguments alone, not on the number of threads.
 
 use crate::assemble::{SampleBlock, assemble_on_cpu};
-use crate::outliers::Loss;
+use crate::robust_loss::Loss;
 use crate::problem::Problem;
 use crate::texels::Texels;
 use crate::view_gradient::{Sums, add_view};

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! samples ─ schedule ─ step ─ assemble ─ solve        the maps, in turns
-//!              │        └ membrane, outliers          unseen texels, robust loss
+//!              │        └ membrane, robust_loss       unseen texels, robust loss
 //! material samples ─ separate_maps ┘                  maps that do not depend on each other
 //!                         └ normal_spread             roughness for what normals do within a texel
 //! layers ─ cutout                                     where the low-poly is left out
@@ -26,7 +26,7 @@ pub mod cutout;
 pub mod material_problem;
 pub mod membrane;
 pub(crate) mod normal_spread;
-pub mod outliers;
+pub mod robust_loss;
 pub mod parallax;
 pub mod parallax_maps;
 pub mod problem;

@@ -10,7 +10,7 @@
 //! Contract: no map depends on another but the metallic channel on the sample's own colour, so maps may
 //! be solved for in any order.
 
-use crate::outliers::Loss;
+use crate::robust_loss::Loss;
 use crate::problem::{Problem, Response, respond};
 use parbake_image::display::{Curve, Display};
 use parbake_image::display_table::DisplayTable;

@@ -8,7 +8,7 @@
 //! texels of each map. Clipping at 1: a texel that is too bright is pulled down although the clipped
 //! picture no longer moves with it; where both saturate nothing is asked.
 
-use crate::outliers::{Cauchy, Loss};
+use crate::robust_loss::{Cauchy, Loss};
 use parbake_image::display_table::DisplayTable;
 use parbake_image::{MapKind, MapSet, MapValues};
 use parbake_model::glam::Vec4;
@@ -78,7 +78,7 @@ pub struct ShadedProblem<'a, B> {
     /// How maps become light.
     pub brdf: &'a B,
     /// The robust loss.
-    pub outliers: Cauchy,
+    pub robust: Cauchy,
 }
 
 impl<B: Brdf> ShadedProblem<'_, B> {
@@ -87,9 +87,9 @@ impl<B: Brdf> ShadedProblem<'_, B> {
     #[inline]
     pub fn respond(&self, light: Vec4, sample: &Sample) -> (Response, Vec4, Loss) {
         let response = respond(self.display, light, sample.target());
-        let ((judged, weights), weight) = (self.outliers.judge(response.residual), sample.weight());
+        let ((robust, weights), weight) = (self.robust.weigh(response.residual), sample.weight());
         let loss = Loss {
-            minimised: f64::from(judged * weight),
+            minimised: f64::from(robust * weight),
             square: f64::from(response.residual.length_squared() * weight),
         };
         (response, weights * weight, loss)

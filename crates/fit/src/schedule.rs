@@ -4,11 +4,11 @@
 //!
 //! Every step first measures the loss of the state that it found; the best state is
 //! kept, so a run that is stopped, or a step that goes wrong, never ends worse. Best is by
-//! the loss that is minimised (`outliers.rs`); plain squares are what is reported.
+//! the loss that is minimised (`robust_loss.rs`); plain squares are what is reported.
 
 use crate::backend::Backend;
 use crate::membrane::Membrane;
-use crate::outliers::{Cauchy, Loss};
+use crate::robust_loss::{Cauchy, Loss};
 use crate::problem::{Problem, ShadedProblem};
 use crate::step::{StepOptions, Workspace, fit_step};
 use parbake_image::display::Display;
@@ -263,7 +263,7 @@ pub fn fit_textures<B: Brdf, K: Backend>(
     let Comparison { backend, brdf, display, srgb } = *comparison;
     let display = &DisplayTable::new(&display);
     let problem =
-        ShadedProblem { samples, atlas, display, brdf, outliers: Cauchy::new(schedule.robust_scale) };
+        ShadedProblem { samples, atlas, display, brdf, robust: Cauchy::new(schedule.robust_scale) };
     fit_maps(&problem, start, backend, srgb, schedule, watcher)
 }
 

@@ -12,7 +12,7 @@
 use crate::assemble::SampleBlock;
 use crate::backend::Backend;
 use crate::membrane::{Membrane, add_membrane, mean_pull};
-use crate::outliers::Loss;
+use crate::robust_loss::Loss;
 use crate::problem::Problem;
 use parbake_image::{Domain, FloatImage, MapKind, MapSet};
 use parbake_model::glam::Vec4;
@@ -117,7 +117,7 @@ fn turn<P: Problem, B: SampleBlock>(
 mod tests {
     use super::*;
     use crate::backend::Cpu;
-    use crate::outliers::Cauchy;
+    use crate::robust_loss::Cauchy;
     use crate::problem::ShadedProblem;
     use parbake_image::display::{Curve, Display};
     use parbake_image::display_table::DisplayTable;
@@ -158,7 +158,7 @@ mod tests {
                 atlas: &atlas,
                 display: &display,
                 brdf: &Lambert,
-                outliers: Cauchy::new(scale),
+                robust: Cauchy::new(scale),
             };
             let mut maps = MapSet::of(start.clone(), FloatImage::solid(SIZE, Vec4::Z));
             let mut workspace = Workspace::default();
@@ -182,7 +182,7 @@ mod tests {
             atlas: &atlas,
             display: &display,
             brdf: &Lambert,
-            outliers: Cauchy::new(f32::INFINITY),
+            robust: Cauchy::new(f32::INFINITY),
         };
         let tilted = Domain::Hemisphere.clamp(Vec4::new(0.3, 0.0, 1.0, 0.0));
         let start = FloatImage::solid(SIZE, tilted);
@@ -205,7 +205,7 @@ mod tests {
             atlas: &atlas,
             display: &display,
             brdf: &Lambert,
-            outliers: Cauchy::new(f32::INFINITY),
+            robust: Cauchy::new(f32::INFINITY),
         };
         let start = FloatImage::solid(SIZE, Vec4::ZERO);
         let mut maps =

@@ -1,4 +1,4 @@
-//! Pixels that no texture can please: what one view shows and all others of the same texel do
+//! The robust loss, for pixels that no texture can match: what one view shows and all others of the same texel do
 //! not, because depth, an outline or another part of the model got in between.
 //!
 //! Least squares bend a texel halfway towards them, and surfaces look mottled. Cauchy's loss
@@ -32,7 +32,7 @@ impl Cauchy {
     /// The loss of a pixel whose display values are this much higher than wanted, three channels in
     /// -1 … 1 and a zero, and each channel's weight, 0 … 1.
     #[inline]
-    pub fn judge(&self, residual: Vec4) -> (f32, Vec4) {
+    pub fn weigh(&self, residual: Vec4) -> (f32, Vec4) {
         let bright = residual.max(Vec4::ZERO).length_squared();
         let dark = residual.min(Vec4::ZERO).length_squared();
         let weights = [bright, DARK * dark].map(|square| Vec4::splat(self.weight(square)));
@@ -87,12 +87,12 @@ mod tests {
     fn weights_are_the_losss_derivative() {
         let cauchy = Cauchy::new(0.5);
         let residual = Vec4::new(0.4, -0.7, 0.2, 0.0);
-        let (_, weights) = cauchy.judge(residual);
+        let (_, weights) = cauchy.weigh(residual);
         for lane in 0..3 {
             let at = |step: f32| {
                 let mut moved = residual;
                 moved[lane] += step;
-                cauchy.judge(moved).0
+                cauchy.weigh(moved).0
             };
             let slope = (at(1e-2) - at(-1e-2)) / 2e-2;
             let wanted = 2.0 * weights[lane] * residual[lane];
@@ -103,7 +103,7 @@ mod tests {
     /// Protects from dark specks: what is too dark keeps its weight for longer.
     #[test]
     fn too_dark_counts_more_than_too_bright() {
-        let weight = |x: f32| Cauchy::new(0.5).judge(Vec4::new(x, 0.0, 0.0, 0.0)).1.x;
+        let weight = |x: f32| Cauchy::new(0.5).weigh(Vec4::new(x, 0.0, 0.0, 0.0)).1.x;
         assert!((weight(0.5) - 0.5).abs() < 1e-6 && (weight(-1.0) - 0.5).abs() < 1e-6);
     }
 
@@ -112,7 +112,7 @@ mod tests {
     fn an_infinite_scale_is_the_square() {
         let plain = Cauchy::new(f32::INFINITY);
         for x in [0.0, 1e-3, -0.5, 1.0] {
-            let (loss, weights) = plain.judge(Vec4::new(x, 0.0, 0.0, 0.0));
+            let (loss, weights) = plain.weigh(Vec4::new(x, 0.0, 0.0, 0.0));
             assert_eq!((loss, weights), (x * x, Vec4::ONE));
         }
     }
