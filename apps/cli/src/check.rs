@@ -2,9 +2,10 @@
 
 use crate::arguments::CheckCommand;
 use crate::bake::read;
+use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::outputs::{check_json, is_stdout};
-use crate::printed::{print, write_json};
+use crate::printed::print;
 use crate::progress::Console;
 use parbake::{LayoutCheck, ModelCheck, UvCheck, check_model, with_threads};
 use std::fmt::Write;
@@ -26,7 +27,7 @@ pub fn run(command: &CheckCommand) -> Result<Ending, Failure> {
         let found = check_model(&model, size, gutter);
         console.finish();
         if let Some(path) = &command.json {
-            write_json(path, &found)?;
+            write_document(path, ("check", &[("model", &command.model)], None), &found, &console)?;
         }
         // Quiet leaves what was asked for: the problems, or nothing.
         if !to_stdout {

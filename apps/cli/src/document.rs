@@ -1,6 +1,5 @@
-//! What the JSON outputs of `bake`, `raycast`, `compress`, `image`, `demo`, `eval` and `stats` have in common: which
-//! command it was,
-//! of which files, and how long it took; the command's own figures follow as fields beside these.
+//! What the JSON outputs of `bake`, `raycast`, `compress`, `image`, `demo`, `eval`, `stats` and `check` have in common: which
+//! command it was, of which files, and how long it took; the command's own figures follow as fields beside these.
 //!
 //! Contract: `docs/report.schema.json` describes them, and a test holds them to it. [`VERSION`] grows when a
 //! field is renamed, goes, or changes its meaning; new fields leave it.

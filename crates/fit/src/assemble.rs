@@ -7,8 +7,8 @@
 //! Contract: bands of rows are summed by themselves and joined in order (`parbake_solve::grid`), so the
 //! result does not depend on the number of threads.
 
-use crate::robust_loss::Loss;
 use crate::problem::{Problem, Response, footprint, local_places};
+use crate::robust_loss::Loss;
 use parbake_image::{MapKind, MapSet};
 use parbake_model::glam::{Vec3, Vec4};
 use parbake_render::shade::Jacobian;

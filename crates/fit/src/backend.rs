@@ -16,8 +16,8 @@
 //! Contract: results depend on the arguments alone, not on the number of threads.
 
 use crate::assemble::{SampleBlock, assemble_on_cpu};
-use crate::robust_loss::Loss;
 use crate::problem::Problem;
+use crate::robust_loss::Loss;
 use crate::texels::Texels;
 use crate::view_gradient::{Sums, add_view};
 use parbake_image::display_table::DisplayTable;

@@ -10,8 +10,8 @@
 //! Contract: no map depends on another but the metallic channel on the sample's own colour, so maps may
 //! be solved for in any order.
 
-use crate::robust_loss::Loss;
 use crate::problem::{Problem, Response, respond};
+use crate::robust_loss::Loss;
 use parbake_image::display::{Curve, Display};
 use parbake_image::display_table::DisplayTable;
 use parbake_image::{MapKind, MapValues};

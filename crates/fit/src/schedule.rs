@@ -8,8 +8,8 @@
 
 use crate::backend::Backend;
 use crate::membrane::Membrane;
-use crate::robust_loss::{Cauchy, Loss};
 use crate::problem::{Problem, ShadedProblem};
+use crate::robust_loss::{Cauchy, Loss};
 use crate::step::{StepOptions, Workspace, fit_step};
 use parbake_image::display::Display;
 use parbake_image::display_table::DisplayTable;
@@ -262,8 +262,7 @@ pub fn fit_textures<B: Brdf, K: Backend>(
 ) -> Fitted {
     let Comparison { backend, brdf, display, srgb } = *comparison;
     let display = &DisplayTable::new(&display);
-    let problem =
-        ShadedProblem { samples, atlas, display, brdf, robust: Cauchy::new(schedule.robust_scale) };
+    let problem = ShadedProblem { samples, atlas, display, brdf, robust: Cauchy::new(schedule.robust_scale) };
     fit_maps(&problem, start, backend, srgb, schedule, watcher)
 }
 

@@ -12,8 +12,8 @@
 use crate::assemble::SampleBlock;
 use crate::backend::Backend;
 use crate::membrane::{Membrane, add_membrane, mean_pull};
-use crate::robust_loss::Loss;
 use crate::problem::Problem;
+use crate::robust_loss::Loss;
 use parbake_image::{Domain, FloatImage, MapKind, MapSet};
 use parbake_model::glam::Vec4;
 use parbake_solve::boxed::solve_in_box;
@@ -117,8 +117,8 @@ fn turn<P: Problem, B: SampleBlock>(
 mod tests {
     use super::*;
     use crate::backend::Cpu;
-    use crate::robust_loss::Cauchy;
     use crate::problem::ShadedProblem;
+    use crate::robust_loss::Cauchy;
     use parbake_image::display::{Curve, Display};
     use parbake_image::display_table::DisplayTable;
     use parbake_render::shade::Lambert;

@@ -9,7 +9,7 @@
 //! ```
 
 use crate::baseline::other_baseline;
-use crate::budget::{at_the_end, check_budget, shares, stage_weights};
+use crate::budget::{at_the_end, check_budget, left_out, shares, stage_weights};
 use crate::error::BakeError;
 use crate::fallback::{Fallback, fit_fallback};
 use crate::geometry::{Geometry, move_geometry};
@@ -182,6 +182,7 @@ pub(crate) fn run(
     let mut clock = Clock::new(begin);
     let mut warnings = Warnings::new(watcher);
     warnings.tell((work == Work::Bake).then(|| swapped(high, low)).flatten());
+    warnings.tell((work == Work::Bake).then(|| left_out(options)).flatten());
     let given = low;
     // One model twice keeps its vertices, whatever their normals are like.
     let turned = (!same).then(|| lit(low));

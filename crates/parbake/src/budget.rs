@@ -4,7 +4,7 @@
 //! gutters, rounding to 8 bits, and encoding the files. With T texels it takes about [`FIXED`]·T seconds.
 
 use crate::error::BakeError;
-use crate::options::{BakeOptions, Parallax, UvMode};
+use crate::options::{BakeOptions, Method, Parallax, ShapeMode, UvMode};
 use parbake_progress::Stage;
 
 /// Seconds a texel that no budget shortens. Measured with the built-in pair and `--time-budget 0` on two
@@ -51,10 +51,30 @@ pub fn check_budget(options: &BakeOptions) -> Result<(), BakeError> {
     Err(BakeError::Budget { budget, size, least: least.ceil(), largest })
 }
 
+/// Seconds that a budget needs for vertices and texture coordinates to move.
+fn least_for_moving(texture_size: usize) -> f64 {
+    LEAST_FOR_MOVING.max(MOVING * texels(texture_size))
+}
+
 /// Whether there is only time for textures.
 pub(crate) fn is_hurried(options: &BakeOptions) -> bool {
-    let least = LEAST_FOR_MOVING.max(MOVING * texels(options.texture_size));
-    options.time_budget.is_some_and(|seconds| seconds < least)
+    options.time_budget.is_some_and(|seconds| seconds < least_for_moving(options.texture_size))
+}
+
+/// A word about what a budget leaves out, if it is something that the options ask for.
+pub(crate) fn left_out(options: &BakeOptions) -> Option<String> {
+    let budget = options.time_budget.filter(|_| is_hurried(options))?;
+    let moves_vertices = options.shape != ShapeMode::Keep && options.method == Method::Fit;
+    let stays = match (moves_vertices, options.uv == UvMode::Optimize) {
+        (false, false) => return None,
+        (true, false) => "vertices stay",
+        (false, true) => "texture coordinates are at most repaired",
+        (true, true) => "vertices stay, and texture coordinates are at most repaired",
+    };
+    let least = least_for_moving(options.texture_size).ceil();
+    Some(format!(
+        "--time-budget {budget} is only enough for textures: {stays}; they move from {least} s on with this texture size"
+    ))
 }
 
 /// Seconds to keep back for what cannot be stopped at the end of a bake.
@@ -116,6 +136,7 @@ pub(crate) mod shares {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
@@ -142,6 +163,20 @@ mod tests {
     fn large_textures_are_hurried_for_longer() {
         assert!(!is_hurried(&with(512, 8.0)) && is_hurried(&with(512, 7.0)));
         assert!(is_hurried(&with(4096, 60.0)) && !is_hurried(&with(4096, 600.0)));
+    }
+
+    /// Protects who asks for vertices and coordinates that a budget has no time for: they are told, with a budget that has.
+    #[test]
+    fn what_a_budget_leaves_out_is_told() {
+        let told = left_out(&with(512, 3.0)).unwrap();
+        assert!(told.contains("--time-budget 3 ") && told.contains("from 8 s on"), "{told}");
+        assert_eq!(left_out(&with(512, 8.0)), None);
+        assert_eq!(left_out(&BakeOptions::default()), None);
+        let kept = BakeOptions { shape: ShapeMode::Keep, uv: UvMode::Repair, ..with(512, 3.0) };
+        assert_eq!(left_out(&kept), None);
+        assert!(
+            left_out(&BakeOptions { uv: UvMode::Optimize, ..kept }).is_some_and(|t| !t.contains("vertices"))
+        );
     }
 
     /// Protects the time that is shown: every stage that reports has a weight, and none weighs nothing.

@@ -103,7 +103,7 @@ fn outputs_keep_to_the_schema() {
     std::fs::write(folder.join("checks.png"), parbake::encode_png(&picture).unwrap()).unwrap();
     let pair = ["demo_high.glb", "demo_low.glb"];
     let small_file = ["--texture-format", "ktx2", "--mesh-compression", "meshopt"];
-    let runs: [(&str, Vec<&str>); 10] = [
+    let runs: [(&str, Vec<&str>); 11] = [
         ("bake", [&pair[..], &SMALL].concat()),
         ("bake", [&["demo_high.glb", "--triangles", "2600"], &SMALL[..]].concat()),
         ("bake", [&few[..], &SMALL, &["--parallax", "sh"]].concat()),
@@ -113,6 +113,7 @@ fn outputs_keep_to_the_schema() {
         ("image", vec!["checks.png", "--texture-size", "16", "--grid", "8"]),
         ("eval", [&pair[..], &["--views", "2", "--resolution", "64"]].concat()),
         ("stats", pair[..1].to_vec()),
+        ("check", vec!["demo_low.glb"]),
         ("stats", vec!["demo_low.glb", "--against", "demo_high.glb", "--samples", "1000"]),
     ];
     for (command, arguments) in runs {
