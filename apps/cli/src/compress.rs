@@ -12,8 +12,8 @@ use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;
 use parbake::{
-    BakeReport, Detail, Message, Stage, StageTime, UvMode, Watcher, Work, check_budget, compress,
-    has_colour_alone, with_normal_y, with_threads,
+    BakeReport, Detail, MeshCompression, Message, Stage, StageTime, TextureFormat, UvMode, Watcher, Work,
+    WriteOptions, check_budget, compress, has_colour_alone, with_normal_y, with_threads,
 };
 use std::path::Path;
 
@@ -48,6 +48,9 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
         let model = with_normal_y(&baked.model, options.normal_y);
         let (after, written) = write_model(output, &model, &options.write, &console)?;
         let bytes = [loaded.bytes, after];
+        let told = grown(bytes, output, &options.write);
+        told.iter().for_each(|text| console.message(Message::Warning(text.clone())));
+        baked.report.warnings.extend(told);
         baked.report.written = written;
         baked.report.warnings.splice(0..0, loaded.warnings.iter().map(|warning| warning.text.clone()));
         baked.report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
@@ -72,6 +75,23 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
     })?
 }
 
+/// A word about a file that became larger than the model was, with what makes it smaller.
+fn grown([before, after]: [u64; 2], output: &Path, write: &WriteOptions) -> Option<String> {
+    let is_glb = output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("glb"));
+    let format = is_glb && matches!(write.texture_format, TextureFormat::Png);
+    let mesh = is_glb && write.mesh_compression == MeshCompression::None;
+    let more = [(format, "--texture-format webp"), (mesh, "--mesh-compression meshopt")];
+    let more: String =
+        more.iter().filter(|(helps, _)| *helps).map(|(_, text)| format!(", or {text}")).collect();
+    (after > before).then(|| {
+        let name = output.display();
+        format!(
+            "{name} is larger than the model was ({after} bytes, {before} before); for a smaller file take a smaller \
+             --texture-size{more}"
+        )
+    })
+}
+
 /// `bytes` are those of the model as delivered and as written, with all files that belong to it.
 fn summary(report: &BakeReport, [before, after]: [u64; 2], output: &Path, seconds: f64) -> String {
     let mut text = String::new();
@@ -90,4 +110,25 @@ fn summary(report: &BakeReport, [before, after]: [u64; 2], output: &Path, second
         text += &format!("{given} → {now} triangles (--more-triangles 0 keeps them), ");
     }
     text + &format!("{seconds:.1} s")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects who wants a smaller file and gets a larger one: they are told what helps, and nothing that they have.
+    #[test]
+    fn a_file_that_grew_is_told() {
+        let plain = WriteOptions::default();
+        let of = |bytes, file: &str, write| grown(bytes, file.as_ref(), write).unwrap_or_default();
+        assert_eq!(of([2000, 2000], "a.glb", &plain), "");
+        let told = of([1000, 2000], "a.glb", &plain);
+        assert!(
+            told.contains("2000 bytes, 1000 before") && told.ends_with("--mesh-compression meshopt"),
+            "{told}"
+        );
+        let packed = WriteOptions { texture_format: TextureFormat::Webp, ..plain };
+        assert!(!of([1000, 2000], "a.glb", &packed).contains("webp"));
+        assert!(of([1000, 2000], "a.obj", &plain).ends_with("a smaller --texture-size"));
+    }
 }

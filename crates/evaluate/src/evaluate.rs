@@ -11,7 +11,7 @@ use parbake_metric::Rgb;
 use parbake_model::Model;
 use parbake_progress::{Message, Stage, Watcher};
 use parbake_render::camera::fibonacci_sphere;
-use parbake_views::lost::not_judged;
+use parbake_views::lost::not_compared;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -57,7 +57,7 @@ pub fn evaluate_on(
     backgrounds: &[&str],
     watcher: &dyn Watcher,
 ) -> Result<Vec<Evaluation>, EvaluateError> {
-    let unjudged = not_judged(high.materials.iter().chain(&low.materials));
+    let unjudged = not_compared(high.materials.iter().chain(&low.materials));
     unjudged.into_iter().for_each(|text| watcher.message(Message::Warning(text)));
     let Compared { shading, channels, views } =
         evaluate_each(high, &[low], options, backgrounds, true, watcher)?;

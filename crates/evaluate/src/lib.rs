@@ -1,4 +1,4 @@
-//! Compares models by pictures: our own judge of what people see.
+//! Compares models by pictures, as people see them.
 //!
 //! ```text
 //! options, conventions ─ renderer ─┬─ figures ── what is seen: PSNR, MS-SSIM, FLIP ─┬─ evaluate

@@ -162,7 +162,7 @@ impl RenderedView {
     }
 }
 
-/// A picture as a screen shows it; light strengthens the model and not what is behind it.
+/// A picture as a screen shows it; the gain brightens the model, not what is behind it.
 pub fn tonemapped(picture: &Picture, display: &Display, background: [f32; 3]) -> Rgb {
     let after = Display { gain: 1.0, ..*display };
     let pixel = |p: &[f32; 4]| -> [f32; 3] {

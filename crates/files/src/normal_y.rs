@@ -23,7 +23,7 @@ pub enum NormalY {
 }
 
 /// What is added to the names of materials and images whose normal map has −Y.
-pub const MARK: &str = " (normal map -Y)";
+const MARK: &str = " (normal map -Y)";
 
 /// A model with +Y normal maps as it is to be written; with [`NormalY::Up`] the same model.
 pub fn with_normal_y(model: &Model, direction: NormalY) -> Cow<'_, Model> {

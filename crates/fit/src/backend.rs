@@ -1,4 +1,4 @@
-//! The seam for a GPU: the six coarse operations in which a bake spends its time, on flat buffers of
+//! The seam for a GPU: the coarse operations in which a bake spends its time, on flat buffers of
 //! plain elements.
 //!
 //! ```text
@@ -9,9 +9,9 @@
 //!
 //! Elements are `repr(C)`: [`Sample`](parbake_views::samples::Sample), [`MaterialSample`],
 //! [`ViewSample`], [`Row`] and `Vec4`. A kernel for each operation can
-//! stand in the place of the [`Cpu`]'s; nothing is kept between calls. Sampling of views has three functions: one that keeps each view's samples,
-//! and two that gather those of all views by texels, of views that were not rasterised before and of those that were. Functions of this crate take the
-//! implementation as an argument, so that their callers choose it.
+//! stand in the place of the [`Cpu`]'s; nothing is kept between calls. Views are sampled by three functions: `sample_views`
+//! keeps each view's samples; `view_samples` and `shifted_view_samples` gather those of all views by texel. Functions of
+//! this crate take the implementation as an argument, so that their callers choose it.
 //!
 //! Contract: results depend on the arguments alone, not on the number of threads.
 

@@ -1,4 +1,4 @@
-//! A coarser copy of a mesh with its own layout: which of many ways to collapse its edges shows most.
+//! A coarser copy of a mesh with its own layout: of many ways to collapse its edges, the one whose pictures are closest.
 //!
 //! How far seams may move, and how much normals and texture coordinates count beside positions, has no best answer for
 //! all models. So a few ways are tried, each judged by pictures, and what lies beside the best ones.
@@ -34,8 +34,9 @@ const MOST_SEARCHED: usize = 8;
 const PROMISING: f64 = 2.0;
 const INVISIBLE: f64 = 60.0;
 
-/// What `judged` makes of the mesh that shows most of all with at most `triangles` triangles, and its PSNR in dB: the best of
-/// [`COLLAPSES`], or with `searches` what a search from there finds. None where seams leave too many triangles.
+/// The mesh with at most `triangles` triangles whose pictures are closest to the original's, as `judged` returned it, with
+/// its PSNR in dB: the best of nine first ways, or with `searches` what a search from there finds. None where seams leave
+/// too many triangles.
 ///
 /// # Errors
 /// Those of `judged`.

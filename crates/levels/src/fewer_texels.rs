@@ -15,7 +15,7 @@ use parbake_image::material_maps::texture_slot;
 use parbake_image::reduced::reduced;
 use parbake_model::{Image, Material, Model};
 
-/// Decibels that fewer texels may cost, and those of which more show nothing, whatever is looked at.
+/// Decibels that fewer texels may cost, and the PSNR above which no difference shows.
 const UNSEEN: f64 = 0.05;
 const INVISIBLE: f64 = 60.0;
 /// Texels of all maps below which there is nothing to be gained by fewer.
@@ -23,8 +23,9 @@ const FREE: usize = 256 * 256;
 /// A map that alone costs so many times the error that may not be seen is not reduced further.
 const HOPELESS: f64 = 10.0;
 
-/// The model with reduced maps, and its PSNR in dB: with the fewest texels that show nothing less, at most `most`. `unreduced` is
-/// the PSNR with its maps as they are, `psnr` that of any other. None where time was too short for enough reductions.
+/// The model with reduced maps, and its PSNR in dB: with the fewest texels at which pictures look the same, at most `most`.
+/// `unreduced` is the PSNR with its maps as they are, `psnr` that of any other. None where no measured choice has at most
+/// `most` texels.
 ///
 /// # Errors
 /// Those of `psnr`.

@@ -47,7 +47,7 @@ pub fn level_maps(model: &Model) -> Vec<LevelMap> {
 }
 
 /// The maps of a level that may be reduced, one side once more than the other one, too.
-pub fn oblong_level_maps(model: &Model) -> Vec<LevelMap> {
+pub(crate) fn oblong_level_maps(model: &Model) -> Vec<LevelMap> {
     let mut maps: Vec<LevelMap> = Vec::new();
     let Some(material) = model.materials.first() else { return maps };
     let is_opaque = model.materials.iter().all(|material| material.alpha_mode == AlphaMode::Opaque);
@@ -70,7 +70,7 @@ pub fn oblong_level_maps(model: &Model) -> Vec<LevelMap> {
 }
 
 /// Images that extensions alone bring along, and whether they are colours in sRGB; each once.
-pub fn images_of_extensions(model: &Model) -> Vec<(usize, bool)> {
+pub(crate) fn images_of_extensions(model: &Model) -> Vec<(usize, bool)> {
     let others: Vec<usize> = level_maps(model).iter().map(|map| map.image).collect();
     let mut images: Vec<(usize, bool)> = Vec::new();
     for (slot, is_color) in model.materials.iter().flat_map(|material| material.extensions.textures()) {
@@ -85,7 +85,7 @@ pub fn images_of_extensions(model: &Model) -> Vec<(usize, bool)> {
 }
 
 /// The level with those images halved so many times along u and along v.
-pub fn with_halved_extensions(mut model: Model, halvings: [usize; 2]) -> Model {
+pub(crate) fn with_halved_extensions(mut model: Model, halvings: [usize; 2]) -> Model {
     for (image, is_color) in images_of_extensions(&model) {
         let own = &model.images[image];
         let [u, v] = halvings;

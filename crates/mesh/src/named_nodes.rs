@@ -37,7 +37,11 @@ pub fn named_nodes(model: &Model, pattern: &str, option: &'static str) -> Result
 ///
 /// # Errors
 /// A pattern that names none.
-pub fn all_named_nodes(model: &Model, pattern: &str, option: &'static str) -> Result<Vec<bool>, NodeError> {
+pub(crate) fn all_named_nodes(
+    model: &Model,
+    pattern: &str,
+    option: &'static str,
+) -> Result<Vec<bool>, NodeError> {
     named_among(model, pattern, option, |hierarchy| vec![true; hierarchy.nodes.len()])
 }
 

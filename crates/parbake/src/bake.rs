@@ -32,7 +32,7 @@ use parbake_uv::moves::UvMoves;
 use parbake_views::alpha_layers::layer_kinds;
 use parbake_views::high_poly::{Conventions, HighPoly};
 use parbake_views::importance::importances;
-use parbake_views::lost::{lost, not_judged};
+use parbake_views::lost::{lost, not_compared};
 use parbake_views::low_poly::{LowPoly, lit};
 use parbake_views::pool::Rig;
 use parbake_views::projection::project;
@@ -182,7 +182,7 @@ pub(crate) fn run(
     let mut clock = Clock::new(begin);
     let mut warnings = Warnings::new(watcher);
     warnings.tell((work == Work::Bake).then(|| swapped(high, low)).flatten());
-    warnings.tell((work == Work::Bake).then(|| left_out(options)).flatten());
+    warnings.tell((work == Work::Bake).then(|| left_out(options, work, high.is_whole_material)).flatten());
     let given = low;
     // One model twice keeps its vertices, whatever their normals are like.
     let turned = (!same).then(|| lit(low));
@@ -239,7 +239,7 @@ pub(crate) fn run(
     let is_whole = high.is_whole_material;
     let unfit = if is_whole { look.extensions.lost.clone() } else { lost(high.extensions.materials()) };
     let own = high.extensions.materials().iter().filter(|material| !was_unlit(material));
-    let unjudged = not_judged(own).filter(|_| is_whole);
+    let unjudged = not_compared(own).filter(|_| is_whole);
     let unfit = unfit.into_iter().chain(high.changed.clone()).chain(unjudged);
     warnings.tell(unfit.map(|text| format!("{}: {text}", high.name)));
 

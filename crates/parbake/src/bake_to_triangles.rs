@@ -1,13 +1,14 @@
 //! A bake of a high-poly alone: its low-poly is made first (`low_poly.rs`), then both are baked (`bake.rs`).
 
 use crate::bake::{Baked, prepare, run};
+use crate::budget::left_out;
 use crate::error::BakeError;
 use crate::low_poly::{check_triangles, coarse_surfaces, low_poly};
 use crate::options::BakeOptions;
 use crate::work::Work;
 use parbake_mesh::parts::{with_kept_parts, with_parted_materials};
 use parbake_model::Model;
-use parbake_progress::Watcher;
+use parbake_progress::{Message, Watcher};
 use std::time::Instant;
 
 /// Makes a low-poly of at most `triangles` triangles, chosen by its pictures, and bakes the high-poly's look onto
@@ -29,6 +30,10 @@ pub fn bake_to_triangles(
     let prepared = prepare(high, options)?;
     check_triangles(&prepared, high, triangles)?;
     let start = coarse_surfaces(&prepared, high);
+    let told = left_out(options, Work::Bake, prepared.is_whole_material);
+    told.iter().for_each(|text| watcher.message(Message::Warning(text.clone())));
     let (low, _) = low_poly(&prepared, high, &start, None, triangles, options, watcher)?;
-    run(&prepared, &low, Work::Level, options, watcher, begin)
+    let mut baked = run(&prepared, &low, Work::Level, options, watcher, begin)?;
+    baked.report.warnings.splice(0..0, told);
+    Ok(baked)
 }

@@ -4,7 +4,8 @@
 //! gutters, rounding to 8 bits, and encoding the files. With T texels it takes about [`FIXED`]·T seconds.
 
 use crate::error::BakeError;
-use crate::options::{BakeOptions, Method, Parallax, ShapeMode, UvMode};
+use crate::options::{BakeOptions, Convention, Method, Parallax, Shading, ShapeMode, UvMode};
+use crate::work::Work;
 use parbake_progress::Stage;
 
 /// Seconds a texel that no budget shortens. Measured with the built-in pair and `--time-budget 0` on two
@@ -61,20 +62,27 @@ pub(crate) fn is_hurried(options: &BakeOptions) -> bool {
     options.time_budget.is_some_and(|seconds| seconds < least_for_moving(options.texture_size))
 }
 
-/// A word about what a budget leaves out, if it is something that the options ask for.
-pub(crate) fn left_out(options: &BakeOptions) -> Option<String> {
+/// A word about what a budget leaves out, if it is something that the options ask for. `is_whole` is whether whole materials
+/// are fitted.
+pub(crate) fn left_out(options: &BakeOptions, work: Work, is_whole: bool) -> Option<String> {
     let budget = options.time_budget.filter(|_| is_hurried(options))?;
-    let moves_vertices = options.shape != ShapeMode::Keep && options.method == Method::Fit;
-    let stays = match (moves_vertices, options.uv == UvMode::Optimize) {
-        (false, false) => return None,
-        (true, false) => "vertices stay",
-        (false, true) => "texture coordinates are at most repaired",
-        (true, true) => "vertices stay, and texture coordinates are at most repaired",
-    };
+    let is_paper = options.method == Method::Paper || options.convention == Convention::Paper;
+    let has_own_surface = work == Work::Compress;
+    let vertices = options.method == Method::Fit && options.shape != ShapeMode::Keep && !has_own_surface;
+    let normals = !is_whole && !is_paper && options.shading != Shading::Lambert && !has_own_surface;
+    let left = [
+        (vertices, "vertices stay"),
+        (options.uv == UvMode::Optimize, "texture coordinates are at most repaired"),
+        (normals && !options.keep_normals, "normals are fitted to a headlight alone"),
+    ];
+    let left: Vec<&str> = left.into_iter().filter(|(is_left, _)| *is_left).map(|(_, text)| text).collect();
     let least = least_for_moving(options.texture_size).ceil();
-    Some(format!(
-        "--time-budget {budget} is only enough for textures: {stays}; they move from {least} s on with this texture size"
-    ))
+    (!left.is_empty()).then(|| {
+        format!(
+            "--time-budget {budget} is too short for every stage: {}; with this texture size all stages run from {least} s on",
+            left.join(", ")
+        )
+    })
 }
 
 /// Seconds to keep back for what cannot be stopped at the end of a bake.
@@ -168,15 +176,17 @@ mod tests {
     /// Protects who asks for vertices and coordinates that a budget has no time for: they are told, with a budget that has.
     #[test]
     fn what_a_budget_leaves_out_is_told() {
-        let told = left_out(&with(512, 3.0)).unwrap();
-        assert!(told.contains("--time-budget 3 ") && told.contains("from 8 s on"), "{told}");
-        assert_eq!(left_out(&with(512, 8.0)), None);
-        assert_eq!(left_out(&BakeOptions::default()), None);
+        let told = |options: &BakeOptions| left_out(options, Work::Bake, true).unwrap_or_default();
+        let all = told(&with(512, 3.0));
+        assert!(all.contains("--time-budget 3 ") && all.ends_with("from 8 s on"), "{all}");
+        assert!(told(&with(2048, 20.0)).ends_with("from 34 s on"));
+        assert_eq!([told(&with(512, 8.0)), told(&BakeOptions::default())], ["", ""]);
         let kept = BakeOptions { shape: ShapeMode::Keep, uv: UvMode::Repair, ..with(512, 3.0) };
-        assert_eq!(left_out(&kept), None);
-        assert!(
-            left_out(&BakeOptions { uv: UvMode::Optimize, ..kept }).is_some_and(|t| !t.contains("vertices"))
-        );
+        assert_eq!(told(&kept), "");
+        assert!(left_out(&kept, Work::Bake, false).is_some_and(|text| text.contains("headlight")));
+        assert!(!told(&BakeOptions { method: Method::Paper, ..with(512, 3.0) }).contains("vertices"));
+        let compressed = left_out(&with(512, 3.0), Work::Compress, false).unwrap();
+        assert!(compressed.contains(": texture coordinates are at most repaired;"), "{compressed}");
     }
 
     /// Protects the time that is shown: every stage that reports has a weight, and none weighs nothing.

@@ -17,7 +17,7 @@
 //! scaled.
 
 use crate::bake::{Baked, bake_onto_itself, bake_prepared_onto_itself, prepare_high_poly};
-use crate::budget::check_budget;
+use crate::budget::{check_budget, left_out};
 use crate::error::BakeError;
 use crate::kept;
 use crate::options::{BakeOptions, Convention, Parallax, Shading, UvMode};
@@ -63,6 +63,15 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> 
     }
     options.check()?;
     check_budget(options)?;
+    let told = left_out(options, Work::Compress, false);
+    told.iter().for_each(|text| watcher.message(Message::Warning(text.clone())));
+    let mut baked = compressed(model, options, watcher)?;
+    baked.report.warnings.splice(0..0, told);
+    Ok(baked)
+}
+
+/// The same with options that were checked.
+fn compressed(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<Baked, BakeError> {
     let as_it_is = options.uv_stage_as(UvMode::Keep);
     let delivered = repair_uvs(model, &as_it_is)?;
     if options.uv == UvMode::Keep && delivered.mesh.uvs.is_empty() {

@@ -2,7 +2,7 @@
 //!
 //! Parts of a model may share texels on purpose: mirrored halves, stacked copies, textures that repeat. A
 //! layout in which each part has texels of its own then shows less with as many texels. So both models are
-//! finished, photographed as `eval` does, and the one that was found has to keep up.
+//! finished, rendered as `eval` does, and the one that was found has to keep up.
 
 use crate::bake::Baked;
 use crate::budget::check_budget;

@@ -99,7 +99,8 @@ pub use parbake_files::{
 };
 pub use parbake_fit::parallax_maps::ParallaxReport;
 pub use parbake_mesh::distance::{OneWay, SurfaceDistance};
-pub use parbake_mesh::parts::PartReport;
+pub use parbake_mesh::named_nodes::NodeError;
+pub use parbake_mesh::parts::{PartReport, PartsError};
 pub use parbake_mesh::topology::{Component, Topology};
 pub use parbake_model::{Image as Picture, Model};
 pub use parbake_progress::{Estimate, Message, ProgressScope, Snapshot, Stage, StageTime, Watcher};
@@ -111,7 +112,7 @@ pub use parbake_uv::moves::UvMoves;
 pub use parbake_uv::surface::UvStageReport;
 pub use parbake_views::PrepareError;
 pub use parbake_views::high_poly::HighPoly;
-pub use parbake_views::importance::{Importance, importances};
+pub use parbake_views::importance::{Importance, ImportanceError, importances};
 pub use plan::Plan;
 pub use raycast::{
     Match, RayNormals, Raycast, RaycastOptions, RaycastReport, RaycastUv, ShapeMapReport, ShapePicture,

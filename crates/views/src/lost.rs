@@ -54,7 +54,7 @@ pub fn lost(materials: &[Material]) -> Vec<String> {
 }
 
 /// A word about extensions that figures of Parbake's renderer say nothing of, if a material has some.
-pub fn not_judged<'a>(materials: impl IntoIterator<Item = &'a Material> + Clone) -> Option<String> {
+pub fn not_compared<'a>(materials: impl IntoIterator<Item = &'a Material> + Clone) -> Option<String> {
     let has = |&&(_, _, has): &&Loss| materials.clone().into_iter().any(|material| has(&material.extensions));
     let names: Vec<&str> = LOSSES.iter().filter(has).map(|(name, ..)| *name).collect();
     (!names.is_empty()).then(|| {
@@ -88,9 +88,9 @@ mod tests {
     #[test]
     fn what_figures_leave_out_is_told() {
         let mut glass = Material::default();
-        assert_eq!(not_judged([&glass]), None);
+        assert_eq!(not_compared([&glass]), None);
         glass.extensions.transmission = Some(Transmission { factor: 1.0, ..Transmission::default() });
-        let told = not_judged([&Material::default(), &glass]);
+        let told = not_compared([&Material::default(), &glass]);
         assert!(told.is_some_and(|text| text.contains("do not include KHR_materials_transmission,")));
     }
 }

@@ -1,7 +1,7 @@
 //! A chain of levels of detail from one model, from fine to coarse.
 //!
 //! ```text
-//! model ─ HighPoly (once) ─┬ triangles (low_poly.rs) ─ bake ─ level ─ figures, switch (switch.rs) ─┐
+//! model ─ HighPoly (once) ─┬ triangles (low_poly.rs) ─ bake ─ level ─ figures, switch (evaluate/screen_size.rs) ─┐
 //!                          └ … the next level may start from the triangles of this one ◁───────────┘
 //! ```
 //!

@@ -1,7 +1,6 @@
 //! Whole bakes through the API: one program for all of them, since each
 //! would be linked with everything anew.
 
-mod channels;
 mod emission;
 mod material;
 mod paper_picture;

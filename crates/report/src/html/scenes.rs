@@ -5,7 +5,7 @@ use parbake_model::Model;
 
 /// Models in the high-poly's frame, read and shaded as the bake's figures are.
 pub struct Scenes {
-    /// Where they are photographed.
+    /// What renders them.
     pub renderer: Renderer,
     /// The detailed model.
     pub high: PlacedModel,

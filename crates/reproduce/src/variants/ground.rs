@@ -8,7 +8,7 @@ use super::report::VariantFigures;
 use super::stored::Stored;
 use parbake::{BakeError, Message, Watcher};
 use parbake::{EvaluateOptions, compare_pictures, mean_figures, tonemapped};
-use parbake_fit::backend::Cpu;
+use parbake_fit::backend::{Backend, Cpu};
 use parbake_fit::parallax::{State, fit_parallax_of};
 use parbake_fit::schedule::{Comparison, Fitted, fit_textures};
 use parbake_image::MapSet;
@@ -26,7 +26,7 @@ use parbake_views::pool::Rig;
 use parbake_views::projection::{ProjectedMaps, project};
 use parbake_views::reference::Reference;
 use parbake_views::samples::shifted_samples;
-use parbake_views::view_sample::{ViewSample, sample_views};
+use parbake_views::view_sample::ViewSample;
 use parbake_views::view_sampler::{UncoveredPixels, ViewSampler};
 use std::sync::Arc;
 use std::time::Instant;
@@ -141,7 +141,7 @@ impl<'a> Ground<'a> {
     pub fn new(subject: &'a Subject, options: &'a VariantsOptions, watcher: &dyn Watcher) -> Self {
         let sampler = subject.sampler(options);
         let (low, start) = &subject.small;
-        let views = sample_views(&sampler, &subject.references);
+        let views = Cpu.sample_views(&sampler, &subject.references);
         let samples = shifted_samples(&views, options.fitted_texels(), &Unshifted, watcher);
         let comparison = subject.comparison();
         let begin =

@@ -1,7 +1,7 @@
 //! The default method on a low-poly's texture coordinates (`crate::optimise`).
 //!
 //! ```text
-//! as it is ───────────────┬ the better one (judge.rs) ─ shape ─ refine (refined.rs)
+//! as it is ───────────────┬ the better one (layout_score.rs) ─ shape ─ refine (refined.rs)
 //! packed, charts scaled ──┘
 //! ```
 //!

@@ -1,21 +1,14 @@
 //! Whole materials in comparisons: when they are shown, and what each channel's figure says.
 
-use parbake::{Channel, EvaluateOptions, Evaluation, Model, Shading, demo_pair, evaluate};
-use parbake_model::{Clearcoat, TextureSlot, Transmission};
+use crate::jar;
+use parbake_evaluate::channels::Channel;
+use parbake_evaluate::conventions::Shading;
+use parbake_evaluate::evaluate::{Evaluation, evaluate};
+use parbake_evaluate::options::EvaluateOptions;
+use parbake_model::{Clearcoat, Model, TextureSlot, Transmission};
 
 fn options() -> EvaluateOptions {
     EvaluateOptions { views: 3, resolution: 64, ..EvaluateOptions::default() }
-}
-
-/// The jar in one colour, of this roughness and metal, scaled about the origin.
-fn jar(roughness: f32, metallic: f32, scale: f32) -> Model {
-    let (mut jar, _) = demo_pair();
-    for material in &mut jar.materials {
-        (material.base_color_texture, material.normal_texture) = (None, None);
-        (material.roughness, material.metallic) = (roughness, metallic);
-    }
-    jar.mesh.positions.iter_mut().for_each(|p| *p *= scale);
-    jar
 }
 
 fn psnr(of: &Evaluation, channel: Channel) -> f64 {
