@@ -6,6 +6,7 @@
 //! Contract: no more triangles than were asked for. Deterministic, as long as `is_over` says no; what was tried until it says
 //! yes counts.
 
+use crate::search::INVISIBLE;
 use parbake_mesh::{Collapses, Seams, simplify_in_layout};
 use parbake_model::Mesh;
 use std::borrow::Cow;
@@ -32,7 +33,6 @@ const UV_WEIGHTS: [f32; 4] = [0.05, 0.2, 0.5, 1.0];
 /// the best one of all, and that still shows what it lacks.
 const MOST_SEARCHED: usize = 8;
 const PROMISING: f64 = 2.0;
-const INVISIBLE: f64 = 60.0;
 
 /// The mesh with at most `triangles` triangles whose pictures are closest to the original's, as `judged` returned it, with
 /// its PSNR in dB: the best of nine first ways, or with `searches` what a search from there finds. None where seams leave

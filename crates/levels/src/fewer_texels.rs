@@ -1,23 +1,19 @@
 //! A model's own maps with fewer texels: how much each may lose is found by pictures.
 //!
 //! Each map is reduced by itself, step by step; of all together the errors add up, nearly enough. Of all choices within a
-//! number of texels the one with the fewest texels counts that shows nothing less; where something is lost anyway, the one that
-//! loses least.
+//! number of texels, the one with the fewest is taken at which pictures look the same; where none does, the one whose
+//! pictures are closest.
 //!
 //! Contract: the surface stays as it is. What was measured until `is_over` says yes counts.
 
 use crate::maps::{
     LevelMap, Reduction, images_of_extensions, oblong_level_maps, with_halved_extensions, with_reductions,
 };
-use crate::search::error_of;
-use parbake_image::MapKind;
-use parbake_image::material_maps::texture_slot;
-use parbake_image::reduced::reduced;
-use parbake_model::{Image, Material, Model};
+use crate::search::{INVISIBLE, error_of};
+use parbake_model::{Image, Model};
 
-/// Decibels that fewer texels may cost, and the PSNR above which no difference shows.
+/// Decibels that fewer texels may cost.
 const UNSEEN: f64 = 0.05;
-const INVISIBLE: f64 = 60.0;
 /// Texels of all maps below which there is nothing to be gained by fewer.
 const FREE: usize = 256 * 256;
 /// A map that alone costs so many times the error that may not be seen is not reduced further.
@@ -108,29 +104,6 @@ fn choices(counts: &[usize]) -> Vec<Vec<usize>> {
         };
         all.iter().flat_map(longer).collect()
     })
-}
-
-/// A model's name, materials and maps without its surface; no map has more than `side` texels along a side.
-pub fn with_maps_at_most(model: &Model, side: usize) -> Model {
-    let mut images = model.images.clone();
-    for (index, kind) in kinds_of_images(&model.materials) {
-        if let Some(image) = images.get_mut(index) {
-            let times = (0..).take_while(|&times| image.width.max(image.height) >> times > side).count();
-            *image = reduced(kind, image, true, [times; 2]);
-        }
-    }
-    Model { name: model.name.clone(), materials: model.materials.clone(), images, ..Model::default() }
-}
-
-/// What images hold, each once.
-fn kinds_of_images(materials: &[Material]) -> Vec<(usize, MapKind)> {
-    let mut kinds: Vec<(usize, MapKind)> = Vec::new();
-    for (material, kind) in materials.iter().flat_map(|m| MapKind::ALL.map(|kind| (m, kind))) {
-        let image = texture_slot(material, kind).map(|slot| slot.image);
-        let is_new = |image: &usize| kinds.iter().all(|(known, _)| known != image);
-        kinds.extend(image.filter(is_new).map(|image| (image, kind)));
-    }
-    kinds
 }
 
 #[cfg(test)]

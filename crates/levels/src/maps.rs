@@ -178,6 +178,29 @@ fn mean_on_surface(model: &Model, kind: MapKind, image: &Image) -> Vec4 {
     if weight > 0.0 { sum / weight } else { kind.spec().neutral }
 }
 
+/// A model's name, materials and maps without its surface; no map has more than `side` texels along a side.
+pub fn with_maps_at_most(model: &Model, side: usize) -> Model {
+    let mut images = model.images.clone();
+    for (index, kind) in kinds_of_images(&model.materials) {
+        if let Some(image) = images.get_mut(index) {
+            let times = (0..).take_while(|&times| image.width.max(image.height) >> times > side).count();
+            *image = reduced(kind, image, true, [times; 2]);
+        }
+    }
+    Model { name: model.name.clone(), materials: model.materials.clone(), images, ..Model::default() }
+}
+
+/// What images hold, each once.
+fn kinds_of_images(materials: &[Material]) -> Vec<(usize, MapKind)> {
+    let mut kinds: Vec<(usize, MapKind)> = Vec::new();
+    for (material, kind) in materials.iter().flat_map(|m| MapKind::ALL.map(|kind| (m, kind))) {
+        let image = texture_slot(material, kind).map(|slot| slot.image);
+        let is_new = |image: &usize| kinds.iter().all(|(known, _)| known != image);
+        kinds.extend(image.filter(is_new).map(|image| (image, kind)));
+    }
+    kinds
+}
+
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {

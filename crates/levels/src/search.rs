@@ -118,6 +118,9 @@ pub enum Verdict {
     Stopped,
 }
 
+/// PSNR in dB above which pictures show no difference.
+pub(crate) const INVISIBLE: f64 = 60.0;
+
 /// Mean squared error of a PSNR.
 pub fn error_of(psnr: f64) -> f64 {
     10f64.powf(-psnr / 10.0)

@@ -159,6 +159,21 @@ pub(crate) fn prepare(high: &Model, options: &BakeOptions) -> Result<HighPoly, B
     Ok(prepared)
 }
 
+/// A run whose user is told something before it begins, and reads it again in the report.
+///
+/// # Errors
+/// Those of the run.
+pub(crate) fn told_before(
+    told: Option<String>,
+    watcher: &dyn Watcher,
+    run: impl FnOnce() -> Result<Baked, BakeError>,
+) -> Result<Baked, BakeError> {
+    told.iter().for_each(|text| watcher.message(Message::Warning(text.clone())));
+    let mut baked = run()?;
+    baked.report.warnings.splice(0..0, told);
+    Ok(baked)
+}
+
 /// A bake from its first stage to its report; it began at `begin`.
 pub(crate) fn run(
     high: &HighPoly,

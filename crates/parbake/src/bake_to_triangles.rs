@@ -1,6 +1,6 @@
 //! A bake of a high-poly alone: its low-poly is made first (`low_poly.rs`), then both are baked (`bake.rs`).
 
-use crate::bake::{Baked, prepare, run};
+use crate::bake::{Baked, prepare, run, told_before};
 use crate::budget::left_out;
 use crate::error::BakeError;
 use crate::low_poly::{check_triangles, coarse_surfaces, low_poly};
@@ -8,7 +8,7 @@ use crate::options::BakeOptions;
 use crate::work::Work;
 use parbake_mesh::parts::{with_kept_parts, with_parted_materials};
 use parbake_model::Model;
-use parbake_progress::{Message, Watcher};
+use parbake_progress::Watcher;
 use std::time::Instant;
 
 /// Makes a low-poly of at most `triangles` triangles, chosen by its pictures, and bakes the high-poly's look onto
@@ -31,9 +31,8 @@ pub fn bake_to_triangles(
     check_triangles(&prepared, high, triangles)?;
     let start = coarse_surfaces(&prepared, high);
     let told = left_out(options, Work::Bake, prepared.is_whole_material);
-    told.iter().for_each(|text| watcher.message(Message::Warning(text.clone())));
-    let (low, _) = low_poly(&prepared, high, &start, None, triangles, options, watcher)?;
-    let mut baked = run(&prepared, &low, Work::Level, options, watcher, begin)?;
-    baked.report.warnings.splice(0..0, told);
-    Ok(baked)
+    told_before(told, watcher, || {
+        let (low, _) = low_poly(&prepared, high, &start, None, triangles, options, watcher)?;
+        run(&prepared, &low, Work::Level, options, watcher, begin)
+    })
 }

@@ -19,7 +19,7 @@ use super::picture_score::PictureScore;
 use crate::error::BakeError;
 use crate::options::ShapeMode;
 use parbake_levels::collapses::best_collapsed;
-use parbake_levels::fewer_texels::with_maps_at_most;
+use parbake_levels::maps::with_maps_at_most;
 use parbake_mesh::rigs::transferred;
 use parbake_model::{Mesh, Model};
 use std::time::Instant;
