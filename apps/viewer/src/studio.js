@@ -1,6 +1,6 @@
 // The built-in light of `parbake eval` and of its reports, so that pictures and decibels here are those there:
-// crates/render/src/lighting.rs (soft lamps as spherical Gaussians), split_sum.rs and metallic_roughness.rs, which
-// have the formulas and their sources. Directions are in the common frame: +Y up, +Z to the front.
+// crates/render/src/lighting.rs (soft lamps as spherical Gaussians), split_sum.rs, metallic_roughness.rs and
+// material_layers.rs, which have the formulas and their sources. Directions are in the common frame: +Y up, +Z to the front.
 import { DataTexture, FloatType, NearestFilter, RGFormat, Vector3 } from './vendor.js';
 
 const NODES = 32, SAMPLES = 512;
@@ -95,41 +95,78 @@ vec2 pbScaleAndBias(float cosine, float roughness) {
   vec2 b = mix(texelFetch(pbSplitSum, node + ivec2(0, 1), 0).rg, texelFetch(pbSplitSum, node + ivec2(1, 1), 0).rg, at.x);
   return mix(a, b, at.y);
 }
-vec3 pbShare(vec3 f0, float roughness, float grazing, vec2 table) {
+vec3 pbShare(vec3 f0, float f90, float roughness, float grazing, vec2 table) {
   float lost = 1.0 - table.x - table.y;
-  vec3 most = max(vec3(1.0 - roughness), f0);
-  vec3 once = (f0 + (most - f0) * grazing) * table.x + table.y;
+  vec3 most = max(vec3((1.0 - roughness) * f90), f0);
+  vec3 once = (f0 + (most - f0) * grazing) * table.x + table.y * f90;
   vec3 mean = f0 + (1.0 - f0) / 21.0;
   return once + lost * once * mean / (1.0 - mean * lost);
 }
 float pbFifth(float x) { float square = x * x; return square * square * x; }
-vec3 pbStudio(vec3 color, float metallic, float rough, float occlusion, vec3 emission, vec3 normal, vec3 viewer) {
-  float roughness = clamp(rough, 0.0525, 1.0), alpha = roughness * roughness;
-  float towards = dot(normal, viewer), cosine = clamp(towards, 1e-4, 1.0);
-  vec3 mirrored = 2.0 * towards * normal - viewer;
-  vec3 diffuse = PB_AMBIENT, reflected = PB_AMBIENT;
+vec3 pbIrradiance(vec3 normal) {
+  vec3 light = PB_AMBIENT;
+  for (int i = 0; i < ${SOFT.length}; i++) light += pbLamp[i] * pbDiffuse(pbSharpness[i], dot(pbTurn * pbAxis[i], normal));
+  return light;
+}
+vec3 pbReflected(vec3 mirrored, float alpha) {
+  vec3 light = PB_AMBIENT;
   float lobe = 0.5 / (alpha * alpha);
-  for (int i = 0; i < ${SOFT.length}; i++) {
-    vec3 axis = pbTurn * pbAxis[i];
-    diffuse += pbLamp[i] * pbDiffuse(pbSharpness[i], dot(axis, normal));
-    reflected += pbLamp[i] * pbSmoothed(pbSharpness[i], dot(axis, mirrored), lobe);
-  }
-  vec2 table = pbScaleAndBias(cosine, roughness);
-  float grazing = pbFifth(1.0 - cosine);
-  vec3 dielectric = mix(diffuse * color, reflected, pbShare(vec3(0.04), roughness, grazing, table));
-  vec3 metal = reflected * pbShare(color, roughness, grazing, table);
-  vec3 light = mix(dielectric, metal, metallic) * occlusion + emission;
-  vec3 sun = pbTurn * PB_SUN_FROM;
+  for (int i = 0; i < ${SOFT.length}; i++)
+    light += pbLamp[i] * pbSmoothed(pbSharpness[i], dot(pbTurn * pbAxis[i], mirrored), lobe);
+  return light;
+}
+// The cosine to the lamp far away, and D V of GGX; 0 where the surface is turned away. schlick is Schlick's fifth power.
+vec2 pbSun(vec3 normal, vec3 viewer, float cosine, float alpha, out float schlick) {
+  vec3 sun = pbTurn * PB_SUN_FROM, sum = sun + viewer;
   float nl = dot(normal, sun);
-  vec3 sum = sun + viewer;
-  if (nl <= 0.0 || dot(sum, sum) < 1e-8) return light;
+  schlick = 0.0;
+  if (nl <= 0.0 || dot(sum, sum) < 1e-8) return vec2(0.0);
   vec3 h = normalize(sum), across = cross(normal, h);
-  float nh = dot(normal, h), vh = dot(viewer, h), width = alpha * alpha;
+  float nh = dot(normal, h), width = alpha * alpha;
   float spread = dot(across, across) + width * nh * nh;
   float masks = nl * sqrt(cosine * cosine * (1.0 - width) + width) + cosine * sqrt(nl * nl * (1.0 - width) + width);
-  float specular = width / (3.14159265 * spread * spread) * 0.5 / masks;
-  float schlick = pbFifth(max(1.0 - vh, 0.0));
-  vec3 below = mix(color / 3.14159265, vec3(specular), 0.04 + 0.96 * schlick);
-  return light + mix(below, specular * (color + (1.0 - color) * schlick), metallic) * PB_SUN * nl;
+  schlick = pbFifth(max(1.0 - dot(viewer, h), 0.0));
+  return vec2(nl, width / (3.14159265 * spread * spread) * 0.5 / masks);
+}
+// Without layers; the share that a dielectric reflects is left in reflects, and scatters is the rest that does not pass.
+vec3 pbBase(vec3 color, float metallic, float rough, float occlusion, vec3 emission, vec3 normal, vec3 viewer,
+    vec3 f0, float f90, float scatters, out vec3 reflects) {
+  float roughness = clamp(rough, 0.0525, 1.0), alpha = roughness * roughness;
+  float towards = dot(normal, viewer), cosine = clamp(towards, 1e-4, 1.0);
+  vec3 reflected = pbReflected(2.0 * towards * normal - viewer, alpha);
+  vec2 table = pbScaleAndBias(cosine, roughness);
+  float grazing = pbFifth(1.0 - cosine), schlick;
+  reflects = pbShare(f0, f90, roughness, grazing, table);
+  vec3 dielectric = mix(pbIrradiance(normal) * color * scatters, reflected, reflects);
+  vec3 metal = reflected * pbShare(color, 1.0, roughness, grazing, table);
+  vec3 light = mix(dielectric, metal, metallic) * occlusion + emission;
+  vec2 sun = pbSun(normal, viewer, cosine, alpha, schlick);
+  vec3 below = mix(color * scatters / 3.14159265, vec3(sun.y), f0 + (f90 - f0) * schlick);
+  return light + mix(below, sun.y * (color + (1.0 - color) * schlick), metallic) * PB_SUN * sun.x;
+}
+// What a sheen adds, and in the fourth number what multiplies all that is below it.
+vec4 pbSheen(vec3 color, float rough, float occlusion, vec3 normal, vec3 viewer) {
+  float r = clamp(rough, 0.07, 1.0), rr = r * r, cosine = clamp(dot(normal, viewer), 1e-4, 1.0);
+  float inverse = 1.0 / (r + 0.1);
+  float slope = -1.9362 + 1.0678 * r + 0.4573 * rr - 0.8469 * inverse;
+  float start = -0.6014 + 0.5538 * r - 0.4670 * rr - 0.1255 * inverse;
+  float albedo = min(exp(slope * cosine + start), 1.0);
+  vec3 light = pbIrradiance(normal) * albedo * occlusion, sun = pbTurn * PB_SUN_FROM, sum = sun + viewer;
+  float nl = dot(normal, sun);
+  if (nl > 0.0 && dot(sum, sum) >= 1e-8) {
+    float sine = min(length(cross(normal, normalize(sum))), 1.0);
+    float distribution = (2.0 + 1.0 / rr) * pow(sine, 1.0 / rr) / 6.28318531;
+    light += PB_SUN * (distribution / (4.0 * (nl + cosine - nl * cosine)) * nl);
+  }
+  return vec4(light * color, 1.0 - max(color.r, max(color.g, color.b)) * albedo);
+}
+// The same of a coat.
+vec4 pbCoat(float strength, float rough, float occlusion, vec3 normal, vec3 viewer) {
+  float roughness = clamp(rough, 0.0525, 1.0), alpha = roughness * roughness;
+  float towards = dot(normal, viewer), cosine = clamp(towards, 1e-4, 1.0), schlick;
+  vec2 table = pbScaleAndBias(cosine, roughness), sun = pbSun(normal, viewer, cosine, alpha, schlick);
+  vec3 light = pbReflected(2.0 * towards * normal - viewer, alpha) * (0.04 * table.x + table.y) * occlusion;
+  light += PB_SUN * (sun.x * sun.y * (0.04 + 0.96 * schlick));
+  return vec4(light * strength, 1.0 - strength * (0.04 + 0.96 * pbFifth(1.0 - cosine)));
 }
 `;

@@ -28,7 +28,12 @@ impl Convention {
 
     /// How textures are read.
     pub fn interpretation(self) -> Interpretation {
-        Interpretation { decode_srgb: self.decodes_srgb(), trilinear: true, parallax: true }
+        Interpretation {
+            decode_srgb: self.decodes_srgb(),
+            trilinear: true,
+            parallax: true,
+            extensions: false,
+        }
     }
 
     /// Light strength and display curve.

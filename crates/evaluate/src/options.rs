@@ -161,6 +161,7 @@ impl EvaluateOptions {
             decode_srgb: self.convention.decodes_srgb(),
             trilinear: !self.no_mips,
             parallax: !self.no_parallax,
+            extensions: false,
         }
     }
 }

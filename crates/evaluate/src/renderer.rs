@@ -19,6 +19,7 @@ use parbake_metric::Rgb;
 use parbake_model::glam::Vec3;
 use parbake_model::{Model, Placement};
 use parbake_render::camera::Camera;
+use parbake_render::interpretation::Interpretation;
 use parbake_render::lighting::Lighting;
 use parbake_render::metallic_roughness::MetallicRoughness;
 use parbake_render::scene::{Picture, Scene};
@@ -81,12 +82,9 @@ impl Renderer {
 
     /// Places a model in the frame.
     pub fn place(&self, model: &Model) -> PlacedModel {
-        let mut scene = scene(model, &self.frame, self.options.interpretation());
-        // As in the fit. What would stand in for an extension depends on how a file writes it.
-        if self.whole.is_some() {
-            scene.leave_out_extensions();
-        }
-        PlacedModel(scene)
+        let interpretation =
+            Interpretation { extensions: self.whole.is_some(), ..self.options.interpretation() };
+        PlacedModel(scene(model, &self.frame, interpretation))
     }
 
     /// Renders it from `direction`, of unit length: the camera stands there and looks at the

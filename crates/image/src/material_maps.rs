@@ -80,27 +80,26 @@ const REFLECTED: f32 = 0.09;
 /// colour, averaged over the directions from which a matte surface is seen, and what multiplies the base
 /// colour below it; linear.
 pub fn sheen_as_color(color: Vec3, albedo: f32) -> (Vec3, f32) {
-    (color * albedo, 1.0 - SHEEN_COVERS * color.max_element())
+    (color * albedo, 1.0 - albedo * color.max_element())
 }
 
-/// Share of the light that a white sheen takes from what is below (Khronos' sample renderer).
-const SHEEN_COVERS: f32 = 0.157;
-
-/// Albedo of a white sheen of this roughness: the fit by exponentials that three.js uses for the Charlie distribution (Estevez
-/// and Kulla 2017), averaged over the half-sphere by the cosine.
+/// Albedo of a white sheen of this roughness, averaged over the half-sphere by the cosine.
 pub fn sheen_albedo(roughness: f32) -> f32 {
     const STEPS: usize = 32;
-    let (r, rr) = (roughness, roughness * roughness);
-    let (a, b, rest) = if r < 0.25 {
-        (-339.2 * rr + 161.4 * r - 25.9, 44.0 * rr - 23.7 * r + 3.26, 0.0)
-    } else {
-        (-8.48 * rr + 14.3 * r - 9.95, 1.97 * rr - 3.27 * r + 0.72, 0.1 * (r - 0.25))
-    };
     let at = |step: usize| {
         let cosine = (step as f32 + 0.5) / STEPS as f32;
-        2.0 * cosine * ((a * cosine + b).exp() + rest)
+        2.0 * cosine * sheen_albedo_at(cosine, roughness)
     };
     (0..STEPS).map(at).sum::<f32>() / STEPS as f32
+}
+
+/// Albedo of a white sheen of this roughness, seen at this cosine to the normal: the fit by exponentials that three.js uses
+/// (r187) for the Charlie distribution (Estevez and Kulla 2017).
+pub fn sheen_albedo_at(cosine: f32, roughness: f32) -> f32 {
+    let (r, square, inverse) = (roughness, roughness * roughness, 1.0 / (roughness + 0.1));
+    let slope = -1.9362 + 1.0678 * r + 0.4573 * square - 0.8469 * inverse;
+    let start = -0.6014 + 0.5538 * r - 0.4670 * square - 0.1255 * inverse;
+    (slope * cosine + start).exp()
 }
 
 /// Gives a material a map; its factor becomes 1.
@@ -133,7 +132,7 @@ mod tests {
             assert!(added.x > 0.0 && added.x + below < 1.01, "{added} {below}");
             assert_eq!(added.z, 0.0);
         }
-        assert!((sheen_albedo(1.0) - 0.135).abs() < 0.005);
+        assert!((sheen_albedo(1.0) - 0.253).abs() < 0.005);
     }
 
     /// Protects glass: what all light passes is blended, metal and cut-outs are not.

@@ -11,10 +11,13 @@ pub struct Interpretation {
     /// Shift texture coordinates where a material has a parallax map, and leave out what its
     /// cutout does; off: as viewers see the model that know no such maps.
     pub parallax: bool,
+    /// Show clearcoat, sheen, specular, index of refraction, transmission and volume, in pictures of whole materials;
+    /// off: of sheen and transmission what base colour and opacity can show of them.
+    pub extensions: bool,
 }
 
 impl Default for Interpretation {
     fn default() -> Self {
-        Self { decode_srgb: true, trilinear: true, parallax: true }
+        Self { decode_srgb: true, trilinear: true, parallax: true, extensions: false }
     }
 }

@@ -12,9 +12,9 @@
 //! triangle's samples to light. `slopes.rs` and `scatter.rs` are the two halves of the
 //! texture's adjoint: towards the coordinates and towards the texels. `surface.rs` is
 //! what goes in. `shade.rs` is what a BRDF is, and Lambert's; `metallic_roughness.rs` is glTF's, under the
-//! light of `lighting.rs`, with the table of `split_sum.rs` and the derivatives of `real.rs`. `scene.rs`
+//! light of `lighting.rs`, with the table of `split_sum.rs` and the derivatives of `real.rs`; `material_layers.rs` adds what extensions show. `scene.rs`
 //! renders whole models, forward only (`scene_material.rs` with all of their materials), with the textures of
-//! `scene_textures.rs`, read as `interpretation.rs` says; meshes of many small
+//! `scene_textures.rs` and the extensions of `scene_layers.rs`, read as `interpretation.rs` says; meshes of many small
 //! triangles by `raster_clusters.rs`. `turning_normals.rs` widens highlights as three.js does. `cutout.rs` is where a surface is not there, seen from the wrong side.
 //! `parallax_variants` puts other ways to shift coordinates behind one interface.
 //! `parallax_images.rs` and `cutout_images.rs` take maps to 8-bit images and back, by
@@ -37,6 +37,7 @@ pub mod interpolate;
 pub mod interpretation;
 pub mod lighting;
 pub mod loss;
+pub mod material_layers;
 pub mod metallic_roughness;
 pub mod on_screen;
 pub mod parallax;
@@ -49,6 +50,7 @@ pub mod raster_clusters;
 mod real;
 pub mod scatter;
 pub mod scene;
+mod scene_layers;
 pub mod scene_material;
 mod scene_textures;
 pub mod shade;

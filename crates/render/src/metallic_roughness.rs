@@ -29,6 +29,7 @@
 
 use crate::frame::Orientation;
 use crate::lighting::{DirectionalLight, Lighting};
+use crate::material_layers::{LayeredLight, MaterialLayers};
 use crate::real::{Dual, Real, Triple};
 use crate::shade::{Brdf, BrdfGradient, Jacobian, SHORTEST};
 use crate::split_sum::scale_and_bias;
@@ -38,10 +39,26 @@ use std::f32::consts::PI;
 
 /// Smoother surfaces are shaded as if they had this roughness, so that small lamps do not flicker (three.js).
 pub const LEAST_ROUGHNESS: f32 = 0.0525;
-/// What a dielectric reflects of light that falls on it from above.
-const DIELECTRIC: f32 = 0.04;
 /// The least cosine to the viewer.
-const LEAST_COSINE: f32 = 1e-4;
+pub(crate) const LEAST_COSINE: f32 = 1e-4;
+
+/// How a surface that is not metal meets light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dielectric {
+    /// What it reflects of light that falls on it from above, by channel, 0 to 1.
+    pub f0: Vec3,
+    /// What it reflects of light that grazes it, 0 to 1.
+    pub f90: f32,
+    /// Share of the light that it does not reflect which it scatters, 0 to 1; the rest passes.
+    pub scatters: f32,
+}
+
+impl Default for Dielectric {
+    /// That of glTF without extensions: an index of refraction of 1.5, nothing passes.
+    fn default() -> Self {
+        Self { f0: Vec3::splat(0.04), f90: 1.0, scatters: 1.0 }
+    }
+}
 
 /// glTF's metallic-roughness BRDF under this light. It reads every map.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -99,23 +116,23 @@ impl Inputs<Dual> {
     }
 }
 
-fn fifth<T: Real>(x: T) -> T {
+pub(crate) fn fifth<T: Real>(x: T) -> T {
     let square = x * x;
     square * square * x
 }
 
-/// `E(F₀)` for each channel.
+/// `E(F₀)` for each channel, with the share that grazing light has, 1 but for weakened dielectrics.
 fn reflected_share<T: Real>(
-    f0: Triple<T>,
+    (f0, f90): (Triple<T>, f32),
     roughness: T,
     grazing: T,
     [scale, bias]: [T; 2],
     lost: T,
 ) -> Triple<T> {
     f0.map(|f0| {
-        let smooth = -roughness + 1.0;
+        let smooth = (-roughness + 1.0) * f90;
         let most = if smooth.value() > f0.value() { smooth } else { f0 };
-        let once = (f0 + (most - f0) * grazing) * scale + bias;
+        let once = (f0 + (most - f0) * grazing) * scale + bias * f90;
         let mean = f0 + (-f0 + 1.0) * (1.0 / 21.0);
         once + lost * once * mean / (-(mean * lost) + 1.0)
     })
@@ -127,7 +144,18 @@ impl MetallicRoughness {
         Self { lighting: Lighting::studio() }
     }
 
-    fn shaded<T: Real>(&self, inputs: &Inputs<T>) -> Triple<T> {
+    /// The light of a surface without layers, and what its dielectric part reflects of even light, by channel.
+    pub(crate) fn base(
+        &self,
+        surface: &Orientation,
+        maps: &MapValues,
+        dielectric: Dielectric,
+    ) -> (Vec3, Vec3) {
+        let (light, reflects) = self.shaded::<f32>(&Inputs::constant(surface, maps), dielectric);
+        (Vec3::from(light.0), Vec3::from(reflects.0))
+    }
+
+    fn shaded<T: Real>(&self, inputs: &Inputs<T>, own: Dielectric) -> (Triple<T>, Triple<T>) {
         let Inputs { color, metallic, to_viewer, .. } = *inputs;
         let roughness = inputs.roughness.at_least(LEAST_ROUGHNESS).at_most(1.0);
         let alpha = roughness * roughness;
@@ -142,19 +170,21 @@ impl MetallicRoughness {
         let mirrored = normal.scale(towards * 2.0).plus(to_viewer.scale(T::constant(-1.0)));
         let table = scale_and_bias(cosine, roughness);
         let (lost, grazing) = (-(table[0] + table[1]) + 1.0, fifth(-cosine + 1.0));
-        let share = |f0| reflected_share(f0, roughness, grazing, table, lost);
+        let share = |f0, f90| reflected_share((f0, f90), roughness, grazing, table, lost);
         let reflected = self.lighting.reflected(mirrored, alpha);
-        let diffuse = self.lighting.diffuse(normal).zip(color, |light, c| light * c);
-        let dielectric = diffuse.mix(reflected, share(Triple([T::constant(DIELECTRIC); 3])));
-        let metal = reflected.zip(share(color), |light, share| light * share);
+        let scattered = color.map(|c| c * own.scatters);
+        let diffuse = self.lighting.diffuse(normal).zip(scattered, |light, c| light * c);
+        let reflects = share(Triple::constant(own.f0), own.f90);
+        let dielectric = diffuse.mix(reflected, reflects);
+        let metal = reflected.zip(share(color, 1.0), |light, share| light * share);
         let metallic = Triple([metallic; 3]);
         let mut out = dielectric.mix(metal, metallic).scale(inputs.occlusion).plus(inputs.emissive);
         for light in &self.lighting.directional {
-            if let Some(more) = direct(light, normal, to_viewer, cosine, alpha, color, metallic) {
+            if let Some(more) = direct(light, normal, to_viewer, (cosine, alpha), color, metallic, own) {
                 out = out.plus(more);
             }
         }
-        out
+        (out, reflects)
     }
 }
 
@@ -163,10 +193,10 @@ fn direct<T: Real>(
     light: &DirectionalLight,
     normal: Triple<T>,
     to_viewer: Triple<T>,
-    cosine: T,
-    alpha: T,
+    (cosine, alpha): (T, T),
     color: Triple<T>,
     metallic: Triple<T>,
+    own: Dielectric,
 ) -> Option<Triple<T>> {
     let to_light: Triple<T> = Triple::constant(light.direction);
     let nl = normal.dot(to_light);
@@ -184,10 +214,10 @@ fn direct<T: Real>(
     let visibility = T::constant(0.5) / (masked(nl, cosine) + masked(cosine, nl));
     let specular = Triple([distribution * visibility; 3]);
     let grazing = fifth((-vh + 1.0).at_least(0.0));
-    let fresnel = |f0: T| f0 + (-f0 + 1.0) * grazing;
-    let dielectric =
-        color.map(|c| c * (1.0 / PI)).mix(specular, Triple([fresnel(T::constant(DIELECTRIC)); 3]));
-    let metal = specular.zip(color.map(fresnel), |s, f| s * f);
+    let fresnel = |f0: T, f90: f32| f0 + (-f0 + f90) * grazing;
+    let diffuse = color.map(|c| c * (own.scatters / PI));
+    let dielectric = diffuse.mix(specular, Triple::constant(own.f0).map(|f0| fresnel(f0, own.f90)));
+    let metal = specular.zip(color.map(|f0| fresnel(f0, 1.0)), |s, f| s * f);
     let irradiance = Triple::constant(light.color).scale(nl);
     Some(dielectric.mix(metal, metallic).zip(irradiance, |a, b| a * b))
 }
@@ -205,7 +235,16 @@ impl Brdf<Orientation> for MetallicRoughness {
     }
 
     fn light(&self, surface: &Orientation, maps: &MapValues) -> Vec3 {
-        Vec3::from(self.shaded::<f32>(&Inputs::constant(surface, maps)).0)
+        self.base(surface, maps, Dielectric::default()).0
+    }
+
+    fn light_in_layers(
+        &self,
+        surface: &Orientation,
+        maps: &MapValues,
+        layers: &MaterialLayers,
+    ) -> LayeredLight {
+        self.layered(surface, maps, layers)
     }
 
     fn adjoint(&self, surface: &Orientation, maps: &MapValues, gradient: Vec3) -> BrdfGradient<Orientation> {
@@ -217,7 +256,7 @@ impl Brdf<Orientation> for MetallicRoughness {
             let mut inputs = Inputs::constant(surface, maps);
             let triple = place(&mut inputs);
             *triple = Triple(std::array::from_fn(|k| Dual::variable(triple.0[k].value, k)));
-            let slopes = Jacobian::Full(columns(self.shaded(&inputs)).1);
+            let slopes = Jacobian::Full(columns(self.shaded(&inputs, Dielectric::default()).0).1);
             slopes.pull(gradient.extend(0.0)).truncate()
         };
         let [tangent, bitangent, normal] = [0, 1, 2].map(|k| pull(&|inputs| &mut inputs.frame[k]));
@@ -227,7 +266,8 @@ impl Brdf<Orientation> for MetallicRoughness {
     }
 
     fn jacobian(&self, kind: MapKind, surface: &Orientation, maps: &MapValues) -> (Vec4, Jacobian) {
-        let (light, slopes) = columns(self.shaded(&Inputs::varying(surface, maps, kind)));
+        let (light, slopes) =
+            columns(self.shaded(&Inputs::varying(surface, maps, kind), Dielectric::default()).0);
         (light, Jacobian::Full(slopes))
     }
 }

@@ -15,6 +15,7 @@ use crate::cutout::rasterise_cut;
 use crate::frame::{Orientation, orientation, tangent_light};
 use crate::interpolate::{barycentrics, interpolate};
 use crate::interpretation::Interpretation;
+use crate::material_layers::MaterialLayers;
 use crate::on_screen::{AlphaClusters, OnScreen, Raster};
 use crate::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility};
 pub use crate::scene_textures::unpack;
@@ -47,6 +48,8 @@ pub(crate) struct Seen {
     handedness: f32,
     to_viewer: Vec3,
     facing: f32,
+    /// What extensions show there, if the interpretation asks for them.
+    pub layers: Option<MaterialLayers>,
 }
 
 impl Seen {
@@ -60,7 +63,11 @@ impl Seen {
     }
 
     pub fn world_normal(&self) -> Vec3 {
-        let m = self.values[MapKind::Normal];
+        self.turned(self.values[MapKind::Normal].truncate())
+    }
+
+    /// A normal of the tangent frame as a unit vector of the common frame that looks to the side of the viewer.
+    fn turned(&self, m: Vec3) -> Vec3 {
         let bitangent = self.normal.cross(self.tangent) * self.handedness;
         let world = self.tangent * m.x + bitangent * m.y + self.normal * m.z;
         (world * self.facing).normalize_or(self.to_viewer)
@@ -358,12 +365,18 @@ impl Scene {
         };
         let mut values = self.values(surface, textures, corners, b.weights, reads, &fetch);
         let (mut tangent, mut handedness) = (Vec3::ZERO, 1.0);
-        if let Some(map) = textures[MapKind::Normal as usize].as_ref().filter(|_| !mesh.tangents.is_empty()) {
+        let normals = textures[MapKind::Normal as usize].as_ref().filter(|_| !mesh.tangents.is_empty());
+        if normals.is_some() || surface.layers.is_some() && !mesh.tangents.is_empty() {
             tangent = interpolate(corners.map(|i| mesh.tangents[i].truncate()), b.weights);
             handedness = mesh.tangents[corners[0]].w;
+        }
+        if let Some(map) = normals {
             values[MapKind::Normal] = fetch(map).extend(0.0) * surface.factors[MapKind::Normal];
         }
-        Seen { values, normal, tangent, handedness, to_viewer, facing }
+        let mut seen = Seen { values, normal, tangent, handedness, to_viewer, facing, layers: None };
+        seen.layers =
+            surface.layers.as_ref().map(|own| own.at(&fetch, &|m| seen.turned(m.unwrap_or(Vec3::Z))));
+        seen
     }
 
     /// What is seen at each sample, through all that is cut out.

@@ -5,11 +5,12 @@
 //! of all blended surfaces in front of it, from front to back, with transmittance `T`:
 //!
 //! ```text
-//! light += T α c,  T ← T (1 − α);  at last light += T c of the solid one,  coverage = 1 − T after it
+//! light += T α c,  T ← T (1 − α + α p);  at last light += T c of the solid one,  coverage = 1 − T after it
 //! ```
 //!
-//! (Porter and Duff, Compositing Digital Images, 1984), in linear light. What the maps hold is composited with
-//! the same weights. Samples of a pixel are averaged.
+//! (Porter and Duff, Compositing Digital Images, 1984), in linear light; p is what passes a surface that transmits light
+//! (`material_layers.rs`), and of a tint coverage has the mean. What the maps hold is composited by the same
+//! transmittance, its mean over the channels. Samples of a pixel are averaged.
 //!
 //! Contract: pictures are as in `scene.rs`. Bands of rows are independent, so nothing depends on the number of
 //! threads; memory grows with the layers of one band.
@@ -17,6 +18,7 @@
 use crate::camera::Camera;
 use crate::frame::Orientation;
 use crate::interpolate::{barycentrics, interpolate};
+use crate::material_layers::LayeredLight;
 use crate::metallic_roughness::LEAST_ROUGHNESS;
 use crate::on_screen::OnScreen;
 use crate::raster::{NOTHING, ScreenTriangle, Visibility};
@@ -135,7 +137,7 @@ impl Scene {
             (surface.is_special() && !self.shows_its_back(camera, triangle)).then(|| Special {
                 triangle: triangle as u32,
                 on_screen: screen.triangle(triangle),
-                is_blended: surface.alpha_mode == AlphaMode::Blend,
+                is_blended: surface.is_blended(),
             })
         };
         (0..self.mesh.triangles.len()).filter_map(special).collect()
@@ -192,13 +194,18 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
             let (column, row) = (sample % self.fine, sample / self.fine);
             let pixel = row / self.supersample * size + column / self.supersample;
             let at = (column as f64 + 0.5, (rows.start + row) as f64 + 0.5);
-            let mut passed = 1.0;
-            let mut add = |triangle: u32, on_screen: &ScreenTriangle, is_blended: bool, passed: &mut f32| {
+            let mut passed = Vec3::ONE;
+            let mut add = |triangle: u32, on_screen: &ScreenTriangle, is_blended: bool, passed: &mut Vec3| {
                 let (seen, lit) = self.shade(triangle as usize, on_screen, at);
-                let alpha = if is_blended { seen.values[MapKind::BaseColor].w.clamp(0.0, 1.0) } else { 1.0 };
-                let weight = *passed * alpha * share;
+                let alpha = match self.scene.surface(triangle as usize).alpha_mode {
+                    AlphaMode::Blend => seen.values[MapKind::BaseColor].w.clamp(0.0, 1.0),
+                    _ => 1.0,
+                };
+                let passes = if is_blended { lit.passes } else { Vec3::ZERO };
                 let to = &mut light[pixel];
-                (0..3).for_each(|k| to[k] += lit[k] * weight);
+                (0..3).for_each(|k| to[k] += lit.light[k] * (passed[k] * alpha * share));
+                let after = *passed * (1.0 - alpha * (1.0 - passes));
+                let weight = (*passed - after).element_sum() / 3.0 * share;
                 to[3] += weight;
                 if let Some(to) = values.get_mut(pixel) {
                     for kind in MapKind::ALL {
@@ -208,7 +215,7 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
                         } * weight;
                     }
                 }
-                *passed *= 1.0 - alpha;
+                *passed = after;
             };
             for layer in &layers[from..next] {
                 let special = &self.special[layer.special];
@@ -228,20 +235,26 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
     }
 
     /// The light of a triangle at a sample.
-    fn shade(&self, triangle: usize, on_screen: &ScreenTriangle, at: (f64, f64)) -> (Seen, Vec3) {
+    fn shade(&self, triangle: usize, on_screen: &ScreenTriangle, at: (f64, f64)) -> (Seen, LayeredLight) {
         let reads = |kind| self.brdf.reads(kind);
-        let seen = self.scene.seen(self.camera, on_screen, triangle, at, 1.0, &reads);
+        let mut seen = self.scene.seen(self.camera, on_screen, triangle, at, 1.0, &reads);
         let mut values = seen.values;
         if self.widens_highlights {
             let mesh = &self.scene.mesh;
             let normals = mesh.triangles[triangle].map(|vertex| mesh.normals[vertex as usize]);
             let added = added_roughness(self.camera, normals, &barycentrics(on_screen, at.0, at.1));
             let roughness = &mut values[MapKind::MetallicRoughness].y;
-            *roughness = (roughness.max(LEAST_ROUGHNESS) + added).min(1.0);
+            let widened = |roughness: f32| (roughness.max(LEAST_ROUGHNESS) + added).min(1.0);
+            *roughness = widened(*roughness);
+            if let Some(coat) = seen.layers.as_mut().and_then(|layers| layers.coat.as_mut()) {
+                coat.roughness = widened(coat.roughness);
+            }
         }
-        let light = match self.scene.surface(triangle).is_unlit {
-            true => seen.values[MapKind::BaseColor].truncate(),
-            false => self.brdf.light(&seen.orientation(), &values),
+        let solid = |light| LayeredLight { light, passes: Vec3::ZERO };
+        let light = match (self.scene.surface(triangle).is_unlit, &seen.layers) {
+            (true, _) => solid(seen.values[MapKind::BaseColor].truncate()),
+            (false, None) => solid(self.brdf.light(&seen.orientation(), &values)),
+            (false, Some(layers)) => self.brdf.light_in_layers(&seen.orientation(), &values, layers),
         };
         (seen, light)
     }

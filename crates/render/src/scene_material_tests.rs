@@ -6,7 +6,7 @@ use crate::interpretation::Interpretation;
 use crate::lighting::{DirectionalLight, Lighting};
 use crate::metallic_roughness::MetallicRoughness;
 use parbake_model::glam::Vec4;
-use parbake_model::{Material, Mesh};
+use parbake_model::{Clearcoat, Image, Material, Mesh, Sheen, Specular, TextureSlot, Transmission};
 
 /// Squares of half a side across the z axis at these heights, each of a material of its own.
 fn squares(heights: &[f32], materials: &[Material]) -> Scene {
@@ -151,4 +151,72 @@ fn viewers_see_turning_normals_as_rougher() {
         *normal = Vec3::new(0.63 + 2.4 * x, 0.42, 1.0).normalize();
     }
     assert!(brightest(&scene, true) < 0.8 * brightest(&scene, false));
+}
+
+/// The same squares with images, read as viewers do that show extensions.
+fn with_extensions(heights: &[f32], materials: &[Material], images: &[Image]) -> Scene {
+    let plain = squares(heights, materials);
+    let mut mesh = plain.mesh.clone();
+    mesh.uvs = mesh.positions.iter().map(|p| Vec2::new(p.x + 0.5, 0.5 - p.y)).collect();
+    Scene::new(mesh, materials, images, Interpretation { extensions: true, ..Interpretation::default() })
+}
+
+fn slot(image: usize) -> Option<TextureSlot> {
+    Some(TextureSlot { image, ..TextureSlot::default() })
+}
+
+/// Protects glass in comparisons: what is behind a pane shows, tinted, less where a texture says so; coverage is what
+/// does not pass. Without extensions the pane is what stands in for it.
+#[test]
+fn what_is_behind_glass_shows() {
+    let transmission = Transmission { factor: 1.0, texture: slot(0) };
+    let mut glass = Material { base_color: [1.0, 0.5, 1.0, 1.0], roughness: 1.0, ..Material::default() };
+    glass.metallic = 0.0;
+    glass.extensions.transmission = Some(transmission);
+    // Light passes the left half.
+    let mut image = Image::solid("passes", 16, 1, [255; 4]);
+    image.pixels[8..].fill([0, 0, 0, 255]);
+    let materials = [glass.clone(), glowing([1.0; 3], 1.0, AlphaMode::Opaque)];
+    let seen = seen_from(&with_extensions(&[0.4, -0.3], &materials, &[image.clone()]), Vec3::Z).light;
+    let (left, right) = (seen.rgba[8 * 16 + 3], seen.rgba[8 * 16 + 12]);
+    assert!(left[0] > 0.9 && (left[1] / left[0] - 0.5).abs() < 0.01 && left[3] > 0.999, "{left:?}");
+    assert_eq!(right, [0.0, 0.0, 0.0, 1.0]);
+    let alone = seen_from(&with_extensions(&[0.4], &[glass], &[image]), Vec3::Z).light;
+    assert!((alone.rgba[8 * 16 + 3][3] - (1.0 - left[0] * 2.5 / 3.0)).abs() < 0.01);
+    assert_eq!(alone.rgba[8 * 16 + 12][3], 1.0);
+}
+
+/// Protects varnish and cloth in comparisons: factors and textures of both arrive at the shading.
+#[test]
+fn coats_and_sheens_are_read_from_their_textures() {
+    let ambient = Lighting { ambient: Vec3::ONE, ..Lighting::default() };
+    let camera = Camera::towards_origin(Vec3::Z, 3.5, Projection::Orthographic(0.4));
+    let picture = |change: fn(&mut Material)| {
+        let mut black = Material { base_color: [0.0, 0.0, 0.0, 1.0], metallic: 1.0, ..Material::default() };
+        change(&mut black);
+        // The right half is 0 in all channels.
+        let mut image = Image::solid("half", 16, 1, [255; 4]);
+        image.pixels[8..].fill([0; 4]);
+        let scene = with_extensions(&[0.0], &[black], &[image]);
+        let brdf = MetallicRoughness { lighting: ambient.clone() };
+        let seen = scene.render_material(&brdf, &camera, (16, 1), false, false).light.rgba;
+        [seen[8 * 16 + 3], seen[8 * 16 + 12]].map(|pixel| pixel[0])
+    };
+    let [plain, _] = picture(|_| {});
+    let [coat, without] = picture(|m| {
+        let coat = Clearcoat { factor: 1.0, texture: slot(0), ..Clearcoat::default() };
+        m.extensions.clearcoat = Some(coat);
+    });
+    assert!(coat > plain + 0.03 && without == plain, "{plain} {coat} {without}");
+    let [sheen, without] = picture(|m| {
+        let sheen = Sheen { color: [1.0; 3], color_texture: slot(0), roughness: 1.0, ..Sheen::default() };
+        m.extensions.sheen = Some(sheen);
+    });
+    assert!(sheen > plain + 0.1 && without == plain, "{plain} {sheen} {without}");
+    // Dielectrics reflect as much as they are told to.
+    let [full, none] = picture(|m| {
+        m.metallic = 0.0;
+        m.extensions.specular = Some(Specular { texture: slot(0), ..Specular::default() });
+    });
+    assert!(full > 0.01 && none == 0.0, "{full} {none}");
 }

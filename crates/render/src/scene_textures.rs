@@ -10,6 +10,7 @@ use crate::directions::{VertexFrame, ViewDirection, sight};
 use crate::interpolate::{Barycentrics, interpolate};
 use crate::interpretation::Interpretation;
 use crate::parallax::ParallaxCoefficients;
+use crate::scene_layers::SurfaceLayers;
 use parbake_image::display::encode_srgb;
 use parbake_image::maps::KINDS;
 use parbake_image::material_maps::{
@@ -121,8 +122,10 @@ pub(crate) struct Sheen {
 pub(crate) struct Surface {
     /// What multiplies the textures, as they are read.
     pub factors: MapValues,
-    /// What is added to the base colour for the gloss of cloth.
+    /// What is added to the base colour for the gloss of cloth; none where layers show it.
     pub sheen: Option<Sheen>,
+    /// What extensions show.
+    pub layers: Option<SurfaceLayers>,
     /// Whether light passes it.
     pub transmits: bool,
     /// Alpha mode and factor of opacity as the material says.
@@ -144,9 +147,16 @@ pub(crate) struct Surface {
 }
 
 impl Surface {
+    /// Whether what is behind it shows: it is blended, or light passes it in a way that is shown.
+    pub fn is_blended(&self) -> bool {
+        self.alpha_mode == AlphaMode::Blend || self.layers.as_ref().is_some_and(SurfaceLayers::transmits)
+    }
+
     /// Whether it takes more than a look at depths to say what is seen of it: it is cut out, or blended.
     pub fn is_special(&self) -> bool {
-        self.alpha_mode != AlphaMode::Opaque || self.shifted.as_ref().is_some_and(|own| own.cutout.is_some())
+        self.is_blended()
+            || self.alpha_mode != AlphaMode::Opaque
+            || self.shifted.as_ref().is_some_and(|own| own.cutout.is_some())
     }
 }
 
@@ -165,7 +175,7 @@ fn opacity(image: &Image) -> FloatImage<[f32; 3]> {
 
 /// What an image is read for.
 #[derive(Clone, Copy)]
-enum Use {
+pub(crate) enum Use {
     Map(MapKind),
     Opacity,
 }
@@ -192,13 +202,18 @@ impl<'a> Builder<'a> {
             }
         }
         let plain = MapKind::ALL.map(|kind| self.map(kind, texture_slot(material, kind)));
-        let ((alpha_mode, opacity), alpha_cutoff) = (fitted_alpha(material), material.alpha_cutoff);
+        let shows_layers = self.interpretation.extensions;
+        let (alpha_mode, opacity) =
+            if shows_layers { (material.alpha_mode, 1.0) } else { fitted_alpha(material) };
+        let alpha_cutoff = material.alpha_cutoff;
         let own = if material.alpha_mode == AlphaMode::Opaque { 1.0 } else { factors[MapKind::BaseColor].w };
         factors[MapKind::BaseColor].w = own * opacity;
         let color = material.base_color_texture.filter(|_| material.alpha_mode != AlphaMode::Opaque);
         let opacity = self.pyramid(color, Use::Opacity);
         let (is_unlit, shifted) = (material.unlit, self.shifted(material));
-        let sheen = material.extensions.sheen.filter(|s| s.color != [0.0; 3]).map(|sheen| Sheen {
+        let layers = if shows_layers { SurfaceLayers::new(material, self) } else { None };
+        let sheen = material.extensions.sheen.filter(|s| !shows_layers && s.color != [0.0; 3]);
+        let sheen = sheen.map(|sheen| Sheen {
             color: Vec3::from(sheen.color),
             albedo: sheen_albedo(sheen.roughness),
             texture: self.map(MapKind::BaseColor, sheen.color_texture),
@@ -206,6 +221,7 @@ impl<'a> Builder<'a> {
         Surface {
             factors,
             sheen,
+            layers,
             transmits: transmits(material),
             own_alpha: (material.alpha_mode, own),
             alpha_mode,
@@ -226,11 +242,11 @@ impl<'a> Builder<'a> {
         Some(Shifted { textures, parallax, cutout, fade: map.fade })
     }
 
-    fn map(&mut self, kind: MapKind, slot: Option<TextureSlot>) -> Option<Map> {
+    pub fn map(&mut self, kind: MapKind, slot: Option<TextureSlot>) -> Option<Map> {
         self.pyramid(slot, Use::Map(kind))
     }
 
-    fn pyramid(&mut self, slot: Option<TextureSlot>, purpose: Use) -> Option<Map> {
+    pub fn pyramid(&mut self, slot: Option<TextureSlot>, purpose: Use) -> Option<Map> {
         let slot = slot?;
         let image = self.images.get(slot.image)?;
         let encoding = match purpose {

@@ -12,6 +12,7 @@
 //! light fades to black there, and derivatives stay finite.
 
 use crate::frame::TangentLight;
+use crate::material_layers::{LayeredLight, MaterialLayers};
 use glam::{Vec3, Vec4};
 use parbake_image::{MapKind, MapValues};
 
@@ -79,6 +80,11 @@ pub trait Brdf<S = TangentLight>: Sync {
 
     /// Outgoing linear light, three channels.
     fn light(&self, surface: &S, maps: &MapValues) -> Vec3;
+
+    /// The same of a surface with what glTF's extensions change of it; a BRDF that knows none ignores them.
+    fn light_in_layers(&self, surface: &S, maps: &MapValues, _: &MaterialLayers) -> LayeredLight {
+        LayeredLight { light: self.light(surface, maps), passes: Vec3::ZERO }
+    }
 
     /// Adjoint of [`Brdf::light`]: the gradient by all inputs, given that by the light.
     fn adjoint(&self, surface: &S, maps: &MapValues, gradient: Vec3) -> BrdfGradient<S>;

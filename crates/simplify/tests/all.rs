@@ -73,7 +73,12 @@ fn prepared(mesh: Mesh) -> HighPoly {
 fn prepared_of(mesh: Mesh, materials: Vec<Material>) -> HighPoly {
     let model = Model { name: "high".into(), mesh, materials, ..Model::default() };
     let conventions = Conventions {
-        interpretation: Interpretation { decode_srgb: true, trilinear: true, parallax: true },
+        interpretation: Interpretation {
+            decode_srgb: true,
+            trilinear: true,
+            parallax: true,
+            extensions: false,
+        },
         display: Display { gain: 1.0, curve: Curve::Srgb },
         rig: RIG,
         whole_material: None,

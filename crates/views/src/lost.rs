@@ -7,6 +7,16 @@ use parbake_model::{Material, MaterialExtensions, Specular};
 /// An extension, what is lost without it, and whether a material has it with an effect.
 type Loss = (&'static str, &'static str, fn(&MaterialExtensions) -> bool);
 
+/// What pictures of Parbake's renderer do not show of an extension, for those of which they show less than viewers do.
+const NOT_RENDERED: [(&str, &str); 6] = [
+    ("KHR_materials_transmission", "refraction and blur of what is behind (KHR_materials_transmission)"),
+    ("KHR_materials_diffuse_transmission", "KHR_materials_diffuse_transmission"),
+    ("KHR_materials_volume", "refraction in a volume (KHR_materials_volume)"),
+    ("KHR_materials_iridescence", "KHR_materials_iridescence"),
+    ("KHR_materials_anisotropy", "KHR_materials_anisotropy"),
+    ("KHR_materials_dispersion", "KHR_materials_dispersion"),
+];
+
 const LOSSES: [Loss; 10] = [
     ("KHR_materials_clearcoat", "the reflections of the clearcoat", |e| {
         e.clearcoat.is_some_and(|c| c.factor > 0.0)
@@ -56,11 +66,12 @@ pub fn lost(materials: &[Material]) -> Vec<String> {
 /// A word about extensions that figures of Parbake's renderer say nothing of, if a material has some.
 pub fn not_compared<'a>(materials: impl IntoIterator<Item = &'a Material> + Clone) -> Option<String> {
     let has = |&&(_, _, has): &&Loss| materials.clone().into_iter().any(|material| has(&material.extensions));
-    let names: Vec<&str> = LOSSES.iter().filter(has).map(|(name, ..)| *name).collect();
-    (!names.is_empty()).then(|| {
+    let shown = |(name, ..): &Loss| NOT_RENDERED.iter().find(|(of, _)| of == name).map(|(_, what)| *what);
+    let left_out: Vec<&str> = LOSSES.iter().filter(has).filter_map(shown).collect();
+    (!left_out.is_empty()).then(|| {
         format!(
             "pictures and figures do not include {}, which Parbake's renderer does not show; `parbake view` does",
-            names.join(", ")
+            left_out.join(", ")
         )
     })
 }
@@ -68,7 +79,7 @@ pub fn not_compared<'a>(materials: impl IntoIterator<Item = &'a Material> + Clon
 #[cfg(test)]
 mod tests {
     use super::*;
-    use parbake_model::{Sheen, Transmission};
+    use parbake_model::{Clearcoat, Sheen, Transmission};
 
     /// Protects the user from losses without a word, and from words where nothing is lost.
     #[test]
@@ -91,6 +102,9 @@ mod tests {
         assert_eq!(not_compared([&glass]), None);
         glass.extensions.transmission = Some(Transmission { factor: 1.0, ..Transmission::default() });
         let told = not_compared([&Material::default(), &glass]);
-        assert!(told.is_some_and(|text| text.contains("do not include KHR_materials_transmission,")));
+        assert!(told.is_some_and(|text| text.contains("(KHR_materials_transmission)")));
+        let mut coated = Material::default();
+        coated.extensions.clearcoat = Some(Clearcoat { factor: 1.0, ..Clearcoat::default() });
+        assert_eq!(not_compared([&coated]), None);
     }
 }

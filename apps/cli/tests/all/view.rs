@@ -2,9 +2,10 @@
 
 use crate::common::{demo_files, parbake, run, text};
 use parbake::{EvaluateOptions, Limits, Renderer, Shading, read_model, write_glb};
-use parbake_model::TextureSlot;
 use parbake_model::glam::Vec3;
+use parbake_model::{Clearcoat, Sheen, Specular, TextureSlot, Transmission, Volume};
 use serde_json::{Value, json};
+use std::collections::HashSet;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
@@ -146,7 +147,7 @@ const SIZE: usize = 256;
 
 /// Protects what the page shows, and so what people judge a bake by: its pictures are those of the CPU renderer, from
 /// the same cameras under the same light. The headlight and the studio are `eval`'s; unlit is the base colour alone.
-/// Maps of the model: colour and normals; then metallic, roughness, occlusion and emission besides.
+/// Maps of the model: colour and normals; then metallic, roughness, occlusion and emission besides; then what extensions add.
 #[test]
 fn the_page_shows_what_the_cpu_renders() {
     let Some(mut stills) = script("stills.mjs") else { return };
@@ -165,6 +166,48 @@ fn the_page_shows_what_the_cpu_renders() {
     (material.occlusion_texture, material.occlusion_strength) = (data, 0.5);
     (material.emissive_texture, material.emissive) = (Some(colors), [0.1, 0.2, 0.3]);
     write_glb(&folder.join("whole.glb"), &whole).unwrap();
+    // Varnished cloth, with textures, and a coloured glass that is thicker in some places.
+    let mut layered = whole.clone();
+    let extensions = &mut layered.materials[0].extensions;
+    extensions.clearcoat = Some(Clearcoat {
+        factor: 0.8,
+        texture: data,
+        roughness: 0.4,
+        roughness_texture: data,
+        normal_texture: whole.materials[0].normal_texture,
+        normal_scale: 0.5,
+    });
+    let (color, color_texture) = ([0.9, 0.5, 0.3], Some(colors));
+    extensions.sheen = Some(Sheen { color, color_texture, roughness: 0.6, roughness_texture: data });
+    extensions.specular = Some(Specular { factor: 0.7, color: [1.0, 0.6, 0.4], ..Specular::default() });
+    extensions.ior = Some(1.8);
+    write_glb(&folder.join("layered.glb"), &layered).unwrap();
+    // A belt of the vase, since browsers blend the layers of one mesh in the order of the file.
+    let mut glass = model("demo.glb");
+    let positions = &glass.mesh.positions;
+    let low = positions.iter().map(|p| p.y).fold(f32::MAX, f32::min);
+    let high = positions.iter().map(|p| p.y).fold(f32::MIN, f32::max);
+    let share = |corner: u32| (positions[corner as usize].y - low) / (high - low);
+    let is_in_belt = |triangle: &[u32; 3]| triangle.iter().all(|&c| (0.3..0.65).contains(&share(c)));
+    let kept: Vec<usize> =
+        (0..glass.mesh.triangles.len()).filter(|&t| is_in_belt(&glass.mesh.triangles[t])).collect();
+    glass.mesh.triangle_materials = kept.iter().map(|&t| glass.mesh.triangle_materials[t]).collect();
+    glass.mesh.triangles = kept.iter().map(|&t| glass.mesh.triangles[t]).collect();
+    // What is not in it must not count as its extent.
+    let used: HashSet<u32> = glass.mesh.triangles.iter().flatten().copied().collect();
+    let within = glass.mesh.positions[glass.mesh.triangles[0][0] as usize];
+    let positions = glass.mesh.positions.iter_mut().enumerate();
+    positions.filter(|(i, _)| !used.contains(&(*i as u32))).for_each(|(_, p)| *p = within);
+    let material = &mut glass.materials[0];
+    (material.metallic, material.roughness, material.double_sided) = (0.0, 0.3, false);
+    material.base_color = [0.8; 4];
+    material.extensions.transmission = Some(Transmission { factor: 0.9, texture: data });
+    let attenuation_color = [0.5; 3];
+    material.extensions.volume =
+        Some(Volume { thickness: 0.5, texture: data, attenuation_distance: 0.6, attenuation_color });
+    (material.base_color_texture, material.extensions.ior) = (None, Some(1.4));
+    glass.images.push(whole.images[colors.image].clone());
+    write_glb(&folder.join("glass.glb"), &glass).unwrap();
     let mut unlit = model("demo.glb");
     unlit.materials[0].unlit = true;
     write_glb(&folder.join("unlit.glb"), &unlit).unwrap();
@@ -174,6 +217,8 @@ fn the_page_shows_what_the_cpu_renders() {
         ("demo.glb", "headlight", Shading::Lambert),
         ("demo.glb", "studio", Shading::Pbr),
         ("whole.glb", "studio", Shading::Pbr),
+        ("layered.glb", "studio", Shading::Pbr),
+        ("glass.glb", "studio", Shading::Pbr),
         ("unlit.glb", "studio", Shading::Pbr),
     ];
     let directions = [[0.3f32, 0.2, 1.0], [-1.0, 0.6, -0.4], [0.2, -0.5, 0.8]];

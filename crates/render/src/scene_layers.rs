@@ -1,0 +1,158 @@
+//! What a scene's materials have of glTF's extensions, as `material_layers.rs` shades it: factors and textures of
+//! clearcoat, sheen, specular, index of refraction, transmission and volume.
+//!
+//! Contract: built only where the interpretation asks for extensions. Textures are filtered as those of the maps are.
+//! Iridescence, anisotropy, dispersion and diffuse transmission are not read.
+
+use crate::material_layers::{CoatLayer, MaterialLayers, SheenLayer};
+use crate::metallic_roughness::Dielectric;
+use crate::scene_textures::{Builder, Map, Use};
+use parbake_image::MapKind;
+use parbake_model::glam::Vec3;
+use parbake_model::{Material, TextureSlot, Volume};
+
+/// Channel of a texture of numbers.
+#[derive(Clone, Copy)]
+enum Channel {
+    Red,
+    Green,
+    Alpha,
+}
+
+/// A colour's factor and the texture that multiplies it.
+struct Color {
+    factor: Vec3,
+    texture: Option<Map>,
+}
+
+/// A number's factor, and the texture and its channel that multiply it.
+struct Number {
+    factor: f32,
+    texture: Option<(Map, Channel)>,
+}
+
+impl Color {
+    fn new(factor: [f32; 3], slot: Option<TextureSlot>, builder: &mut Builder) -> Self {
+        Self { factor: Vec3::from(factor), texture: builder.map(MapKind::BaseColor, slot) }
+    }
+
+    fn at(&self, fetch: &impl Fn(&Map) -> Vec3) -> Vec3 {
+        self.factor * self.texture.as_ref().map_or(Vec3::ONE, fetch)
+    }
+}
+
+impl Number {
+    fn new(factor: f32, slot: Option<TextureSlot>, channel: Channel, builder: &mut Builder) -> Self {
+        let texture = match channel {
+            Channel::Alpha => builder.pyramid(slot, Use::Opacity),
+            Channel::Red | Channel::Green => builder.map(MapKind::MetallicRoughness, slot),
+        };
+        Self { factor, texture: texture.map(|map| (map, channel)) }
+    }
+
+    fn at(&self, fetch: &impl Fn(&Map) -> Vec3) -> f32 {
+        let of = |(map, channel): &(Map, Channel)| match channel {
+            Channel::Green => fetch(map).y,
+            // Pyramids of alpha have it in all channels.
+            Channel::Red | Channel::Alpha => fetch(map).x,
+        };
+        self.factor * self.texture.as_ref().map_or(1.0, of)
+    }
+}
+
+struct Coat {
+    strength: Number,
+    roughness: Number,
+    normal: Option<(Map, f32)>,
+}
+
+/// The extensions of a material; what it lacks has no effect.
+pub(crate) struct SurfaceLayers {
+    coat: Option<Coat>,
+    sheen: Option<(Color, Number)>,
+    strength: Number,
+    tint: Color,
+    /// Reflection at normal incidence of this index of refraction.
+    f0: f32,
+    transmission: Number,
+    thickness: Number,
+    /// Natural logarithm of what is left of light after a thickness of 1, by channel.
+    attenuation: Vec3,
+}
+
+impl SurfaceLayers {
+    /// None where no extension that is read has an effect.
+    pub fn new(material: &Material, builder: &mut Builder) -> Option<Self> {
+        let e = &material.extensions;
+        let (coat, sheen) = (e.clearcoat.filter(|c| c.factor > 0.0), e.sheen.filter(|s| s.color != [0.0; 3]));
+        let transmission = e.transmission.filter(|t| t.factor > 0.0).unwrap_or_default();
+        let (specular, ior) = (e.specular.unwrap_or_default(), e.ior.unwrap_or(1.5));
+        let is_plain = coat.is_none() && sheen.is_none() && transmission.factor == 0.0;
+        if material.unlit || is_plain && e.specular.is_none_or(|s| s == Default::default()) && ior == 1.5 {
+            return None;
+        }
+        let tint = Color::new(specular.color, specular.color_texture, builder);
+        let strength = Number::new(specular.factor, specular.texture, Channel::Alpha, builder);
+        let sheen = sheen.map(|s| {
+            let color = Color::new(s.color, s.color_texture, builder);
+            (color, Number::new(s.roughness, s.roughness_texture, Channel::Alpha, builder))
+        });
+        let volume = e.volume.filter(|v| v.thickness > 0.0).unwrap_or_default();
+        let thickness = Number::new(volume.thickness, volume.texture, Channel::Green, builder);
+        let passing = Number::new(transmission.factor, transmission.texture, Channel::Red, builder);
+        let coat = coat.map(|c| Coat {
+            strength: Number::new(c.factor, c.texture, Channel::Red, builder),
+            roughness: Number::new(c.roughness, c.roughness_texture, Channel::Green, builder),
+            normal: builder.map(MapKind::Normal, c.normal_texture).map(|map| (map, c.normal_scale)),
+        });
+        // An index of 0 stands for one without bound.
+        let f0 = if ior == 0.0 { 1.0 } else { ((ior - 1.0) / (ior + 1.0)).powi(2) };
+        let attenuation = attenuation(&volume);
+        Some(Self { coat, sheen, strength, tint, f0, transmission: passing, thickness, attenuation })
+    }
+
+    /// Whether light passes it.
+    pub fn transmits(&self) -> bool {
+        self.transmission.factor > 0.0
+    }
+
+    /// The layers at a point, given what textures hold there. `frame` turns a mapped normal, or none, into a unit
+    /// vector on the viewer's side.
+    pub fn at(&self, fetch: &impl Fn(&Map) -> Vec3, frame: &impl Fn(Option<Vec3>) -> Vec3) -> MaterialLayers {
+        let strength = self.strength.at(fetch);
+        let dielectric = Dielectric {
+            f0: (self.f0 * self.tint.at(fetch)).min(Vec3::ONE) * strength,
+            f90: strength,
+            ..Dielectric::default()
+        };
+        let transmission = match self.transmits() {
+            false => Vec3::ZERO,
+            true => {
+                let thickness = self.thickness.at(fetch);
+                let left = (self.attenuation * thickness).to_array().map(f32::exp);
+                Vec3::from(left) * self.transmission.at(fetch)
+            }
+        };
+        let sheen = self
+            .sheen
+            .as_ref()
+            .map(|(tint, roughness)| SheenLayer { color: tint.at(fetch), roughness: roughness.at(fetch) });
+        let coat = self.coat.as_ref().map(|coat| CoatLayer {
+            strength: coat.strength.at(fetch),
+            roughness: coat.roughness.at(fetch),
+            normal: frame(
+                coat.normal.as_ref().map(|(map, scale)| fetch(map) * Vec3::new(*scale, *scale, 1.0)),
+            ),
+        });
+        MaterialLayers { dielectric, transmission, sheen, coat }
+    }
+}
+
+/// Natural logarithm of what is left of light after a thickness of 1, by channel; finite.
+fn attenuation(volume: &Volume) -> Vec3 {
+    let per_length = |left: f32| left.max(1e-6).ln() / volume.attenuation_distance.max(1e-12);
+    match volume.attenuation_distance.is_finite() {
+        true => Vec3::from(volume.attenuation_color.map(per_length)),
+        false => Vec3::ZERO,
+    }
+}
