@@ -19,12 +19,12 @@ use parbake_model::{Material, Mesh, Model};
 use std::borrow::Cow;
 
 /// The model with three vertices of its own for each triangle, and the tangents of its triangles. It has no rig any more.
-pub(crate) fn with_face_tangents(model: Cow<'_, Model>) -> Cow<'_, Model> {
+pub fn with_face_tangents(model: &Model) -> Cow<'_, Model> {
     let needs = model.materials.iter().any(Material::has_normal_map);
     if !needs || !model.mesh.tangents.is_empty() || model.mesh.normals.is_empty() {
-        return model;
+        return Cow::Borrowed(model);
     }
-    let mut model = model.into_owned();
+    let mut model = model.clone();
     model.rig = None;
     // Renderers make up their own tangents where they have to mend normals.
     ensure_normals(&mut model.mesh);
@@ -108,7 +108,7 @@ mod tests {
             let model = sheet(uv);
             let mut wanted = model.mesh.clone();
             compute_tangents(&mut wanted);
-            let own = with_face_tangents(Cow::Borrowed(&model));
+            let own = with_face_tangents(&model);
             let wanted = wanted.triangles.as_flattened().iter().map(|&v| wanted.tangents[v as usize]);
             for (own, wanted) in own.mesh.tangents.iter().zip(wanted) {
                 assert!((*own - wanted).length() < 1e-4, "{own} {wanted}");
@@ -127,7 +127,7 @@ mod tests {
             (vec2(0.0, 0.0), Vec3::ZERO, 0.0),
         ] {
             let model = sheet(|p| scale * p.truncate());
-            let own = with_face_tangents(Cow::Borrowed(&model));
+            let own = with_face_tangents(&model);
             for found in &own.mesh.tangents {
                 assert!((*found - tangent.extend(w)).length() < 1e-5, "{found}");
             }
@@ -139,9 +139,9 @@ mod tests {
     fn delivered_tangents_stay() {
         let mut model = sheet(|p| vec2(p.x, p.y));
         compute_tangents(&mut model.mesh);
-        assert!(matches!(with_face_tangents(Cow::Borrowed(&model)), Cow::Borrowed(_)));
+        assert!(matches!(with_face_tangents(&model), Cow::Borrowed(_)));
         model.mesh.tangents.clear();
         model.materials[0].normal_texture = None;
-        assert!(matches!(with_face_tangents(Cow::Borrowed(&model)), Cow::Borrowed(_)));
+        assert!(matches!(with_face_tangents(&model), Cow::Borrowed(_)));
     }
 }

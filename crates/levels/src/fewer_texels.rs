@@ -7,10 +7,11 @@
 //! Contract: the surface stays as it is. What was measured until `is_over` says yes counts.
 
 use crate::maps::{
-    LevelMap, Reduction, images_of_extensions, oblong_level_maps, with_halved_extensions, with_reductions,
+    HALVINGS, LevelMap, Reduction, images_of_extensions, oblong_level_maps, with_halved_extensions,
+    with_reductions,
 };
 use crate::search::{INVISIBLE, error_of};
-use parbake_model::{Image, Model};
+use parbake_model::{Image, MaterialExtensions, Model};
 
 /// Decibels that fewer texels may cost.
 const UNSEEN: f64 = 0.05;
@@ -33,10 +34,20 @@ pub fn with_fewer_texels<E>(
     psnr: impl Fn(&Model) -> Result<f64, E>,
 ) -> Result<Option<(Model, f64)>, E> {
     let maps = oblong_level_maps(model);
+    // The images of extensions are one more place, after all maps, if pictures show what they say; else they keep as many
+    // texels as the finest map.
+    let others = images_of_extensions(model);
+    let are_shown = !others.is_empty() && shows_all_textures(model);
+    let halvings_of_others = |choice: &[usize]| match are_shown {
+        true => [choice[maps.len()]; 2],
+        false => halvings_of_extensions(&maps, choice),
+    };
+    let places = maps.len() + usize::from(are_shown);
+    let reductions_of = |place: usize| maps.get(place).map_or(HALVINGS + 1, |map| map.reductions.len());
     let shown = |choice: &[usize]| -> Result<(Model, f64), E> {
         let reductions: Vec<Reduction> = maps.iter().zip(choice).map(|(map, &k)| map.reductions[k]).collect();
-        let halvings = halvings_of_extensions(&maps, choice);
-        let reduced = with_halved_extensions(with_reductions(model, &maps, &reductions), halvings);
+        let reduced = with_reductions(model, &maps, &reductions);
+        let reduced = with_halved_extensions(reduced, halvings_of_others(choice));
         let shown = psnr(&reduced)?;
         Ok((reduced, shown))
     };
@@ -44,13 +55,13 @@ pub fn with_fewer_texels<E>(
     let allowed = error_of((unreduced - UNSEEN).min(INVISIBLE));
     // What each map costs by itself; of all together about the sum.
     let mut costs: Vec<Vec<f64>> = Vec::new();
-    for place in 0..maps.len() {
+    for place in 0..places {
         let mut own = vec![0.0];
-        for reduction in 1..maps[place].reductions.len() {
+        for reduction in 1..reductions_of(place) {
             if is_over() || own.iter().any(|cost| *cost > HOPELESS * allowed) {
                 break;
             }
-            let mut choice = vec![0; maps.len()];
+            let mut choice = vec![0; places];
             choice[place] = reduction;
             own.push((error_of(shown(&choice)?.1) - whole).max(0.0));
         }
@@ -63,17 +74,16 @@ pub fn with_fewer_texels<E>(
             (image.width >> u).max(1) * (image.height >> v).max(1)
         }
     };
-    // Pictures do not show what extensions say, so their maps keep as many texels as the finest of the others.
-    let others = images_of_extensions(model);
     let texels_of_others = |choice: &[usize]| -> usize {
-        let [u, v] = halvings_of_extensions(&maps, choice);
+        let [u, v] = halvings_of_others(choice);
         let texels = |image: &Image| (image.width >> u).max(1) * (image.height >> v).max(1);
         others.iter().map(|(image, _)| texels(&model.images[*image])).sum()
     };
     let mut best: Option<((bool, f64, f64), Vec<usize>)> = None;
     for choice in choices(&costs.iter().map(Vec::len).collect::<Vec<_>>()) {
-        let texels = choice.iter().enumerate().map(|(place, &k)| texels_of(place, k)).sum::<usize>()
-            + texels_of_others(&choice);
+        let texels =
+            choice.iter().take(maps.len()).enumerate().map(|(place, &k)| texels_of(place, k)).sum::<usize>()
+                + texels_of_others(&choice);
         let error = whole + choice.iter().enumerate().map(|(place, &k)| costs[place][k]).sum::<f64>();
         let is_seen = error > allowed;
         // Where something is lost anyway, the least; else the fewest texels.
@@ -85,6 +95,14 @@ pub fn with_fewer_texels<E>(
     }
     let Some((_, choice)) = best else { return Ok(None) };
     shown(&choice).map(Some)
+}
+
+/// Whether pictures that are compared show what every texture of an extension says (`render/material_layers.rs`).
+fn shows_all_textures(model: &Model) -> bool {
+    let shows = |e: &MaterialExtensions| {
+        e.diffuse_transmission.is_none() && e.iridescence.is_none() && e.anisotropy.is_none()
+    };
+    model.materials.iter().all(|material| shows(&material.extensions))
 }
 
 /// How often the maps of extensions are halved: as the finest of the others.
@@ -107,8 +125,38 @@ fn choices(counts: &[usize]) -> Vec<Vec<usize>> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use parbake_model::{Clearcoat, Iridescence, Material, TextureSlot};
+    use std::convert::Infallible;
+
+    /// Protects textures of varnish and glass: where pictures show them they lose what nobody sees by themselves; where pictures
+    /// do not show all of them, they keep as many texels as the finest map.
+    #[test]
+    fn images_of_extensions_are_reduced_by_what_pictures_show() {
+        let slot = |image| Some(TextureSlot { image, ..TextureSlot::default() });
+        let mut material = Material { base_color_texture: slot(0), ..Material::default() };
+        let coat = Clearcoat { factor: 1.0, texture: slot(1), ..Clearcoat::default() };
+        material.extensions.clearcoat = Some(coat);
+        let image = || Image::solid("map", 512, 512, [200; 4]);
+        let mut model =
+            Model { materials: vec![material], images: vec![image(), image()], ..Model::default() };
+        // Every texel of the colours shows, and nothing of the coat.
+        let psnr = |model: &Model| -> Result<f64, Infallible> {
+            let colors =
+                model.materials[0].base_color_texture.map_or(0, |slot| model.images[slot.image].width);
+            Ok(if colors == 512 { 45.0 } else { 20.0 })
+        };
+        let sides = |model: &Model| {
+            let (reduced, _) = with_fewer_texels(model, usize::MAX, 45.0, &|| false, psnr).unwrap().unwrap();
+            reduced.images.iter().map(|image| image.width).collect::<Vec<_>>()
+        };
+        assert_eq!(sides(&model), [512, 64]);
+        let film = Iridescence { factor: 1.0, texture: slot(1), ..Iridescence::default() };
+        model.materials[0].extensions.iridescence = Some(film);
+        assert_eq!(sides(&model), [512, 512]);
+    }
 
     /// Protects from choices that are forgotten.
     #[test]

@@ -5,17 +5,14 @@
 //! merged: the materials of a model on one common set of maps ─ maps: which may lose texels, or become factors
 //!                                                             └ fewer_texels: how many each may lose
 //! search: with which triangles, texels and maps a file is smallest at a PSNR
-//! viewed: a model as viewers show it ─┬ see_through: glass
-//!                                     └ face_frames: tangents that a file lacks
+//! face_frames: tangents that a file lacks, as viewers make them up
 //! ```
 //!
 //! Nothing here bakes, renders or reads files: who calls it does, and hands over what judges a model.
 
 pub mod collapses;
-mod face_frames;
+pub mod face_frames;
 pub mod fewer_texels;
 pub mod maps;
 pub mod merged;
 pub mod search;
-mod see_through;
-pub mod viewed;

@@ -12,7 +12,7 @@ use parbake_model::glam::Vec4;
 use parbake_model::{AlphaMode, Image, Material, Model};
 
 /// Sides of a map that are tried: its own, and half of that up to so many times.
-const HALVINGS: usize = 3;
+pub(crate) const HALVINGS: usize = 3;
 /// Texels along a side below which a map is not halved.
 const LEAST_SIDE: usize = 8;
 /// Points along a side of a triangle at which a map is read for its mean.

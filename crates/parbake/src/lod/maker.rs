@@ -15,7 +15,7 @@ use crate::work::Work;
 use parbake_atlas::AtlasError;
 use parbake_evaluate::renderer::PlacedModel;
 use parbake_evaluate::screen_size::{AtSize, ScreenComparison};
-use parbake_levels::viewed::as_viewers_do;
+use parbake_levels::face_frames::with_face_tangents;
 use parbake_model::Model;
 use parbake_progress::Watcher;
 use parbake_simplify::start::triangles_within;
@@ -74,7 +74,7 @@ impl<'a> Maker<'a> {
         options.triangles.iter().try_for_each(|&count| check_triangles(&high, model, count))?;
         let least = least_of(&high, model);
         let screens = ScreenComparison::new(model);
-        let original = screens.place(&as_viewers_do(model))?;
+        let original = screens.place(&with_face_tangents(model))?;
         let wanted = wanted_triangles(&high, options, least);
         let start = coarse_surfaces(&high, model);
         Ok(Self { model, high, options, screens, original, least, wanted, start })

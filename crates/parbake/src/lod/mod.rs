@@ -36,8 +36,8 @@ pub use level::{Level, LevelReport};
 use maker::{Draft, Maker, largest_texture, texels_of};
 use options::LodOptions;
 use parbake_evaluate::renderer::PlacedModel;
+use parbake_levels::face_frames::with_face_tangents;
 pub use parbake_levels::search;
-use parbake_levels::viewed::as_viewers_do;
 use parbake_mesh::parts::{draw_calls, part_reports, with_kept_parts, with_parted_materials};
 use parbake_model::Model;
 use parbake_progress::{Message, Watcher};
@@ -85,7 +85,7 @@ pub fn make_levels<E: From<BakeError>>(
         let Some((draft, write, target)) = made else { break };
         let begin = Instant::now();
         let written = as_written(&draft.baked.model, &write, options.normal_y)?.model;
-        let placed = maker.screens.place(&as_viewers_do(&written)).map_err(BakeError::from)?;
+        let placed = maker.screens.place(&with_face_tangents(&written)).map_err(BakeError::from)?;
         let figures = maker.figures(index, &placed, before.as_ref().map(|(_, placed)| placed))?;
         let Draft { low, layers, baked, way, candidates, seconds: [chosen, fitted, compared] } = draft;
         let mip = baked.report.options.smallest_mip.unwrap_or(0.0);

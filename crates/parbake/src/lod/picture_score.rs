@@ -6,7 +6,7 @@ use super::candidate::Candidate;
 use super::maker::{Draft, Maker};
 use crate::error::BakeError;
 use parbake_evaluate::screen_size::Pictures;
-use parbake_levels::viewed::as_viewers_do;
+use parbake_levels::face_frames::with_face_tangents;
 use parbake_model::Model;
 
 /// Pixels that a model spans at most in the larger ones of the pictures that are compared.
@@ -34,7 +34,7 @@ impl<'m> PictureScore<'m> {
     /// PSNR in dB, the mean over the sizes.
     pub(crate) fn psnr(&self, model: &Model) -> Result<f64, BakeError> {
         let screens = &self.maker.screens;
-        let placed = screens.place(&as_viewers_do(model))?;
+        let placed = screens.place(&with_face_tangents(model))?;
         let sum: f64 = self.pictures.iter().map(|pictures| screens.psnr(pictures, &placed)).sum();
         Ok(sum / self.pictures.len() as f64)
     }

@@ -15,9 +15,9 @@ use crate::error::BakeError;
 use parbake_evaluate::screen_size::{Pictures, ScreenComparison};
 use parbake_files::NormalY;
 use parbake_files::{TextureFormat, WriteOptions};
+use parbake_levels::face_frames::with_face_tangents;
 use parbake_levels::maps::{LevelMap, Reduction, level_maps, size_of, with_reductions};
 use parbake_levels::search::{Baking, Choice, Measured, Plan, Search, Step, Verdict, error_of};
-use parbake_levels::viewed::as_viewers_do;
 use parbake_model::Model;
 use parbake_simplify::start::triangles_within;
 use serde::{Deserialize, Serialize};
@@ -229,7 +229,7 @@ impl Tried {
     ) -> Result<(Baking, Vec<Measured>), BakeError> {
         let model = &self.draft.baked.model;
         let psnr = |model: &Model| -> Result<f64, BakeError> {
-            Ok(screens.psnr(original, &screens.place(&as_viewers_do(model))?))
+            Ok(screens.psnr(original, &screens.place(&with_face_tangents(model))?))
         };
         let whole = error_of(psnr(model)?);
         let all = as_written(model, &self.write, self.normal_y)?.bytes;
