@@ -131,6 +131,14 @@ impl ScreenTriangle {
     pub(crate) const HIDDEN: Self =
         Self { planes: [DVec3::ZERO; 3], nearness: DVec3::ZERO, bounds: [0.0, 0.0, -1.0, -1.0] };
 
+    /// The rows, of `size`, on which its samples may lie.
+    pub(crate) fn rows(&self, size: usize) -> std::ops::Range<usize> {
+        let [x0, y0, x1, y1] = self.bounds;
+        let first = (y0 - 0.5).ceil().max(0.0) as usize;
+        let end = ((y1 - 0.5).floor() + 1.0).clamp(0.0, size as f32) as usize;
+        if x1 < x0 { 0..0 } else { first..end.max(first) }
+    }
+
     /// The samples of a row that lie on the triangle, of `size` along a side, with their nearness. A sample on an
     /// edge belongs to one of the two triangles beside it.
     pub(crate) fn on_row(&self, row: usize, size: usize) -> impl Iterator<Item = (usize, f64)> {

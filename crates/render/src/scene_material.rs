@@ -75,6 +75,8 @@ struct Stage<'a, B> {
     camera: &'a Camera,
     screen: OnScreen<'a>,
     special: Vec<Special>,
+    /// Those that each band of rows may show, by their index in `special`, ascending.
+    by_band: Vec<Vec<u32>>,
     /// Of all that is not special.
     opaque: Visibility,
     /// Samples along a side of the picture, and of a pixel.
@@ -104,12 +106,21 @@ impl Scene {
         };
         let mut opaque = Visibility::default();
         screen.rasterise_some(fine, is_plain, &mut opaque);
+        let mut by_band = vec![Vec::new(); size.div_ceil(BAND)];
+        for (index, special) in special.iter().enumerate() {
+            let rows = special.on_screen.rows(fine);
+            if !rows.is_empty() {
+                let [first, last] = [rows.start, rows.end - 1].map(|row| row / (BAND * supersample));
+                by_band[first..=last].iter_mut().for_each(|band| band.push(index as u32));
+            }
+        }
         let stage = Stage {
             scene: self,
             brdf,
             camera,
             screen,
             special,
+            by_band,
             opaque,
             fine,
             supersample,
@@ -140,7 +151,7 @@ impl Scene {
                 is_blended: surface.is_blended(),
             })
         };
-        (0..self.mesh.triangles.len()).filter_map(special).collect()
+        (0..self.mesh.triangles.len()).into_par_iter().filter_map(special).collect()
     }
 
     fn surface(&self, triangle: usize) -> &Surface {
@@ -185,7 +196,7 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
         let size = self.fine / self.supersample;
         let first = band * BAND * self.supersample;
         let rows = first..first + light.len() / size * self.supersample;
-        let (solid, layers) = self.visible(rows.clone());
+        let (solid, layers) = self.visible(band, rows.clone());
         let share = 1.0 / (self.supersample * self.supersample) as f32;
         let mut next = 0;
         for (sample, solid) in solid.into_iter().enumerate() {
@@ -259,9 +270,9 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
         (seen, light)
     }
 
-    /// What is seen in some rows: the solid surface of each sample, and the blended ones in front of it, sample by
+    /// What is seen in the rows of a band: the solid surface of each sample, and the blended ones in front of it, sample by
     /// sample and from front to back.
-    fn visible(&self, rows: std::ops::Range<usize>) -> (Vec<Solid>, Vec<Layer>) {
+    fn visible(&self, band: usize, rows: std::ops::Range<usize>) -> (Vec<Solid>, Vec<Layer>) {
         let begin = rows.start * self.fine;
         let seen = &self.opaque.triangle[begin..rows.end * self.fine];
         let place = |sample: usize| {
@@ -283,9 +294,10 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
         };
         let mut solids: Vec<(Solid, f64)> = seen.iter().enumerate().map(with_nearness).collect();
         let each = |is_blended: bool, found: &mut dyn FnMut(usize, usize, f64)| {
-            let all = self.special.iter().enumerate().filter(|(_, s)| s.is_blended == is_blended);
-            for (index, special) in all {
-                for row in rows.clone() {
+            let all = self.by_band[band].iter().map(|&index| (index as usize, &self.special[index as usize]));
+            for (index, special) in all.filter(|(_, s)| s.is_blended == is_blended) {
+                let own = special.on_screen.rows(self.fine);
+                for row in rows.start.max(own.start)..rows.end.min(own.end) {
                     for (column, nearness) in special.on_screen.on_row(row, self.fine) {
                         found(index, (row - rows.start) * self.fine + column, nearness);
                     }
