@@ -14,7 +14,7 @@
 //! what goes in. `shade.rs` is what a BRDF is, and Lambert's; `metallic_roughness.rs` is glTF's, under the
 //! light of `lighting.rs`, with the table of `split_sum.rs` and the derivatives of `real.rs`; `material_layers.rs` adds what extensions show. `scene.rs`
 //! renders whole models, forward only (`scene_material.rs` with all of their materials), with the textures of
-//! `scene_textures.rs` and the extensions of `scene_layers.rs`, read as `interpretation.rs` says; meshes of many small
+//! `scene_textures.rs` and the extensions of `scene_layers.rs`, unpacked by `scene_pyramids.rs`, read as `interpretation.rs` says; meshes of many small
 //! triangles by `raster_clusters.rs`. `turning_normals.rs` widens highlights as three.js does. `cutout.rs` is where a surface is not there, seen from the wrong side.
 //! `parallax_variants` puts other ways to shift coordinates behind one interface.
 //! `parallax_images.rs` and `cutout_images.rs` take maps to 8-bit images and back, by
@@ -52,6 +52,7 @@ pub mod scatter;
 pub mod scene;
 mod scene_layers;
 pub mod scene_material;
+mod scene_pyramids;
 mod scene_textures;
 pub mod shade;
 pub mod spherical_harmonics;

@@ -24,22 +24,39 @@
 //!
 //! What passes is not bent, blurred or dispersed: the surface is as thin as a sheet, whatever its thickness.
 //!
-//! Contract: forward only; without layers the light is that of [`MetallicRoughness`] to the bit. `passes` is from 0 to 1.
+//! `metallic_roughness.rs` puts them over its material.
+//!
+//! Contract: forward only. What passes is from 0 to 1.
 
-use crate::frame::Orientation;
-use crate::lighting::DirectionalLight;
-use crate::metallic_roughness::{Dielectric, LEAST_COSINE, LEAST_ROUGHNESS, MetallicRoughness, fifth};
+use crate::lighting::{DirectionalLight, Lighting};
 use crate::real::Triple;
-use crate::split_sum::scale_and_bias;
+use crate::split_sum::{LEAST_COSINE, LEAST_ROUGHNESS, fifth, scale_and_bias};
 use glam::Vec3;
 use parbake_image::material_maps::sheen_albedo_at;
-use parbake_image::{MapKind, MapValues};
 use std::f32::consts::PI;
 
 /// What a coat reflects of light that falls on it from above.
 const COAT: f32 = 0.04;
 /// Smoother sheens are shaded as if they had this roughness: the distribution would have no width.
 const LEAST_SHEEN_ROUGHNESS: f32 = 0.07;
+
+/// How a surface that is not metal meets light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dielectric {
+    /// What it reflects of light that falls on it from above, by channel, 0 to 1.
+    pub f0: Vec3,
+    /// What it reflects of light that grazes it, 0 to 1.
+    pub f90: f32,
+    /// Share of the light that it does not reflect which it scatters, 0 to 1; the rest passes.
+    pub scatters: f32,
+}
+
+impl Default for Dielectric {
+    /// That of glTF without extensions: an index of refraction of 1.5, nothing passes.
+    fn default() -> Self {
+        Self { f0: Vec3::splat(0.04), f90: 1.0, scatters: 1.0 }
+    }
+}
 
 /// A layer of fibres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,65 +100,45 @@ pub struct LayeredLight {
     pub passes: Vec3,
 }
 
-impl MetallicRoughness {
-    /// The light of a surface with all its layers.
-    pub(crate) fn layered(
-        &self,
-        surface: &Orientation,
-        maps: &MapValues,
-        layers: &MaterialLayers,
-    ) -> LayeredLight {
-        let [color, passing] = [maps[MapKind::BaseColor].truncate(), layers.transmission];
-        let metallic = maps[MapKind::MetallicRoughness].z;
-        let share = passing.max_element();
-        let dielectric = Dielectric { scatters: 1.0 - share, ..layers.dielectric };
-        let (mut light, reflects) = self.base(surface, maps, dielectric);
-        let mut passes = (1.0 - metallic) * (Vec3::ONE - reflects) * color * passing;
-        passes = passes.clamp(Vec3::ZERO, Vec3::ONE);
-        let normal = mapped_normal(surface, maps);
-        if let Some(sheen) = layers.sheen.filter(|s| s.color != Vec3::ZERO) {
-            let occlusion = maps[MapKind::Occlusion].x;
-            let (added, below) = self.sheen(&sheen, normal, surface.to_viewer, occlusion);
-            (light, passes) = (light * below + added, passes * below);
-        }
-        if let Some(coat) = layers.coat.filter(|coat| coat.strength > 0.0) {
-            let occlusion = maps[MapKind::Occlusion].x;
-            let (added, below) = self.coat(&coat, surface.to_viewer, occlusion);
-            (light, passes) = (light * below + added, passes * below);
-        }
-        LayeredLight { light, passes }
-    }
-
+impl SheenLayer {
     /// What a sheen adds, and what multiplies all that is below it.
-    fn sheen(&self, sheen: &SheenLayer, normal: Vec3, to_viewer: Vec3, occlusion: f32) -> (Vec3, f32) {
-        let roughness = sheen.roughness.clamp(LEAST_SHEEN_ROUGHNESS, 1.0);
+    pub(crate) fn light(
+        &self,
+        lighting: &Lighting,
+        normal: Vec3,
+        to_viewer: Vec3,
+        occlusion: f32,
+    ) -> (Vec3, f32) {
+        let roughness = self.roughness.clamp(LEAST_SHEEN_ROUGHNESS, 1.0);
         let cosine = normal.dot(to_viewer).clamp(LEAST_COSINE, 1.0);
         let albedo = sheen_albedo_at(cosine, roughness).min(1.0);
-        let mut light = Vec3::from(self.lighting.diffuse(Triple(normal.to_array())).0) * albedo * occlusion;
-        for lamp in &self.lighting.directional {
+        let mut light = Vec3::from(lighting.diffuse(Triple(normal.to_array())).0) * albedo * occlusion;
+        for lamp in &lighting.directional {
             let Some((nl, half)) = lit(lamp, normal, to_viewer) else { continue };
             let inverse = 1.0 / (roughness * roughness);
             let sine = normal.cross(half).length().min(1.0);
             let distribution = (2.0 + inverse) * sine.powf(inverse) / (2.0 * PI);
             light += lamp.color * (distribution / (4.0 * (nl + cosine - nl * cosine)) * nl);
         }
-        (light * sheen.color, 1.0 - sheen.color.max_element() * albedo)
+        (light * self.color, 1.0 - self.color.max_element() * albedo)
     }
+}
 
+impl CoatLayer {
     /// What a coat adds, and what multiplies all that is below it.
-    fn coat(&self, coat: &CoatLayer, to_viewer: Vec3, occlusion: f32) -> (Vec3, f32) {
-        let roughness = coat.roughness.clamp(LEAST_ROUGHNESS, 1.0);
+    pub(crate) fn light(&self, lighting: &Lighting, to_viewer: Vec3, occlusion: f32) -> (Vec3, f32) {
+        let roughness = self.roughness.clamp(LEAST_ROUGHNESS, 1.0);
         let alpha = roughness * roughness;
-        let towards = coat.normal.dot(to_viewer);
+        let towards = self.normal.dot(to_viewer);
         let cosine = towards.clamp(LEAST_COSINE, 1.0);
-        let mirrored = coat.normal * (2.0 * towards) - to_viewer;
+        let mirrored = self.normal * (2.0 * towards) - to_viewer;
         let [scale, bias] = scale_and_bias(cosine, roughness);
-        let reflected = Vec3::from(self.lighting.reflected(Triple(mirrored.to_array()), alpha).0);
+        let reflected = Vec3::from(lighting.reflected(Triple(mirrored.to_array()), alpha).0);
         let mut light = reflected * (COAT * scale + bias) * occlusion;
-        for lamp in &self.lighting.directional {
-            let Some((nl, half)) = lit(lamp, coat.normal, to_viewer) else { continue };
+        for lamp in &lighting.directional {
+            let Some((nl, half)) = lit(lamp, self.normal, to_viewer) else { continue };
             let (nh, across, width) =
-                (coat.normal.dot(half), coat.normal.cross(half).length_squared(), alpha * alpha);
+                (self.normal.dot(half), self.normal.cross(half).length_squared(), alpha * alpha);
             let spread = across + width * nh * nh;
             let masked = |a: f32, b: f32| a * (b * b * (1.0 - width) + width).sqrt();
             let visibility = 0.5 / (masked(nl, cosine) + masked(cosine, nl));
@@ -149,7 +146,7 @@ impl MetallicRoughness {
             light += lamp.color * (width / (PI * spread * spread) * visibility * fresnel * nl);
         }
         let fresnel = COAT + (1.0 - COAT) * fifth(1.0 - cosine);
-        (light * coat.strength, 1.0 - coat.strength * fresnel)
+        (light * self.strength, 1.0 - self.strength * fresnel)
     }
 }
 
@@ -159,14 +156,3 @@ fn lit(lamp: &DirectionalLight, normal: Vec3, to_viewer: Vec3) -> Option<(f32, V
     let sum = lamp.direction + to_viewer;
     (nl > 0.0 && sum.length_squared() >= 1e-8).then(|| (nl, sum.normalize()))
 }
-
-/// The unit normal that the normal map asks for, flipped with the face.
-fn mapped_normal(surface: &Orientation, maps: &MapValues) -> Vec3 {
-    let m = maps[MapKind::Normal];
-    let world = surface.tangent * m.x + surface.bitangent * m.y + surface.normal * m.z;
-    world.normalize_or(surface.to_viewer)
-}
-
-#[cfg(test)]
-#[path = "material_layers_tests.rs"]
-mod tests;

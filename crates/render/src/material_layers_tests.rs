@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::camera::fibonacci_sphere;
-use crate::lighting::Lighting;
+use crate::material_layers::{CoatLayer, SheenLayer};
+use parbake_image::material_maps::sheen_albedo_at;
 
 fn flat(to_viewer: Vec3) -> Orientation {
     Orientation { tangent: Vec3::X, bitangent: Vec3::Y, normal: Vec3::Z, to_viewer }
@@ -39,7 +40,7 @@ fn without_layers_nothing_changes() {
     let brdf = MetallicRoughness::in_studio();
     for cosine in [0.1, 0.5, 0.95] {
         let (surface, maps) = (flat(tilted(cosine)), maps(Vec3::new(0.8, 0.4, 0.1), 0.3, 0.4));
-        let layered = brdf.layered(&surface, &maps, &MaterialLayers::default());
+        let layered = brdf.light_in_layers(&surface, &maps, &MaterialLayers::default());
         assert_eq!(layered.light, crate::shade::Brdf::light(&brdf, &surface, &maps));
         assert_eq!(layered.passes, Vec3::ZERO);
     }
@@ -55,7 +56,7 @@ fn layers_neither_make_nor_swallow_light() {
             let both = MaterialLayers { sheen: sheen(roughness), ..varnish(roughness) };
             let passing = MaterialLayers { transmission: Vec3::ONE, ..MaterialLayers::default() };
             for layers in [varnish(roughness), both, passing] {
-                let out = even().layered(&flat(tilted(cosine)), &maps(Vec3::ONE, 0.5, 0.0), &layers);
+                let out = even().light_in_layers(&flat(tilted(cosine)), &maps(Vec3::ONE, 0.5, 0.0), &layers);
                 let whole = (out.light + out.passes).max_element();
                 assert!((0.25..1.03).contains(&whole), "{cosine} {roughness} {layers:?}: {whole}");
             }
@@ -68,13 +69,13 @@ fn layers_neither_make_nor_swallow_light() {
 #[test]
 fn a_coat_mirrors_lamps_about_its_own_normal() {
     let (brdf, black) = (one_lamp(Vec3::Z), maps(Vec3::ZERO, 1.0, 1.0));
-    let straight = brdf.layered(&flat(Vec3::Z), &black, &varnish(0.1)).light.x;
-    let beside = brdf.layered(&flat(tilted(0.8)), &black, &varnish(0.1)).light.x;
+    let straight = brdf.light_in_layers(&flat(Vec3::Z), &black, &varnish(0.1)).light.x;
+    let beside = brdf.light_in_layers(&flat(tilted(0.8)), &black, &varnish(0.1)).light.x;
     assert!(straight > 10.0 && beside < 0.01, "{straight} {beside}");
     let mut turned = varnish(0.1);
     let to_viewer = tilted(0.8);
     turned.coat.as_mut().expect("it has one").normal = (to_viewer + Vec3::Z).normalize();
-    assert!(brdf.layered(&flat(to_viewer), &black, &turned).light.x > 10.0);
+    assert!(brdf.light_in_layers(&flat(to_viewer), &black, &turned).light.x > 10.0);
 }
 
 /// Protects cloth: what lamps from all sides add is about the albedo that even light is multiplied by. The fit of the albedo is
@@ -88,7 +89,7 @@ fn sheen_of_lamps_adds_up_to_its_albedo() {
         let sheen = Some(SheenLayer { color: Vec3::ONE, roughness });
         let layers = MaterialLayers { sheen, ..MaterialLayers::default() };
         let of = |layers: &MaterialLayers, lamp: Vec3| {
-            one_lamp(lamp).layered(&flat(tilted(cosine)), &black, layers).light.x
+            one_lamp(lamp).light_in_layers(&flat(tilted(cosine)), &black, layers).light.x
         };
         let (plain, albedo) = (MaterialLayers::default(), sheen_albedo_at(cosine, roughness));
         let added = |&lamp: &Vec3| of(&layers, lamp) - (1.0 - albedo) * of(&plain, lamp);
@@ -102,10 +103,10 @@ fn sheen_of_lamps_adds_up_to_its_albedo() {
 fn light_passes_dielectrics_only() {
     let glass = MaterialLayers { transmission: Vec3::ONE, ..MaterialLayers::default() };
     let red = Vec3::new(1.0, 0.25, 0.0);
-    let out = even().layered(&flat(Vec3::Z), &maps(red, 0.0, 0.0), &glass);
+    let out = even().light_in_layers(&flat(Vec3::Z), &maps(red, 0.0, 0.0), &glass);
     assert!((out.passes - 0.96 * red).length() < 0.02, "{}", out.passes);
     assert!((out.light - Vec3::splat(0.04)).length() < 0.02, "{}", out.light);
-    assert_eq!(even().layered(&flat(Vec3::Z), &maps(red, 0.0, 1.0), &glass).passes, Vec3::ZERO);
+    assert_eq!(even().light_in_layers(&flat(Vec3::Z), &maps(red, 0.0, 1.0), &glass).passes, Vec3::ZERO);
 }
 
 /// Protects surfaces whose reflections are switched off, and those with stronger ones.
@@ -115,7 +116,8 @@ fn the_dielectric_decides_what_is_reflected() {
     let with = |f0: f32, f90: f32| {
         let dielectric = Dielectric { f0: Vec3::splat(f0), f90, ..Dielectric::default() };
         let layers = MaterialLayers { dielectric, ..MaterialLayers::default() };
-        let lit = |brdf: &MetallicRoughness| brdf.layered(&flat(tilted(0.9)), &black, &layers).light.x;
+        let lit =
+            |brdf: &MetallicRoughness| brdf.light_in_layers(&flat(tilted(0.9)), &black, &layers).light.x;
         (lit(&even()), lit(&one_lamp(Vec3::new(-tilted(0.9).x, 0.0, 0.9))))
     };
     assert_eq!(with(0.0, 0.0), (0.0, 0.0));

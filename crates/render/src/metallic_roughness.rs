@@ -29,36 +29,14 @@
 
 use crate::frame::Orientation;
 use crate::lighting::{DirectionalLight, Lighting};
-use crate::material_layers::{LayeredLight, MaterialLayers};
+use crate::material_layers::{Dielectric, LayeredLight, MaterialLayers};
 use crate::real::{Dual, Real, Triple};
 use crate::shade::{Brdf, BrdfGradient, Jacobian, SHORTEST};
-use crate::split_sum::scale_and_bias;
+pub use crate::split_sum::LEAST_ROUGHNESS;
+use crate::split_sum::{LEAST_COSINE, fifth, scale_and_bias};
 use glam::{Vec3, Vec4};
 use parbake_image::{MapKind, MapValues};
 use std::f32::consts::PI;
-
-/// Smoother surfaces are shaded as if they had this roughness, so that small lamps do not flicker (three.js).
-pub const LEAST_ROUGHNESS: f32 = 0.0525;
-/// The least cosine to the viewer.
-pub(crate) const LEAST_COSINE: f32 = 1e-4;
-
-/// How a surface that is not metal meets light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dielectric {
-    /// What it reflects of light that falls on it from above, by channel, 0 to 1.
-    pub f0: Vec3,
-    /// What it reflects of light that grazes it, 0 to 1.
-    pub f90: f32,
-    /// Share of the light that it does not reflect which it scatters, 0 to 1; the rest passes.
-    pub scatters: f32,
-}
-
-impl Default for Dielectric {
-    /// That of glTF without extensions: an index of refraction of 1.5, nothing passes.
-    fn default() -> Self {
-        Self { f0: Vec3::splat(0.04), f90: 1.0, scatters: 1.0 }
-    }
-}
 
 /// glTF's metallic-roughness BRDF under this light. It reads every map.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -114,11 +92,6 @@ impl Inputs<Dual> {
         }
         inputs
     }
-}
-
-pub(crate) fn fifth<T: Real>(x: T) -> T {
-    let square = x * x;
-    square * square * x
 }
 
 /// `E(F₀)` for each channel, with the share that grazing light has, 1 but for weakened dielectrics.
@@ -244,7 +217,25 @@ impl Brdf<Orientation> for MetallicRoughness {
         maps: &MapValues,
         layers: &MaterialLayers,
     ) -> LayeredLight {
-        self.layered(surface, maps, layers)
+        let [color, passing] = [maps[MapKind::BaseColor].truncate(), layers.transmission];
+        let metallic = maps[MapKind::MetallicRoughness].z;
+        let share = passing.max_element();
+        let dielectric = Dielectric { scatters: 1.0 - share, ..layers.dielectric };
+        let (mut light, reflects) = self.base(surface, maps, dielectric);
+        let mut passes = (1.0 - metallic) * (Vec3::ONE - reflects) * color * passing;
+        passes = passes.clamp(Vec3::ZERO, Vec3::ONE);
+        let normal = mapped_normal(surface, maps);
+        if let Some(sheen) = layers.sheen.filter(|s| s.color != Vec3::ZERO) {
+            let occlusion = maps[MapKind::Occlusion].x;
+            let (added, below) = sheen.light(&self.lighting, normal, surface.to_viewer, occlusion);
+            (light, passes) = (light * below + added, passes * below);
+        }
+        if let Some(coat) = layers.coat.filter(|coat| coat.strength > 0.0) {
+            let occlusion = maps[MapKind::Occlusion].x;
+            let (added, below) = coat.light(&self.lighting, surface.to_viewer, occlusion);
+            (light, passes) = (light * below + added, passes * below);
+        }
+        LayeredLight { light, passes }
     }
 
     fn adjoint(&self, surface: &Orientation, maps: &MapValues, gradient: Vec3) -> BrdfGradient<Orientation> {
@@ -272,6 +263,17 @@ impl Brdf<Orientation> for MetallicRoughness {
     }
 }
 
+/// The unit normal that the normal map asks for, flipped with the face.
+fn mapped_normal(surface: &Orientation, maps: &MapValues) -> Vec3 {
+    let m = maps[MapKind::Normal];
+    let world = surface.tangent * m.x + surface.bitangent * m.y + surface.normal * m.z;
+    world.normalize_or(surface.to_viewer)
+}
+
 #[cfg(test)]
 #[path = "metallic_roughness_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "material_layers_tests.rs"]
+mod layers_tests;

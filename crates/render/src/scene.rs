@@ -18,8 +18,9 @@ use crate::interpretation::Interpretation;
 use crate::material_layers::MaterialLayers;
 use crate::on_screen::{AlphaClusters, OnScreen, Raster};
 use crate::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility};
-pub use crate::scene_textures::unpack;
-use crate::scene_textures::{Builder, Map, SeenPoint, Surface, Textures};
+pub use crate::scene_pyramids::unpack;
+use crate::scene_pyramids::{Map, Pyramids};
+use crate::scene_textures::{SeenPoint, Surface, Textures};
 use crate::shade::Brdf;
 use parbake_image::display::encode_srgb;
 use parbake_image::material_maps::sheen_as_color;
@@ -111,9 +112,9 @@ impl Scene {
         if interpretation.parallax {
             mesh.apply_parallax_offsets();
         }
-        let mut builder = Builder::new(images, interpretation);
-        let surfaces = materials.iter().map(|m| builder.surface(m)).collect();
-        let pyramids = builder.pyramids;
+        let mut pyramids = Pyramids::new(images, interpretation);
+        let surfaces = materials.iter().map(|m| Surface::new(m, &mut pyramids)).collect();
+        let pyramids = pyramids.all;
         let as_stored = !interpretation.decode_srgb;
         let face_normals = (0..mesh.triangles.len()).into_par_iter().map(|t| mesh.area_normal(t)).collect();
         Self { mesh, surfaces, pyramids, face_normals, as_stored, clusters: OnceLock::new() }

@@ -4,9 +4,8 @@
 //! Contract: built only where the interpretation asks for extensions. Textures are filtered as those of the maps are.
 //! Iridescence, anisotropy, dispersion and diffuse transmission are not read.
 
-use crate::material_layers::{CoatLayer, MaterialLayers, SheenLayer};
-use crate::metallic_roughness::Dielectric;
-use crate::scene_textures::{Builder, Map, Use};
+use crate::material_layers::{CoatLayer, Dielectric, MaterialLayers, SheenLayer};
+use crate::scene_pyramids::{Map, Pyramids, Use};
 use parbake_image::MapKind;
 use parbake_model::glam::Vec3;
 use parbake_model::{Material, TextureSlot, Volume};
@@ -32,8 +31,8 @@ struct Number {
 }
 
 impl Color {
-    fn new(factor: [f32; 3], slot: Option<TextureSlot>, builder: &mut Builder) -> Self {
-        Self { factor: Vec3::from(factor), texture: builder.map(MapKind::BaseColor, slot) }
+    fn new(factor: [f32; 3], slot: Option<TextureSlot>, pyramids: &mut Pyramids) -> Self {
+        Self { factor: Vec3::from(factor), texture: pyramids.map(MapKind::BaseColor, slot) }
     }
 
     fn at(&self, fetch: &impl Fn(&Map) -> Vec3) -> Vec3 {
@@ -42,10 +41,10 @@ impl Color {
 }
 
 impl Number {
-    fn new(factor: f32, slot: Option<TextureSlot>, channel: Channel, builder: &mut Builder) -> Self {
+    fn new(factor: f32, slot: Option<TextureSlot>, channel: Channel, pyramids: &mut Pyramids) -> Self {
         let texture = match channel {
-            Channel::Alpha => builder.pyramid(slot, Use::Opacity),
-            Channel::Red | Channel::Green => builder.map(MapKind::MetallicRoughness, slot),
+            Channel::Alpha => pyramids.pyramid(slot, Use::Opacity),
+            Channel::Red | Channel::Green => pyramids.map(MapKind::MetallicRoughness, slot),
         };
         Self { factor, texture: texture.map(|map| (map, channel)) }
     }
@@ -82,7 +81,7 @@ pub(crate) struct SurfaceLayers {
 
 impl SurfaceLayers {
     /// None where no extension that is read has an effect.
-    pub fn new(material: &Material, builder: &mut Builder) -> Option<Self> {
+    pub fn new(material: &Material, pyramids: &mut Pyramids) -> Option<Self> {
         let e = &material.extensions;
         let (coat, sheen) = (e.clearcoat.filter(|c| c.factor > 0.0), e.sheen.filter(|s| s.color != [0.0; 3]));
         let transmission = e.transmission.filter(|t| t.factor > 0.0).unwrap_or_default();
@@ -91,19 +90,19 @@ impl SurfaceLayers {
         if material.unlit || is_plain && e.specular.is_none_or(|s| s == Default::default()) && ior == 1.5 {
             return None;
         }
-        let tint = Color::new(specular.color, specular.color_texture, builder);
-        let strength = Number::new(specular.factor, specular.texture, Channel::Alpha, builder);
+        let tint = Color::new(specular.color, specular.color_texture, pyramids);
+        let strength = Number::new(specular.factor, specular.texture, Channel::Alpha, pyramids);
         let sheen = sheen.map(|s| {
-            let color = Color::new(s.color, s.color_texture, builder);
-            (color, Number::new(s.roughness, s.roughness_texture, Channel::Alpha, builder))
+            let color = Color::new(s.color, s.color_texture, pyramids);
+            (color, Number::new(s.roughness, s.roughness_texture, Channel::Alpha, pyramids))
         });
         let volume = e.volume.filter(|v| v.thickness > 0.0).unwrap_or_default();
-        let thickness = Number::new(volume.thickness, volume.texture, Channel::Green, builder);
-        let passing = Number::new(transmission.factor, transmission.texture, Channel::Red, builder);
+        let thickness = Number::new(volume.thickness, volume.texture, Channel::Green, pyramids);
+        let passing = Number::new(transmission.factor, transmission.texture, Channel::Red, pyramids);
         let coat = coat.map(|c| Coat {
-            strength: Number::new(c.factor, c.texture, Channel::Red, builder),
-            roughness: Number::new(c.roughness, c.roughness_texture, Channel::Green, builder),
-            normal: builder.map(MapKind::Normal, c.normal_texture).map(|map| (map, c.normal_scale)),
+            strength: Number::new(c.factor, c.texture, Channel::Red, pyramids),
+            roughness: Number::new(c.roughness, c.roughness_texture, Channel::Green, pyramids),
+            normal: pyramids.map(MapKind::Normal, c.normal_texture).map(|map| (map, c.normal_scale)),
         });
         // An index of 0 stands for one without bound.
         let f0 = if ior == 0.0 { 1.0 } else { ((ior - 1.0) / (ior + 1.0)).powi(2) };

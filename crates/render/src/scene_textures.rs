@@ -1,6 +1,5 @@
-//! A scene's materials, ready to be fetched from: every image unpacked once for each
-//! meaning and wrap mode that it is used with, and parallax maps and cutouts with their
-//! coefficients.
+//! A scene's materials, ready to be fetched from: factors, textures (`scene_pyramids.rs`), parallax maps and cutouts with
+//! their coefficients, and what extensions add (`scene_layers.rs`).
 //!
 //! Contract: one interpretation goes for all of them; parallax maps that it leaves out, or
 //! that break their contract, are not there.
@@ -8,37 +7,17 @@
 use crate::cutout::CutoutCoefficients;
 use crate::directions::{VertexFrame, ViewDirection, sight};
 use crate::interpolate::{Barycentrics, interpolate};
-use crate::interpretation::Interpretation;
 use crate::parallax::ParallaxCoefficients;
 use crate::scene_layers::SurfaceLayers;
+use crate::scene_pyramids::{Map, Pyramids, Use};
 use parbake_image::display::encode_srgb;
 use parbake_image::maps::KINDS;
 use parbake_image::material_maps::{
     factors, fitted_alpha, sheen_albedo, shifted_texture_slot, texture_slot, transmits,
 };
-use parbake_image::pyramid::Pyramid;
-use parbake_image::quantise::decoded;
-use parbake_image::{Encoding, FloatImage, MapKind, MapValues};
+use parbake_image::{Encoding, MapKind, MapValues};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
-use parbake_model::{AlphaMode, Image, Material, Mesh, TextureSlot, Wrap};
-use rayon::prelude::*;
-
-/// One use of a texture, with what moves its coordinates.
-pub(crate) struct Map {
-    slot: TextureSlot,
-    /// Index into the scene's pyramids.
-    pub pyramid: usize,
-    moved: bool,
-}
-
-impl Map {
-    /// The texture coordinates at three vertices.
-    pub fn uvs(&self, mesh: &Mesh, corners: [usize; 3]) -> [Vec2; 3] {
-        let set = if self.slot.uv_set == 1 { &mesh.uvs1 } else { &mesh.uvs };
-        let uvs = corners.map(|i| set.get(i).copied().unwrap_or_default());
-        if self.moved { uvs.map(|uv| self.slot.transform.apply(uv)) } else { uvs }
-    }
-}
+use parbake_model::{AlphaMode, Material, Mesh};
 
 /// The textures of a look, one of each kind at most.
 pub(crate) type Textures = [Option<Map>; KINDS];
@@ -78,6 +57,16 @@ impl SeenPoint<'_> {
 }
 
 impl Shifted {
+    /// That of a material's parallax map, if it has a sound one that the interpretation asks for.
+    fn new(material: &Material, pyramids: &mut Pyramids) -> Option<Self> {
+        let map = material.parallax.as_ref().filter(|_| pyramids.interpretation.parallax)?;
+        let parallax = ParallaxCoefficients::unpack(map, pyramids.images)?;
+        let cutout =
+            map.cutout.as_ref().and_then(|c| CutoutCoefficients::unpack(c, map.wrap, pyramids.images));
+        let textures = MapKind::ALL.map(|kind| pyramids.map(kind, shifted_texture_slot(material, kind)));
+        Some(Self { textures, parallax, cutout, fade: map.fade })
+    }
+
     /// Where the maps are fetched at a point of a triangle: at the base colour's coordinate,
     /// or at the normal's where there is no colour.
     /// With from where that is seen, and how much of the maps is left under this pixel, 0 … 1: the more, the smaller
@@ -147,78 +136,32 @@ pub(crate) struct Surface {
 }
 
 impl Surface {
-    /// Whether what is behind it shows: it is blended, or light passes it in a way that is shown.
-    pub fn is_blended(&self) -> bool {
-        self.alpha_mode == AlphaMode::Blend || self.layers.as_ref().is_some_and(SurfaceLayers::transmits)
-    }
-
-    /// Whether it takes more than a look at depths to say what is seen of it: it is cut out, or blended.
-    pub fn is_special(&self) -> bool {
-        self.is_blended()
-            || self.alpha_mode != AlphaMode::Opaque
-            || self.shifted.as_ref().is_some_and(|own| own.cutout.is_some())
-    }
-}
-
-/// An image's RGB as the values of a map; `srgb` tells whether colours are decoded.
-pub fn unpack(kind: MapKind, image: &Image, srgb: bool) -> FloatImage<[f32; 3]> {
-    let table = decoded(kind, srgb);
-    let texels = image.pixels.par_iter().map(|p| [0, 1, 2].map(|k| table[p[k] as usize])).collect();
-    FloatImage { width: image.width, height: image.height, texels }
-}
-
-/// An image's alpha, three times.
-fn opacity(image: &Image) -> FloatImage<[f32; 3]> {
-    let texels = image.pixels.par_iter().map(|p| [f32::from(p[3]) / 255.0; 3]).collect();
-    FloatImage { width: image.width, height: image.height, texels }
-}
-
-/// What an image is read for.
-#[derive(Clone, Copy)]
-pub(crate) enum Use {
-    Map(MapKind),
-    Opacity,
-}
-
-/// Makes surfaces, and keeps the pyramids that they fetch from.
-pub(crate) struct Builder<'a> {
-    images: &'a [Image],
-    interpretation: Interpretation,
-    pub pyramids: Vec<Pyramid<3>>,
-    /// Image, encoding (none of opacity) and wrap modes of each pyramid.
-    built: Vec<(usize, Option<Encoding>, [Wrap; 2])>,
-}
-
-impl<'a> Builder<'a> {
-    pub fn new(images: &'a [Image], interpretation: Interpretation) -> Self {
-        Self { images, interpretation, pyramids: Vec::new(), built: Vec::new() }
-    }
-
-    pub fn surface(&mut self, material: &Material) -> Surface {
+    /// A material's, with its textures unpacked.
+    pub fn new(material: &Material, pyramids: &mut Pyramids) -> Self {
         let mut factors = factors(material);
-        if !self.interpretation.decode_srgb {
+        if !pyramids.interpretation.decode_srgb {
             for kind in MapKind::ALL.into_iter().filter(|kind| kind.spec().encoding == Encoding::Srgb) {
                 factors[kind] = Vec4::from(factors[kind].to_array().map(encode_srgb));
             }
         }
-        let plain = MapKind::ALL.map(|kind| self.map(kind, texture_slot(material, kind)));
-        let shows_layers = self.interpretation.extensions;
+        let plain = MapKind::ALL.map(|kind| pyramids.map(kind, texture_slot(material, kind)));
+        let shows_layers = pyramids.interpretation.extensions;
         let (alpha_mode, opacity) =
             if shows_layers { (material.alpha_mode, 1.0) } else { fitted_alpha(material) };
         let alpha_cutoff = material.alpha_cutoff;
         let own = if material.alpha_mode == AlphaMode::Opaque { 1.0 } else { factors[MapKind::BaseColor].w };
         factors[MapKind::BaseColor].w = own * opacity;
         let color = material.base_color_texture.filter(|_| material.alpha_mode != AlphaMode::Opaque);
-        let opacity = self.pyramid(color, Use::Opacity);
-        let (is_unlit, shifted) = (material.unlit, self.shifted(material));
-        let layers = if shows_layers { SurfaceLayers::new(material, self) } else { None };
+        let opacity = pyramids.pyramid(color, Use::Opacity);
+        let (is_unlit, shifted) = (material.unlit, Shifted::new(material, pyramids));
+        let layers = if shows_layers { SurfaceLayers::new(material, pyramids) } else { None };
         let sheen = material.extensions.sheen.filter(|s| !shows_layers && s.color != [0.0; 3]);
         let sheen = sheen.map(|sheen| Sheen {
             color: Vec3::from(sheen.color),
             albedo: sheen_albedo(sheen.roughness),
-            texture: self.map(MapKind::BaseColor, sheen.color_texture),
+            texture: pyramids.map(MapKind::BaseColor, sheen.color_texture),
         });
-        Surface {
+        Self {
             factors,
             sheen,
             layers,
@@ -234,40 +177,15 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn shifted(&mut self, material: &Material) -> Option<Shifted> {
-        let map = material.parallax.as_ref().filter(|_| self.interpretation.parallax)?;
-        let parallax = ParallaxCoefficients::unpack(map, self.images)?;
-        let cutout = map.cutout.as_ref().and_then(|c| CutoutCoefficients::unpack(c, map.wrap, self.images));
-        let textures = MapKind::ALL.map(|kind| self.map(kind, shifted_texture_slot(material, kind)));
-        Some(Shifted { textures, parallax, cutout, fade: map.fade })
+    /// Whether what is behind it shows: it is blended, or light passes it in a way that is shown.
+    pub fn is_blended(&self) -> bool {
+        self.alpha_mode == AlphaMode::Blend || self.layers.as_ref().is_some_and(SurfaceLayers::transmits)
     }
 
-    pub fn map(&mut self, kind: MapKind, slot: Option<TextureSlot>) -> Option<Map> {
-        self.pyramid(slot, Use::Map(kind))
-    }
-
-    pub fn pyramid(&mut self, slot: Option<TextureSlot>, purpose: Use) -> Option<Map> {
-        let slot = slot?;
-        let image = self.images.get(slot.image)?;
-        let encoding = match purpose {
-            Use::Map(kind) => Some(kind.spec().encoding),
-            Use::Opacity => None,
-        };
-        let key = (slot.image, encoding, slot.wrap);
-        let pyramid = self.built.iter().position(|b| *b == key).unwrap_or_else(|| {
-            let base = match purpose {
-                Use::Map(kind) => unpack(kind, image, self.interpretation.decode_srgb),
-                Use::Opacity => opacity(image),
-            };
-            let mut pyramid = match self.interpretation.trilinear {
-                true => Pyramid::from_base(base),
-                false => Pyramid::single(base),
-            };
-            pyramid.wrap = slot.wrap;
-            self.pyramids.push(pyramid);
-            self.built.push(key);
-            self.pyramids.len() - 1
-        });
-        Some(Map { slot, pyramid, moved: slot.transform != Default::default() })
+    /// Whether it takes more than a look at depths to say what is seen of it: it is cut out, or blended.
+    pub fn is_special(&self) -> bool {
+        self.is_blended()
+            || self.alpha_mode != AlphaMode::Opaque
+            || self.shifted.as_ref().is_some_and(|own| own.cutout.is_some())
     }
 }

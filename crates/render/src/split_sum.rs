@@ -11,6 +11,10 @@ use crate::real::Real;
 use std::f32::consts::PI;
 use std::sync::OnceLock;
 
+/// Smoother surfaces are shaded as if they had this roughness, so that small lamps do not flicker (three.js).
+pub const LEAST_ROUGHNESS: f32 = 0.0525;
+/// The least cosine to the viewer.
+pub(crate) const LEAST_COSINE: f32 = 1e-4;
 /// Nodes along each side.
 const NODES: usize = 32;
 /// Half vectors for a node.
@@ -52,6 +56,12 @@ fn integral(cosine: f32, roughness: f32) -> [f32; 2] {
         sums[1] += f64::from(grazing * weight);
     }
     sums.map(|sum| (sum / f64::from(SAMPLES)) as f32)
+}
+
+/// Schlick's power.
+pub(crate) fn fifth<T: Real>(x: T) -> T {
+    let square = x * x;
+    square * square * x
 }
 
 /// `[a, b]` at a cosine n·v and a roughness, both within 0 to 1.
