@@ -5,7 +5,7 @@ use parbake_evaluate::channels::Channel;
 use parbake_evaluate::conventions::Shading;
 use parbake_evaluate::evaluate::{Evaluation, evaluate};
 use parbake_evaluate::options::EvaluateOptions;
-use parbake_model::{Clearcoat, Model, TextureSlot, Transmission};
+use parbake_model::{Clearcoat, Image, Model, TextureSlot, Transmission};
 
 fn options() -> EvaluateOptions {
     EvaluateOptions { views: 3, resolution: 64, ..EvaluateOptions::default() }
@@ -68,7 +68,9 @@ fn glass_is_shown_alike_however_it_is_written() {
     let mut factor = jar(0.2, 0.0, 1.0);
     factor.materials[0].extensions.transmission = Some(Transmission { factor: 0.5, texture: None });
     let mut image = factor.clone();
-    let slot = Some(TextureSlot { image: 0, ..TextureSlot::default() });
+    let white = image.images.len();
+    image.images.push(Image::solid("passes", 4, 4, [255; 4]));
+    let slot = Some(TextureSlot { image: white, ..TextureSlot::default() });
     image.materials[0].extensions.transmission = Some(Transmission { factor: 0.5, texture: slot });
     assert_eq!(evaluate(&factor, &image, &options(), &()).unwrap().mean.psnr, 100.0);
 }
