@@ -67,10 +67,7 @@ const WRITTEN = {
   6: ['totalEmissiveRadiance', 'vec3(0.0)'],
   7: ['vec3(diffuseColor.a)', 'vec3(diffuseColor.a)'],
   8: ['pbChecker(pbUv)', 'pbChecker(pbUv)'],
-  10: [
-    'pbLit',
-    'diffuseColor.rgb',
-  ],
+  10: ['pbLit', 'diffuseColor.rgb'],
   11: ['max(dot(pbNormal, pbViewer), 0.0) * diffuseColor.rgb + totalEmissiveRadiance', 'diffuseColor.rgb'],
 };
 
@@ -149,7 +146,7 @@ const chosen = (code, isLit) => /* glsl */ `
 /** The textures of glass, each with its channel, as three.js has them where it draws glass itself. */
 const GLASS_MAPS = [['transmissionMap', 'r'], ['thicknessMap', 'g']];
 
-/** Tells a program what passes its material: `pbTransmission`, by channel. */
+/** Gives a program `pbThrough()`: the share of light that passes its material, by channel. */
 function teachGlass(shader, material) {
   const own = taught.get(material), maps = GLASS_MAPS.filter(([name]) => own.transmission > 0 && material[name]);
   const { attenuationColor = new Vector3(1, 1, 1), attenuationDistance = Infinity, thickness = 0 } = material;
@@ -166,13 +163,13 @@ function teachGlass(shader, material) {
     shader.uniforms[`pb_${name}`] = { value: texture };
     shader.uniforms[`pb_${name}_transform`] = { value: texture.matrix };
     declared += `uniform sampler2D pb_${name};\nvarying vec2 ${varying};\n`;
-    // Without USE_UV1 three.js declares no second set: nothing else reads it.
-    const declaredUv = uv === 'uv1' ? '#ifndef USE_UV1\nattribute vec2 uv1;\n#endif\n' : '';
-    shader.vertexShader = `${declaredUv}uniform mat3 pb_${name}_transform;\nvarying vec2 ${varying};\n${shader.vertexShader}`;
+    shader.vertexShader = `uniform mat3 pb_${name}_transform;\nvarying vec2 ${varying};\n${shader.vertexShader}`;
     vertex += `  ${varying} = (pb_${name}_transform * vec3(${uv}, 1.0)).xy;\n`;
     fetched += `  ${name === 'thicknessMap' ? 'depth' : 'passes'} *= texture2D(pb_${name}, ${varying}).${channel};\n`;
   }
-  shader.vertexShader = shader.vertexShader.replace('void main() {', `void main() {\n${vertex}`);
+  // Without USE_UV1 three.js declares no second set: nothing else reads it.
+  const second = vertex.includes('uv1') ? '#ifndef USE_UV1\nattribute vec2 uv1;\n#endif\n' : '';
+  shader.vertexShader = second + shader.vertexShader.replace('void main() {', `void main() {\n${vertex}`);
   return `${declared}const bool pbIsGlass = ${own.transmission > 0}, pbIsBlended = ${own.blending.transparent};
 vec3 pbThrough() {
   float passes = pbGlass, depth = pbDepth;

@@ -58,7 +58,7 @@ impl Default for Dielectric {
     }
 }
 
-/// A layer of fibres.
+/// The sheen of cloth: fibres that reflect at grazing angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SheenLayer {
     /// Linear RGB, each from 0 to 1.
@@ -67,7 +67,7 @@ pub struct SheenLayer {
     pub roughness: f32,
 }
 
-/// A layer of varnish.
+/// A clearcoat: a thin dielectric layer, as of varnish.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoatLayer {
     /// 0 to 1.
@@ -85,9 +85,9 @@ pub struct MaterialLayers {
     pub dielectric: Dielectric,
     /// Share of the light that passes, by channel, before what is reflected and the base colour are taken off.
     pub transmission: Vec3,
-    /// A layer of fibres.
+    /// Over the base.
     pub sheen: Option<SheenLayer>,
-    /// A layer of varnish, above all else.
+    /// Above all else.
     pub coat: Option<CoatLayer>,
 }
 
