@@ -73,8 +73,8 @@ const WRITTEN = {
 
 // What extensions show, of a physical material in the studio's light.
 const LAYERED = /* glsl */ `
-  vec3 pbF0 = vec3(0.04), pbReflects, pbTransmission = pbThrough();
-  float pbPassing = max(pbTransmission.r, max(pbTransmission.g, pbTransmission.b));
+  vec3 pbF0 = vec3(0.04), pbReflects, pbAttenuated;
+  float pbPassing = pbThrough(pbAttenuated);
   float pbF90 = 1.0;
   #ifdef USE_SPECULAR
     vec3 pbTint = specularColor;
@@ -118,7 +118,7 @@ const LAYERED = /* glsl */ `
     pbBelow *= pbVarnish.a;
   #endif
   // Glass is blended, by the mean of what passes.
-  vec3 pbPasses = clamp(pbTransmission * (1.0 - metalnessFactor) * (1.0 - pbReflects) * diffuseColor.rgb, 0.0, 1.0) * pbBelow;
+  vec3 pbPasses = clamp(pbPassing * pbAttenuated * (1.0 - metalnessFactor) * (1.0 - pbReflects) * diffuseColor.rgb, 0.0, 1.0) * pbBelow;
   pbOpacity = 1.0 - dot(pbPasses, vec3(1.0 / 3.0));
 `;
 
@@ -146,7 +146,7 @@ const chosen = (code, isLit) => /* glsl */ `
 /** The textures of glass, each with its channel, as three.js has them where it draws glass itself. */
 const GLASS_MAPS = [['transmissionMap', 'r'], ['thicknessMap', 'g']];
 
-/** Gives a program `pbThrough()`: the share of light that passes its material, by channel. */
+/** Gives a program `pbThrough()`: the share of light that passes its material, and what the inside leaves of it, by channel. */
 function teachGlass(shader, material) {
   const own = taught.get(material), maps = GLASS_MAPS.filter(([name]) => own.transmission > 0 && material[name]);
   const { attenuationColor = new Vector3(1, 1, 1), attenuationDistance = Infinity, thickness = 0 } = material;
@@ -171,9 +171,10 @@ function teachGlass(shader, material) {
   const second = vertex.includes('uv1') ? '#ifndef USE_UV1\nattribute vec2 uv1;\n#endif\n' : '';
   shader.vertexShader = second + shader.vertexShader.replace('void main() {', `void main() {\n${vertex}`);
   return `${declared}const bool pbIsGlass = ${own.transmission > 0}, pbIsBlended = ${own.blending.transparent};
-vec3 pbThrough() {
+float pbThrough(out vec3 left) {
   float passes = pbGlass, depth = pbDepth;
-${fetched}  return passes * exp(depth * log(max(pbAttenuation, vec3(1e-6))));
+${fetched}  left = exp(depth * log(max(pbAttenuation, vec3(1e-6))));
+  return passes;
 }
 `;
 }

@@ -24,7 +24,7 @@
 //!
 //! What passes is not bent, blurred or dispersed: the surface is as thin as a sheet, whatever its thickness.
 //!
-//! `metallic_roughness.rs` puts them over its material.
+//! `metallic_roughness.rs` puts them together.
 //!
 //! Contract: forward only. What passes is from 0 to 1.
 
@@ -79,16 +79,23 @@ pub struct CoatLayer {
 }
 
 /// What lies over, and passes, a metallic-roughness material at one point.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaterialLayers {
-    /// What it reflects where it is not metal.
+    /// What it does where it is not metal.
     pub dielectric: Dielectric,
-    /// Share of the light that passes, by channel, before what is reflected and the base colour are taken off.
-    pub transmission: Vec3,
+    /// What the inside leaves of light that passes, by channel, 0 to 1.
+    pub attenuation: Vec3,
     /// Over the base.
     pub sheen: Option<SheenLayer>,
     /// Above all else.
     pub coat: Option<CoatLayer>,
+}
+
+impl Default for MaterialLayers {
+    /// Nothing but a material without extensions.
+    fn default() -> Self {
+        Self { dielectric: Dielectric::default(), attenuation: Vec3::ONE, sheen: None, coat: None }
+    }
 }
 
 /// Light that leaves a surface, and what of the light behind it comes through.

@@ -34,6 +34,12 @@ fn varnish(roughness: f32) -> MaterialLayers {
     MaterialLayers { coat: Some(coat), ..MaterialLayers::default() }
 }
 
+/// Lets all light pass that it does not reflect.
+fn glass() -> MaterialLayers {
+    let dielectric = Dielectric { scatters: 0.0, ..Dielectric::default() };
+    MaterialLayers { dielectric, ..MaterialLayers::default() }
+}
+
 /// Protects all materials without extensions: the same light, to the bit.
 #[test]
 fn without_layers_nothing_changes() {
@@ -54,7 +60,7 @@ fn layers_neither_make_nor_swallow_light() {
     for cosine in [0.05, 0.3, 0.7, 1.0] {
         for roughness in [0.1, 0.4, 1.0] {
             let both = MaterialLayers { sheen: sheen(roughness), ..varnish(roughness) };
-            let passing = MaterialLayers { transmission: Vec3::ONE, ..MaterialLayers::default() };
+            let passing = glass();
             for layers in [varnish(roughness), both, passing] {
                 let out = even().light_in_layers(&flat(tilted(cosine)), &maps(Vec3::ONE, 0.5, 0.0), &layers);
                 let whole = (out.light + out.passes).max_element();
@@ -101,12 +107,16 @@ fn sheen_of_lamps_adds_up_to_its_albedo() {
 /// Protects glass: what does not pass is reflected, metal lets nothing through, and the base colour tints.
 #[test]
 fn light_passes_dielectrics_only() {
-    let glass = MaterialLayers { transmission: Vec3::ONE, ..MaterialLayers::default() };
+    let glass = glass();
     let red = Vec3::new(1.0, 0.25, 0.0);
     let out = even().light_in_layers(&flat(Vec3::Z), &maps(red, 0.0, 0.0), &glass);
     assert!((out.passes - 0.96 * red).length() < 0.02, "{}", out.passes);
     assert!((out.light - Vec3::splat(0.04)).length() < 0.02, "{}", out.light);
     assert_eq!(even().light_in_layers(&flat(Vec3::Z), &maps(red, 0.0, 1.0), &glass).passes, Vec3::ZERO);
+    // What the inside swallows does not come back as scattered light.
+    let dark = MaterialLayers { attenuation: Vec3::splat(0.25), ..glass };
+    let swallowed = even().light_in_layers(&flat(Vec3::Z), &maps(red, 0.0, 0.0), &dark);
+    assert!(swallowed.light == out.light && (swallowed.passes - 0.25 * out.passes).length() < 1e-6);
 }
 
 /// Protects surfaces whose reflections are switched off, and those with stronger ones.

@@ -20,7 +20,7 @@
 //! out = occlusion · mix(mix(c · diffuse, reflected, E(0.04)), reflected · E(c), metallic)
 //! ```
 //!
-//! Emission is added. The normal is that of the map in the interpolated frame, as in `frame.rs`.
+//! 0.04 stands for what [`Dielectric`] says: extensions change it (`material_layers.rs`). Emission is added. The normal is that of the map in the interpolated frame, as in `frame.rs`.
 //!
 //! Derivatives are those of the same formulas, carried along by dual numbers (`real.rs`).
 //!
@@ -128,6 +128,7 @@ impl MetallicRoughness {
         (Vec3::from(light.0), Vec3::from(reflects.0))
     }
 
+    /// The same over numbers that may carry derivatives.
     fn shaded<T: Real>(&self, inputs: &Inputs<T>, own: Dielectric) -> (Triple<T>, Triple<T>) {
         let Inputs { color, metallic, to_viewer, .. } = *inputs;
         let roughness = inputs.roughness.at_least(LEAST_ROUGHNESS).at_most(1.0);
@@ -217,21 +218,18 @@ impl Brdf<Orientation> for MetallicRoughness {
         maps: &MapValues,
         layers: &MaterialLayers,
     ) -> LayeredLight {
-        let [color, passing] = [maps[MapKind::BaseColor].truncate(), layers.transmission];
+        let (mut light, reflects) = self.base(surface, maps, layers.dielectric);
         let metallic = maps[MapKind::MetallicRoughness].z;
-        let share = passing.max_element();
-        let dielectric = Dielectric { scatters: 1.0 - share, ..layers.dielectric };
-        let (mut light, reflects) = self.base(surface, maps, dielectric);
-        let mut passes = (1.0 - metallic) * (Vec3::ONE - reflects) * color * passing;
-        passes = passes.clamp(Vec3::ZERO, Vec3::ONE);
-        let normal = mapped_normal(surface, maps);
+        let tint = maps[MapKind::BaseColor].truncate() * layers.attenuation;
+        let passing = (1.0 - metallic) * (1.0 - layers.dielectric.scatters);
+        let mut passes = (passing * (Vec3::ONE - reflects) * tint).clamp(Vec3::ZERO, Vec3::ONE);
+        let occlusion = maps[MapKind::Occlusion].x;
         if let Some(sheen) = layers.sheen.filter(|s| s.color != Vec3::ZERO) {
-            let occlusion = maps[MapKind::Occlusion].x;
+            let normal = mapped_normal(surface, maps);
             let (added, below) = sheen.light(&self.lighting, normal, surface.to_viewer, occlusion);
             (light, passes) = (light * below + added, passes * below);
         }
         if let Some(coat) = layers.coat.filter(|coat| coat.strength > 0.0) {
-            let occlusion = maps[MapKind::Occlusion].x;
             let (added, below) = coat.light(&self.lighting, surface.to_viewer, occlusion);
             (light, passes) = (light * below + added, passes * below);
         }

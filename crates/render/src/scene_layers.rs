@@ -122,15 +122,11 @@ impl SurfaceLayers {
         let dielectric = Dielectric {
             f0: (self.f0 * self.tint.at(fetch)).min(Vec3::ONE) * strength,
             f90: strength,
-            ..Dielectric::default()
+            scatters: 1.0 - if self.transmits() { self.transmission.at(fetch) } else { 0.0 },
         };
-        let transmission = match self.transmits() {
-            false => Vec3::ZERO,
-            true => {
-                let thickness = self.thickness.at(fetch);
-                let left = (self.attenuation * thickness).to_array().map(f32::exp);
-                Vec3::from(left) * self.transmission.at(fetch)
-            }
+        let attenuation = match self.attenuation == Vec3::ZERO {
+            true => Vec3::ONE,
+            false => Vec3::from((self.attenuation * self.thickness.at(fetch)).to_array().map(f32::exp)),
         };
         let sheen = self
             .sheen
@@ -143,7 +139,7 @@ impl SurfaceLayers {
                 coat.normal.as_ref().map(|(map, scale)| fetch(map) * Vec3::new(*scale, *scale, 1.0)),
             ),
         });
-        MaterialLayers { dielectric, transmission, sheen, coat }
+        MaterialLayers { dielectric, attenuation, sheen, coat }
     }
 }
 
