@@ -121,8 +121,9 @@ fn arrange(pieces: &[Piece], texels: f64, gutter: f64, options: &PackOptions) ->
         let axes = pieces.iter().map(|piece| piece.directions[0]).collect();
         return Some(Arrangement { scale, axes, corners });
     }
-    // As fine as the texels, and as the charts are many and the gutter is narrow.
-    let cells = (texels.ceil() as usize).max(512);
+    // As fine as the texels, and as the charts are many: one of average size is then some 64 cells wide or more.
+    let by_charts = (64.0 * (pieces.len() as f64).sqrt()).clamp(256.0, 512.0);
+    let cells = texels.max(by_charts).ceil() as usize;
     let coarse = Square { cells: cells.min(256), gutter, rotate: options.rotate };
     let fine = Square { cells, ..coarse };
     search(pieces, coarse, fine, options.effort)

@@ -2,7 +2,7 @@
 //!
 //! Parts of a model may share texels on purpose: mirrored halves, stacked copies, textures that repeat. A
 //! layout in which each part has texels of its own then shows less with as many texels. So both models are
-//! finished, rendered as `eval` does, and the one that was found has to keep up.
+//! finished, rendered as `eval` does (small textures at a lower resolution), and the one that was found has to keep up.
 
 use crate::bake::Baked;
 use crate::budget::check_budget;
@@ -23,6 +23,8 @@ const MOST_DECIBELS: f64 = 120.0;
 /// Views that are compared, the worse of two sets, since one texture may be luckier in one of them: those of the
 /// summary, and others.
 const VIEWS: [usize; 2] = [COMPARED_VIEWS, 12];
+/// Pixels of a compared picture for each texel, along a side: finer pictures of a small texture show no more of it.
+const PIXELS_PER_TEXEL: usize = 2;
 
 /// Whether coordinates as they were delivered may be written: a layout that the user asked for in so many
 /// words, or a gutter, is not weighed against them.
@@ -42,8 +44,10 @@ pub(crate) fn lost(
     bake: &BakeOptions,
 ) -> Result<Option<f64>, BakeError> {
     let mut lost = f64::NEG_INFINITY;
+    let as_summary = compared_as(bake);
+    let resolution = as_summary.resolution.min(PIXELS_PER_TEXEL * bake.texture_size);
     for views in VIEWS {
-        let options = EvaluateOptions { views, no_flip: true, ..compared_as(bake) };
+        let options = EvaluateOptions { views, resolution, no_flip: true, ..as_summary.clone() };
         let compared = evaluate_each(model, &[kept, found], &options, &[&options.background], false, &())?;
         // Views that are equal in every pixel have no finite figure.
         let mean = |which: usize| {

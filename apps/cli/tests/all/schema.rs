@@ -105,7 +105,7 @@ fn outputs_keep_to_the_schema() {
     let small_file = ["--texture-format", "ktx2", "--mesh-compression", "meshopt"];
     let runs: [(&str, Vec<&str>); 11] = [
         ("bake", [&pair[..], &SMALL].concat()),
-        ("bake", [&["demo_high.glb", "--triangles", "2600"], &SMALL[..]].concat()),
+        ("bake", [&["few.glb", "--triangles", "200"], &SMALL[..]].concat()),
         ("bake", [&few[..], &SMALL, &["--parallax", "sh"]].concat()),
         ("bake", [&few[..], &SMALL, &small_file].concat()),
         ("raycast", [&pair[..], &["--texture-size", "32", "--maps", "height,occlusion"]].concat()),
