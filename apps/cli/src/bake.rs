@@ -8,6 +8,7 @@ use crate::options_file::merged;
 use crate::outputs::{check_beside, check_maps, check_not_input, check_output, is_obj};
 use crate::progress::{Console, interrupted};
 use crate::rules;
+use crate::stage_times::stage_line;
 use crate::watch;
 use clap::ArgMatches;
 use parbake::{
@@ -212,7 +213,7 @@ fn finish(
         page.finish(output, console.limits());
     }
     for stage in &report.stages {
-        console.detail(&format!("{:24} {:7.3} s", stage.stage.label(), stage.seconds));
+        console.detail(&stage_line(stage.stage, stage.seconds));
     }
     Ok(baked)
 }

@@ -29,7 +29,8 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
     check_formats(output, &options.write)?;
     check_not_input(output, &inputs)?;
     check_beside(Some(output), command.json.as_ref(), command.report.as_ref(), &inputs)?;
-    let console = Console::for_bake(command.talk, options.time_budget).confined(command.reading);
+    let console =
+        Console::for_bake(command.talk, options.time_budget).confined(command.reading).with_stage_times();
     with_threads(options.threads, || {
         let loaded = read(&command.model, &console)?;
         if command.strict {

@@ -16,7 +16,7 @@ pub fn run(command: &EvalCommand, given: &ArgMatches) -> Result<Ending, Failure>
     rules::check_eval(&command.evaluate, given)?;
     command.evaluate.check()?;
     check_json(command.json.as_ref(), &[&command.high, &command.low])?;
-    let console = Console::new(command.talk).confined(command.reading);
+    let console = Console::new(command.talk).confined(command.reading).with_stage_times();
     with_threads(command.threads, || {
         let pair = read_pair(&command.high, &command.low, &console)?;
         let evaluation = evaluate(&pair.high, &pair.low, &command.evaluate, &console)?;

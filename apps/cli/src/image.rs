@@ -29,7 +29,7 @@ pub fn run(command: &ImageCommand, given: &ArgMatches) -> Result<Ending, Failure
         check_not_input(animation, &inputs)?;
         check_animation(animation)?;
     }
-    let console = Console::for_bake(command.talk, None);
+    let console = Console::for_bake(command.talk, None).with_stage_times();
     with_threads(command.options.threads, || {
         let picture = read_image(&command.picture, &Limits::default())?;
         let baked = bake_image(&picture, &command.options, &console)?;

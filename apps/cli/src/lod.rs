@@ -34,7 +34,8 @@ pub fn run(command: &LodCommand, given: &ArgMatches) -> Result<Ending, Failure> 
         check_not_input(&command.output.join(file), &[&command.model])?;
     }
     check_beside(None, None, command.report.as_ref(), &[&command.model])?;
-    let console = Console::for_levels(command.talk, options.time_budget).confined(command.reading);
+    let console =
+        Console::for_levels(command.talk, options.time_budget).confined(command.reading).with_stage_times();
     with_threads(options.threads, || {
         let read = read_painted(&command.model, options.importance_attribute.as_deref(), &console);
         if read.is_err() && is_new {

@@ -24,6 +24,7 @@ mod raycast;
 mod reproduce;
 mod rules;
 mod simplify;
+mod stage_times;
 mod stats;
 mod thumbnail;
 mod turntable;

@@ -2,6 +2,7 @@
 //! the time budget.
 
 use crate::arguments::{Reading, Talk};
+use crate::stage_times::StageTimes;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use parbake::{Estimate, Limits, Message, Stage, Watcher};
 use parbake_viewer::Live;
@@ -43,6 +44,8 @@ pub struct Console {
     keeps_time: bool,
     /// The page that is told of everything as well.
     page: Option<Arc<Live>>,
+    /// Whether `--verbose` prints what stages took by the progress that they tell.
+    times_stages: bool,
 }
 
 /// What the bar shows.
@@ -52,6 +55,7 @@ struct State {
     /// Of a longer run, as a chain of levels; the bar is then that of the run.
     part: Option<String>,
     estimate: Estimate,
+    times: StageTimes,
 }
 
 /// Kept back from a time budget for encoding and writing, as a share and at least
@@ -73,6 +77,12 @@ impl Console {
     /// The same with a page that is told of everything as well.
     pub fn with_page(mut self, page: Option<Arc<Live>>) -> Self {
         self.page = page;
+        self
+    }
+
+    /// The same for a command whose report lists no stages: `--verbose` prints what each took.
+    pub fn with_stage_times(mut self) -> Self {
+        self.times_stages = self.talk.verbose;
         self
     }
 
@@ -167,6 +177,7 @@ impl Console {
             state: Mutex::default(),
             keeps_time: false,
             page: None,
+            times_stages: false,
         }
     }
 
@@ -194,9 +205,19 @@ impl Console {
         self.begin.elapsed().as_secs_f64()
     }
 
-    /// Takes the bar away.
+    /// Takes the bar away, and tells what stages took where that was asked for.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
+        if let Ok(mut state) = self.state.lock() {
+            self.tell_times(&mut state);
+        }
+    }
+
+    fn tell_times(&self, state: &mut State) {
+        if self.times_stages {
+            let lines = state.times.take_lines(Instant::now());
+            lines.iter().for_each(|line| self.say(line));
+        }
     }
 }
 
@@ -217,7 +238,12 @@ impl Watcher for Console {
             page.message(message.clone());
         }
         let Ok(mut state) = self.state.lock() else { return };
-        let State { stage: current, part, estimate } = &mut *state;
+        match &message {
+            Message::Progress { stage, .. } => state.times.note(*stage, Instant::now()),
+            Message::Part { .. } => self.tell_times(&mut state),
+            _ => {}
+        }
+        let State { stage: current, part, estimate, .. } = &mut *state;
         estimate.note(&message);
         match message {
             Message::Plan(_) => {}

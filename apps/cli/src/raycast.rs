@@ -9,6 +9,7 @@ use crate::outputs::{check_beside, check_not_input, check_output, check_place, i
 use crate::printed::print;
 use crate::progress::Console;
 use crate::rules;
+use crate::stage_times::stage_line;
 use clap::ArgMatches;
 use parbake::{
     GeometryMap, NormalY, RaycastReport, ShapeMapReport, Stage, StageTime, raycast, with_normal_y,
@@ -52,7 +53,7 @@ pub fn run(command: &RaycastCommand, given: &ArgMatches) -> Result<Ending, Failu
         report.stages.splice(0..0, reading);
         report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
         for stage in &report.stages {
-            console.detail(&format!("{:24} {:7.3} s", stage.stage.label(), stage.seconds));
+            console.detail(&stage_line(stage.stage, stage.seconds));
         }
         if let Some(path) = &command.json {
             let files = [("high", command.high.as_path()), ("low", command.low.as_path())];

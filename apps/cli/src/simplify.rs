@@ -31,5 +31,6 @@ pub fn run(command: &SimplifyCommand) -> Result<Ending, Failure> {
         result.mesh.triangles.len(),
         model.mesh.triangles.len()
     ));
+    console.detail(&format!("read, simplified and written in {:.2} s", console.seconds()));
     Ok(Ending::Finished)
 }

@@ -23,7 +23,7 @@ pub fn run(command: &TurntableCommand) -> Result<Ending, Failure> {
         std::iter::once(&command.high).chain(&command.low).map(|path| path.as_path()).collect();
     check_place(output)?;
     check_not_input(output, &inputs)?;
-    let console = Console::for_film(command.talk).confined(command.reading);
+    let console = Console::for_film(command.talk).confined(command.reading).with_stage_times();
     with_threads(options.threads, || {
         let models = read_all(&inputs, &console)?;
         let lows: Vec<_> = models[1..].iter().map(|low| &low.model).collect();

@@ -18,7 +18,7 @@ pub fn run(command: &VariantsCommand) -> Result<Ending, Failure> {
     let inputs = [command.high.as_path(), command.low.as_path()];
     check_beside(None, command.json.as_ref(), Some(&command.output), &inputs)?;
     // Stopped, it shows the variants that it has.
-    let console = Console::for_bake(command.talk, None).confined(command.reading);
+    let console = Console::for_bake(command.talk, None).confined(command.reading).with_stage_times();
     with_threads(options.threads, || {
         let pair = read_pair(&command.high, &command.low, &console)?;
         let compared = compare_variants(&pair.high, &pair.low, options, &console)?;

@@ -54,16 +54,17 @@ fn bare_models_are_unwrapped() {
     assert!(!folder.join("kept.glb").exists());
 }
 
-/// Protects `compress`: a sound layout with a gutter, and bytes before and after.
+/// Protects `compress`: a sound layout with a gutter, bytes before and after, and with `--verbose` what stages took.
 #[test]
 fn compressed_models_are_sound() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     demo_pair(folder);
     run(folder, &["simplify", "demo_high.glb", "-o", "few.glb", "--triangles", "1500", "-q"]);
-    let compress = ["compress", "few.glb", "-o", "small.glb"];
+    let compress = ["compress", "few.glb", "-o", "small.glb", "-v"];
     let output = run(folder, &[&compress[..], &SMALL_FAST, &FEW_VIEWS].concat());
-    let printed = text(&output.stdout);
+    let (printed, said) = (text(&output.stdout), text(&output.stderr));
+    assert!(said.contains("moving texture coordinates "), "{said}");
     assert!(printed.contains(" bytes → "), "{printed}");
     let (code, said) = check(folder, "small.glb", "1");
     assert_eq!(code, Some(0), "{said}");
