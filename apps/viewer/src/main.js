@@ -325,7 +325,8 @@ async function loadModels({ files, other, run }) {
   }
   const load = createLoader(stage.renderer);
   const second = otherComing ? otherComing.then(load).catch((error) => error) : null;
-  const firsts = run ? [await firstSnapshot(run, load)] : await Promise.all(coming.map((model) => model.then(load)));
+  const others = Promise.allSettled([otherComing]);
+  const firsts = run ? [await firstSnapshot(run, load, others)] : await Promise.all(coming.map((model) => model.then(load)));
   const found = await second, problem = found instanceof Error ? found.message : null;
   compare = problem ? null : found;
   levels = new Levels(firsts);
@@ -334,8 +335,8 @@ async function loadModels({ files, other, run }) {
   return problem;
 }
 
-/** Follows a run from now on; gives its first snapshot. */
-function firstSnapshot(run, load) {
+/** Follows a run from now on; gives its first snapshot. The run's command is let go once `others` have come. */
+function firstSnapshot(run, load, others) {
   const first = deferred();
   let isFirst = true, before = Infinity;
   const tell = (state) => {
@@ -369,7 +370,7 @@ function firstSnapshot(run, load) {
   };
   setSlow(true);
   // A second snapshot waits until the first one stands there, beside the high-poly.
-  follow({ tell, canShow: () => isFirst || store.get().isReady, show }).catch(first.reject);
+  follow({ tell, canShow: () => isFirst || store.get().isReady, show, others }).catch(first.reject);
   return first.promise;
 }
 

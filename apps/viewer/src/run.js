@@ -18,9 +18,9 @@ const PING = 2000;
 /**
  * Follows the run until it ends. `tell(state)` is called with all that is known of it; `canShow()` says whether the stage
  * could take a snapshot; `show(bytes, state)` puts one there and gives the milliseconds that this took, and whether that
- * was slow: `{ took, isSlow }`.
+ * was slow: `{ took, isSlow }`. `others` is kept as soon as nothing else is asked of the command, which ends after the run.
  */
-export async function follow({ tell, canShow, show }) {
+export async function follow({ tell, canShow, show, others }) {
   let state = { version: 0 }, shown = 0, next = 0, isSlow = true, failed = 0;
   for (;;) {
     const asked = canShow() && performance.now() >= next ? 'look' : 'news';
@@ -49,7 +49,8 @@ export async function follow({ tell, canShow, show }) {
       if (isSlow && performance.now() < next) await new Promise((wait) => setTimeout(wait, SLOW_NEWS));
       continue;
     }
-    // The command waits for this before it ends.
+    // The command waits for this before it ends, and a request that is still on its way would be lost.
+    await others;
     await fetch('run/shown').catch(() => {});
     return;
   }
