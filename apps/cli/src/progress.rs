@@ -80,7 +80,7 @@ impl Console {
         self
     }
 
-    /// The same for a command whose report lists no stages: `--verbose` prints what each took.
+    /// The same for a command that prints no list of stages itself: `--verbose` prints what each took.
     pub fn with_stage_times(mut self) -> Self {
         self.times_stages = self.talk.verbose;
         self

@@ -1,5 +1,5 @@
-//! How long each stage of a run took, by the progress that it tells: what `--verbose` prints of commands whose reports
-//! list no stages.
+//! How long each stage of a run took, by its progress messages: what `--verbose` prints of commands that make several
+//! bakes, or none.
 //!
 //! A stage lasts from its first message to the first of another stage. Stages that take turns are summed up.
 //!

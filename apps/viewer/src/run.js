@@ -18,7 +18,8 @@ const PING = 2000;
 /**
  * Follows the run until it ends. `tell(state)` is called with all that is known of it; `canShow()` says whether the stage
  * could take a snapshot; `show(bytes, state)` puts one there and gives the milliseconds that this took, and whether that
- * was slow: `{ took, isSlow }`. `others` is kept as soon as nothing else is asked of the command, which ends after the run.
+ * was slow: `{ took, isSlow }`. `others` is a promise: once it is settled, nothing else
+ * is asked of the command, which may then end.
  */
 export async function follow({ tell, canShow, show, others }) {
   let state = { version: 0 }, shown = 0, next = 0, isSlow = true, failed = 0;

@@ -121,7 +121,7 @@ fn arrange(pieces: &[Piece], texels: f64, gutter: f64, options: &PackOptions) ->
         let axes = pieces.iter().map(|piece| piece.directions[0]).collect();
         return Some(Arrangement { scale, axes, corners });
     }
-    // As fine as the texels, and as the charts are many: one of average size is then some 64 cells wide or more.
+    // As fine as the texels; on smaller textures up to 64 charts of average size are at least some 64 cells wide.
     let by_charts = (64.0 * (pieces.len() as f64).sqrt()).clamp(256.0, 512.0);
     let cells = texels.max(by_charts).ceil() as usize;
     let coarse = Square { cells: cells.min(256), gutter, rotate: options.rotate };

@@ -159,8 +159,6 @@ struct Sheet<'a> {
 /// A piece turned: the cells that it touches and, once it is needed, those in its gutter.
 struct Turn {
     axis: DVec2,
-    /// Of two turns that lie equally well the one with the lower rank is taken.
-    rank: usize,
     solid: Mask,
     grown: OnceLock<Mask>,
 }
@@ -176,21 +174,17 @@ impl<'a> Sheet<'a> {
         let turns: Vec<Vec<Turn>> = pieces
             .par_iter()
             .map(|piece| {
-                let turned = axes(piece, square.rotate).enumerate().filter_map(|(rank, axis)| {
+                let turned = axes(piece, square.rotate).filter_map(|axis| {
                     let points = placed(piece, scale, axis, cells);
                     // A mask is no larger than its box: look before drawing it.
                     let (_, size) = bounds(points.iter().copied());
                     (size.max_element() <= cells + TOUCH).then(|| Turn {
                         axis,
-                        rank,
                         solid: Mask::new(&shape(piece, &points), 0.0),
                         grown: OnceLock::new(),
                     })
                 });
-                // The lowest first: where one of them lies, few rows are left to try for the higher ones.
-                let mut turned: Vec<Turn> = turned.collect();
-                turned.sort_by_key(|turn| (turn.solid.height, turn.rank));
-                turned
+                turned.collect()
             })
             .collect();
         turns.iter().all(|t| !t.is_empty()).then_some(Self { pieces, scale, square, turns })
@@ -205,10 +199,7 @@ impl<'a> Sheet<'a> {
         for (position, &index) in plan.order.iter().enumerate() {
             let mut best: Option<(Place, &Turn)> = None;
             for turn in &self.turns[index] {
-                let limit = best.as_ref().map_or((usize::MAX, usize::MAX), |(place, other)| {
-                    let (first, second) = place.cost;
-                    (first, second + usize::from(turn.rank < other.rank))
-                });
+                let limit = best.as_ref().map_or((usize::MAX, usize::MAX), |b| b.0.cost);
                 if let Some(place) = board.find(&turn.solid, plan.preference, limit) {
                     best = Some((place, turn));
                 }
