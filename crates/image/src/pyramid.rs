@@ -133,6 +133,12 @@ pub fn level_of_detail(per_x: Vec2, per_y: Vec2, width: usize, height: usize) ->
 }
 
 impl<const C: usize> Pyramid<C> {
+    /// Texels along u and v of the finest level.
+    #[inline]
+    pub fn size(&self) -> [usize; 2] {
+        [self.levels[0].width, self.levels[0].height]
+    }
+
     /// The finer of the two levels that a level of detail blends, and the share of the coarser one.
     #[inline]
     pub fn split(&self, lod: f32) -> (usize, f32) {

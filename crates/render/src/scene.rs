@@ -29,6 +29,7 @@ use parbake_image::{MapKind, MapValues};
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{AlphaMode, Image, Material, Mesh};
 use rayon::prelude::*;
+use std::cell::Cell;
 use std::sync::OnceLock;
 
 /// A square picture in linear light: premultiplied RGB and coverage.
@@ -357,12 +358,23 @@ impl Scene {
             }
             None => (&surface.plain, Vec2::ZERO),
         };
+        // Maps of one material are mostly read at the same place and have the same size.
+        let last = Cell::new(None);
         let fetch = |map: &Map| {
-            let uvs = map.uvs(mesh, corners);
             let pyramid = &self.pyramids[map.pyramid];
-            let along = |w: [f32; 3]| -> Vec2 { interpolate(uvs, w) };
-            let lod = pyramid.lod(along(b.per_x) * footprint, along(b.per_y) * footprint);
-            Vec3::from(pyramid.fetch(along(b.weights) + shift, lod))
+            let asked = (map.coordinates, pyramid.size());
+            let (uv, lod) = match last.get() {
+                Some((known, place)) if known == asked => place,
+                _ => {
+                    let uvs = map.uvs(mesh, corners);
+                    let along = |w: [f32; 3]| -> Vec2 { interpolate(uvs, w) };
+                    let lod = pyramid.lod(along(b.per_x) * footprint, along(b.per_y) * footprint);
+                    let place = (along(b.weights) + shift, lod);
+                    last.set(Some((asked, place)));
+                    place
+                }
+            };
+            Vec3::from(pyramid.fetch(uv, lod))
         };
         let mut values = self.values(surface, textures, corners, b.weights, reads, &fetch);
         let (mut tangent, mut handedness) = (Vec3::ZERO, 1.0);

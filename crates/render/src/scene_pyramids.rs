@@ -7,7 +7,7 @@ use parbake_image::pyramid::Pyramid;
 use parbake_image::quantise::decoded;
 use parbake_image::{Encoding, FloatImage, MapKind};
 use parbake_model::glam::Vec2;
-use parbake_model::{Image, Mesh, TextureSlot, Wrap};
+use parbake_model::{Image, Mesh, TextureSlot, UvTransform, Wrap};
 use rayon::prelude::*;
 
 /// One use of a texture, with what moves its coordinates.
@@ -16,6 +16,8 @@ pub(crate) struct Map {
     /// Index into the scene's pyramids.
     pub pyramid: usize,
     moved: bool,
+    /// The same number for maps that are read at the same coordinates, as most of a material are.
+    pub coordinates: usize,
 }
 
 impl Map {
@@ -54,11 +56,13 @@ pub(crate) struct Pyramids<'a> {
     pub all: Vec<Pyramid<3>>,
     /// Image, encoding (none of opacity) and wrap modes of each pyramid.
     built: Vec<(usize, Option<Encoding>, [Wrap; 2])>,
+    /// Set of coordinates and transform of each number that maps have for these.
+    coordinates: Vec<(u8, UvTransform)>,
 }
 
 impl<'a> Pyramids<'a> {
     pub fn new(images: &'a [Image], interpretation: Interpretation) -> Self {
-        Self { images, interpretation, all: Vec::new(), built: Vec::new() }
+        Self { images, interpretation, all: Vec::new(), built: Vec::new(), coordinates: Vec::new() }
     }
 
     /// The use of a texture for a map.
@@ -89,6 +93,11 @@ impl<'a> Pyramids<'a> {
             self.built.push(key);
             self.all.len() - 1
         });
-        Some(Map { slot, pyramid, moved: slot.transform != Default::default() })
+        let read_at = (slot.uv_set, slot.transform);
+        let coordinates = self.coordinates.iter().position(|c| *c == read_at).unwrap_or_else(|| {
+            self.coordinates.push(read_at);
+            self.coordinates.len() - 1
+        });
+        Some(Map { slot, pyramid, moved: slot.transform != Default::default(), coordinates })
     }
 }

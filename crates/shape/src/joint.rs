@@ -178,6 +178,9 @@ const UNCROSSED: usize = 8;
 const WIDE_GAP: f64 = 1.0;
 /// The shortest distance that is told from rounding, in pixels.
 const LEAST_GAP: f64 = 0.02;
+/// Distance between outlines in pixels below which vertices stay: the samples of a pixel tell no more, and of models that
+/// were as close none came closer by a tenth.
+const CLOSE_ENOUGH: f64 = 0.1;
 
 /// How far the outlines of a mesh are apart from those of the high-poly in the mean, in the common frame.
 pub(crate) fn gap(mesh: &Mesh, seen: &Seen, display: Display) -> f32 {
@@ -225,7 +228,7 @@ pub fn fit_shape(
     };
     let fine = fit.views;
     let coarse = Views { references: &halved, size: size / 2, ..fine };
-    let steps = needed_steps(gap_in_pixels, options);
+    let steps = if gap_in_pixels < CLOSE_ENOUGH { 0 } else { needed_steps(gap_in_pixels, options) };
     for step in 0..steps {
         watcher.progress(Stage::Shape, step, steps);
         if references.is_empty() || watcher.stopped() {
@@ -265,7 +268,8 @@ pub fn fit_shape(
         let outline = fit.look(at, &provisional.texture, &seen.checked.measured()).outline;
         f64::from(1.0 - discount) * outline.overhang + outline.underhang
     };
-    if cost(moving.at()) > options.worth_moving * cost(&points.rest) {
+    let has_moved = !losses.is_empty();
+    if has_moved && cost(moving.at()) > options.worth_moving * cost(&points.rest) {
         moving.reset();
         after = before.outline;
     }

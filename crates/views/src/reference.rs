@@ -111,28 +111,39 @@ fn render(high: &Scene, brdf: &impl Brdf, view: &View, sampling: &Sampling) -> R
             [sample % samples, sample / samples].map(|i| filter * ((i as f32 + 0.5) / samples as f32 - 0.5));
         (view.jitter[0] + shift[0], view.jitter[1] + shift[1])
     };
+    let count = samples * samples;
     let fills_pixels = samples > 1 && filter == 1.0;
-    if let Some(seen) = fills_pixels.then(|| screen.see_finely(size, samples, view.jitter)).flatten() {
-        for pixel in 0..size * size {
-            let corner = (pixel / size * samples) * seen.size + pixel % size * samples;
-            for sample in 0..samples * samples {
-                let triangle = seen.triangle[corner + sample / samples * seen.size + sample % samples];
-                add(pixel, triangle, offset(sample));
+    let finely = fills_pixels.then(|| screen.see_finely(size, samples, view.jitter)).flatten();
+    let triangles = match finely {
+        Some(seen) => by_pixel(&seen, samples),
+        None => {
+            let (mut seen, mut triangles) = (Visibility::default(), vec![NOTHING; size * size * count]);
+            for sample in 0..count {
+                screen.rasterise(size, offset(sample), None, &mut seen);
+                let of_sample = triangles[sample..].iter_mut().step_by(count);
+                of_sample.zip(&seen.triangle).for_each(|(to, &triangle)| *to = triangle);
             }
+            triangles
         }
-    } else {
-        let mut seen = Visibility::default();
-        for sample in 0..samples * samples {
-            screen.rasterise(size, offset(sample), None, &mut seen);
-            seen.triangle
-                .iter()
-                .enumerate()
-                .for_each(|(pixel, &triangle)| add(pixel, triangle, offset(sample)));
-        }
+    };
+    // Pixel by pixel: what the samples of one read of a texture lies close together, what their neighbours' do
+    // is often in other pages of memory.
+    for (pixel, triangles) in triangles.chunks_exact(count).enumerate() {
+        triangles.iter().enumerate().for_each(|(sample, &triangle)| add(pixel, triangle, offset(sample)));
     }
     let mut pixels = vec![[f16::ZERO; 4]; sum.len()];
     pixels.as_flattened_mut().convert_from_f32_slice(sum.as_flattened());
     Reference { view: *view, pixels }
+}
+
+/// What samples on one fine grid see, pixel by pixel, each row by row; `samples` are along a side of a pixel.
+fn by_pixel(seen: &Visibility, samples: usize) -> Vec<u32> {
+    let size = seen.size / samples;
+    let row = |pixel: usize, row: usize| {
+        let first = (pixel / size * samples + row) * seen.size + pixel % size * samples;
+        &seen.triangle[first..first + samples]
+    };
+    (0..size * size).flat_map(|pixel| (0..samples).flat_map(move |r| row(pixel, r))).copied().collect()
 }
 
 #[cfg(test)]
