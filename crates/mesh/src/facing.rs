@@ -54,6 +54,18 @@ pub fn face_outwards(mesh: &mut Mesh) -> usize {
     back.chunk_by(|a, b| a.0 == b.0).count()
 }
 
+/// Share of a mesh's area, 0 to 1, whose vertex normals look to the back of their triangles in the mean.
+pub fn area_facing_back(mesh: &Mesh) -> f64 {
+    let (mut all, mut back) = (0.0, 0.0);
+    for (index, corners) in mesh.triangles.iter().enumerate() {
+        let face = mesh.area_normal(index).as_dvec3();
+        let sum: DVec3 = corners.iter().map(|&vertex| mesh.normals[vertex as usize].as_dvec3()).sum();
+        all += face.length();
+        back += if sum.dot(face) < 0.0 { face.length() } else { 0.0 };
+    }
+    if all > 0.0 { back / all } else { 0.0 }
+}
+
 fn unit_normal(mesh: &Mesh, triangle: usize) -> DVec3 {
     let [a, b, c] = mesh.corners(triangle).map(Vec3::as_dvec3);
     (b - a).cross(c - a).normalize_or_zero()
@@ -120,6 +132,16 @@ mod tests {
         assert_eq!(upper(&mesh), upper(&before));
         assert_eq!(charts(&mesh), charts(&before), "no chart is cut");
         assert_eq!(face_outwards(&mut mesh), 0, "once is enough");
+    }
+
+    /// Protects the share that users are told of: areas count, not triangles.
+    #[test]
+    fn what_faces_back_is_measured_by_its_area() {
+        let mut mesh = fin();
+        assert!((area_facing_back(&mesh) - 1.0 / 2.5).abs() < 1e-6, "{}", area_facing_back(&mesh));
+        face_outwards(&mut mesh);
+        assert_eq!(area_facing_back(&mesh), 0.0);
+        assert_eq!(area_facing_back(&Mesh::default()), 0.0);
     }
 
     /// Protects good meshes: a closed box with smooth normals is left to the bit.

@@ -55,7 +55,7 @@ pub use bisect::{Bisected, Piece};
 pub use charts::{charts, texel_charts};
 pub use demo::{demo_low, demo_model, wall_low, wall_model};
 pub use distance::{DistanceOptions, SurfaceDistance, surface_distance};
-pub use facing::face_outwards;
+pub use facing::{area_facing_back, face_outwards};
 pub use material_uvs::material_uvs;
 pub use normals::{ensure_normals, smooth_normals};
 pub use projection::{HighSurface, SurfacePoint};

@@ -10,6 +10,7 @@
 //! Reference views depend on their [`ViewSet`] and not on the number of threads.
 
 use crate::alpha_in_effect::with_alpha_in_effect;
+use crate::contradicting_normals::contradicting_normals;
 use crate::error::PrepareError;
 use crate::extension_values::ExtensionSource;
 use crate::frame::{common_frame, needs_whole_material, placed};
@@ -104,8 +105,8 @@ pub struct HighPoly {
     pub emissive_strength: f32,
     /// What its materials' extensions say.
     pub extensions: ExtensionSource,
-    /// Sentences about materials that are not baked as the model has them: what asks for transparency and is opaque,
-    /// what is unlit beside lit ones.
+    /// Sentences about what a bake does not show as the model's maker may expect: what asks for transparency and is
+    /// opaque, what is unlit beside lit materials, normals that look to the back of their triangles.
     pub changed: Vec<String>,
     /// How much each triangle counts, for texels and for triangles of a low-poly; empty where all count alike.
     pub importances: Vec<f32>,
@@ -153,7 +154,7 @@ impl HighPoly {
             is_whole_material,
             emissive_strength,
             extensions,
-            changed: alpha.into_iter().chain(unlit).collect(),
+            changed: alpha.into_iter().chain(unlit).chain(contradicting_normals(&model.mesh)).collect(),
             importances: Vec::new(),
             kept: None,
         })

@@ -14,6 +14,7 @@ pub mod alpha_layers;
 pub mod backs;
 pub mod chart_labels;
 mod coat_normals;
+mod contradicting_normals;
 mod error;
 pub mod extension_maps;
 pub mod extension_values;
