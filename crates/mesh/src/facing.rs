@@ -54,7 +54,8 @@ pub fn face_outwards(mesh: &mut Mesh) -> usize {
     back.chunk_by(|a, b| a.0 == b.0).count()
 }
 
-/// Share of a mesh's area, 0 to 1, whose vertex normals look to the back of their triangles in the mean.
+/// Share of a mesh's area, 0 to 1, on triangles whose mean vertex normal points to their back; 0 without area. The mesh
+/// has V normals.
 pub fn area_facing_back(mesh: &Mesh) -> f64 {
     let (mut all, mut back) = (0.0, 0.0);
     for (index, corners) in mesh.triangles.iter().enumerate() {

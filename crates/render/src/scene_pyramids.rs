@@ -16,7 +16,7 @@ pub(crate) struct Map {
     /// Index into the scene's pyramids.
     pub pyramid: usize,
     moved: bool,
-    /// The same number for maps that are read at the same coordinates, as most of a material are.
+    /// Maps with the same number have the same UV set and transform, as most maps of a material do.
     pub coordinates: usize,
 }
 
@@ -56,7 +56,7 @@ pub(crate) struct Pyramids<'a> {
     pub all: Vec<Pyramid<3>>,
     /// Image, encoding (none of opacity) and wrap modes of each pyramid.
     built: Vec<(usize, Option<Encoding>, [Wrap; 2])>,
-    /// Set of coordinates and transform of each number that maps have for these.
+    /// UV set and transform that each number of [`Map::coordinates`] stands for.
     coordinates: Vec<(u8, UvTransform)>,
 }
 

@@ -262,13 +262,16 @@ pub fn fit_shape(
     if let Some(projected) = &projected {
         keep_sides(&mut moving, &fit, projected, &measured);
     }
-    let mut after = fit.look(moving.at(), &provisional.texture, &measured).outline;
+    let has_moved = !losses.is_empty();
+    let mut after = before.outline;
+    if has_moved {
+        after = fit.look(moving.at(), &provisional.texture, &measured).outline;
+    }
     fit.views = checks;
     let cost = |at: &[Vec3]| {
         let outline = fit.look(at, &provisional.texture, &seen.checked.measured()).outline;
         f64::from(1.0 - discount) * outline.overhang + outline.underhang
     };
-    let has_moved = !losses.is_empty();
     if has_moved && cost(moving.at()) > options.worth_moving * cost(&points.rest) {
         moving.reset();
         after = before.outline;

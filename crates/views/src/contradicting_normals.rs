@@ -1,22 +1,23 @@
-//! Vertex normals that contradict the order of their triangles' corners: careless exports have them, of mirrored parts
-//! above all. Renderers take the side from the order and turn the normal with it, so such surfaces are dark from outside.
+//! Vertex normals that contradict the winding order of their triangles, as exports of mirrored parts often have them.
+//! Renderers take the front from the winding order and flip normals on back faces, so such surfaces are dark from outside.
 //!
-//! Contract: a model is told of, never changed. Its picture is what a bake is fitted to.
+//! Contract: the model is not changed, since a bake shows what its high-poly shows; the user is warned.
 
 use parbake_mesh::area_facing_back;
 use parbake_model::Mesh;
 
-/// Share of the area from which on it is worth a word.
+/// Share of the area above which the user is warned: single slivers with smooth normals are no fault.
 const WORTH_A_WORD: f64 = 0.01;
 
-/// A sentence about a mesh whose own normals look to the back of its triangles; none where it has no normals.
+/// A warning about a mesh whose vertex normals point to the back of its triangles; none where the mesh has no normals,
+/// or hardly any such area.
 pub(crate) fn contradicting_normals(mesh: &Mesh) -> Option<String> {
     let has_own = !mesh.normals.is_empty() && mesh.normals.len() == mesh.positions.len();
     let share = if has_own { area_facing_back(mesh) } else { 0.0 };
     (share > WORTH_A_WORD).then(|| {
         format!(
-            "on {:.0} % of the surface vertex normals point to the back of their triangles; it is dark there, and so \
-             is the bake: recalculate normals in the tool that made the model, or export it without any",
+            "on {:.0} % of the surface, vertex normals point to the back of their triangles, so it renders dark there, \
+             and so does the bake; recalculate normals in your modelling tool, or export the model without normals",
             100.0 * share
         )
     })

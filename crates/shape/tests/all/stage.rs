@@ -125,6 +125,17 @@ fn a_mesh_that_fits_stays() {
     assert_eq!(report.moved, [0.0; 2]);
 }
 
+/// Protects time: where finely sampled views show outlines in one place, no step is taken.
+#[test]
+fn outlines_that_agree_take_no_steps() {
+    let model = ball("same", 3, 1.0);
+    let plan = ShapePlan { samples: 8, ..plan(Motion::Free) };
+    let mut mesh = model.mesh.clone();
+    let (report, _) = shape("low", &mut mesh, &prepared(&model), &plan, &()).expect("it has coordinates");
+    assert_eq!(report.steps, 0, "{:?}", report.gap);
+    assert_eq!((mesh.positions, report.gap[1]), (model.mesh.positions, report.gap[0]));
+}
+
 /// Protects outlines that are close from views whose pixels do not show how close, and time where they are far apart.
 #[test]
 fn close_outlines_are_looked_at_closely() {
