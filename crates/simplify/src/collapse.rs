@@ -14,7 +14,7 @@
 //! go, at more only where nothing can.
 
 use crate::change::Change;
-use crate::pictures::{Pictures, Scratch};
+use crate::pictures::Pictures;
 use crate::surface::Surface;
 use glam::{DMat3, DVec3, Vec3};
 use parbake_mesh::union_find::UnionFind;
@@ -116,15 +116,14 @@ pub fn collapse_to(pictures: &mut Pictures, target: usize, watcher: &dyn Watcher
                 queue.extend(evaluate(pictures, candidates(&pictures.surface), &versions));
                 continue;
             };
-            let ways = ways(&pictures.surface, &part).into_iter();
-            if let Some((_, change)) = pictures.best_of_on_all_cores(ways) {
+            if let Some((_, change)) = pictures.best_of(ways(&pictures.surface, &part)) {
                 pictures.apply(&change);
             }
             continue;
         };
         if version(&pictures.surface, &top.candidate, &versions) == top.version {
-            let ways = ways(&pictures.surface, &top.candidate).into_iter();
-            let Some((_, change)) = pictures.best_of_on_all_cores(ways) else { continue };
+            let ways = ways(&pictures.surface, &top.candidate);
+            let Some((_, change)) = pictures.best_of(ways) else { continue };
             let excess = pictures.surface.count() - target;
             if change.added.is_empty() && change.removed.len() > excess + 1 {
                 too_large.push(top.candidate);
@@ -184,17 +183,15 @@ fn version(surface: &Surface, candidate: &Candidate, versions: &[u64]) -> u64 {
 
 /// Those that can be done, with what they cost.
 fn evaluate(pictures: &Pictures, candidates: Vec<Candidate>, versions: &[u64]) -> Vec<Entry> {
-    candidates
-        .into_par_iter()
-        .map_init(Scratch::default, |scratch, candidate| {
-            let surface = &pictures.surface;
-            let (gain, change) = pictures.best_of(ways(surface, &candidate).into_iter(), scratch)?;
-            let cost = cost(surface, gain, &change);
-            let version = version(surface, &candidate, versions);
-            Some(Entry { cost, candidate, version })
-        })
-        .flatten()
-        .collect()
+    let surface = &pictures.surface;
+    let best = pictures.best_of_each(candidates.par_iter().map(|own| ways(surface, own)).collect());
+    let entry = |(candidate, best): (Candidate, Option<(f64, Change)>)| {
+        let (gain, change) = best?;
+        let cost = cost(surface, gain, &change);
+        let version = version(surface, &candidate, versions);
+        Some(Entry { cost, candidate, version })
+    };
+    candidates.into_iter().zip(best).filter_map(entry).collect()
 }
 
 /// The ways to do it.

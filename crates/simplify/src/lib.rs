@@ -6,6 +6,7 @@ pub mod change;
 pub mod choose;
 pub mod collapse;
 mod creases;
+mod growth;
 pub mod operations;
 pub mod pictures;
 pub mod polish;
@@ -14,6 +15,7 @@ pub mod start;
 pub mod surface;
 pub mod target;
 pub mod triangle;
+mod view;
 
 pub use choose::{ChooseOptions, Chosen, LayerReport, StartReport, choose_triangles, least_triangles};
 pub use start::{CoarseSurfaces, Start};

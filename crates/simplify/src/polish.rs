@@ -12,7 +12,7 @@
 
 use crate::change::Change;
 use crate::collapse::{collapse_to, least_squares};
-use crate::pictures::{Pictures, Scratch};
+use crate::pictures::Pictures;
 use crate::surface::Surface;
 use crate::target::Target;
 use glam::Vec3;
@@ -190,15 +190,12 @@ fn sweep<T: Sync + Send>(
     places: Vec<T>,
     trials: impl Fn(&Surface, &T) -> Vec<Change> + Sync,
 ) {
-    let mut order: Vec<(f64, usize, Change)> = places
-        .par_iter()
-        .enumerate()
-        .map_init(Scratch::default, |scratch, (index, place)| {
-            let best = pictures.best_of(trials(&pictures.surface, place).into_iter(), scratch);
-            best.filter(|(gain, _)| *gain > 0.0).map(|(gain, change)| (gain, index, change))
-        })
-        .flatten()
-        .collect();
+    let of_all = places.par_iter().map(|place| trials(&pictures.surface, place)).collect();
+    let best = pictures.best_of_each(of_all).into_iter().enumerate();
+    let with_index = |(index, best): (usize, Option<(f64, Change)>)| {
+        best.filter(|(gain, _)| *gain > 0.0).map(|(gain, change)| (gain, index, change))
+    };
+    let mut order: Vec<(f64, usize, Change)> = best.filter_map(with_index).collect();
     order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     let mut is_changed = vec![false; pictures.surface.points.len()];
     for (_, index, change) in order {
@@ -209,8 +206,8 @@ fn sweep<T: Sync + Send>(
         let is_stale =
             around.len() < 3 * change.removed.len() || around.iter().any(|&p| is_changed[p as usize]);
         let change = if is_stale {
-            let trials = trials(&pictures.surface, &places[index]).into_iter();
-            pictures.best_of_on_all_cores(trials).filter(|(gain, _)| *gain > 0.0).map(|best| best.1)
+            let trials = trials(&pictures.surface, &places[index]);
+            pictures.best_of(trials).filter(|(gain, _)| *gain > 0.0).map(|best| best.1)
         } else {
             Some(change)
         };
@@ -259,17 +256,15 @@ fn split_worst(pictures: &mut Pictures, high: &HighPoly, count: usize) {
             .collect()
     };
     let errors = pictures.errors_by_triangle();
-    let mut order: Vec<(f64, usize)> = edges
-        .par_iter()
-        .enumerate()
-        .map_init(Scratch::default, |scratch, (index, edge)| {
-            let (gain, change) = pictures.best_of(trials(&pictures.surface, edge).into_iter(), scratch)?;
-            // What is wrong there may be mended once the new point has moved.
-            let hope: f64 = change.removed.iter().map(|&t| errors[t as usize]).sum();
-            Some((gain + 0.1 * hope / pictures.pixels(), index))
-        })
-        .flatten()
-        .collect();
+    let of_all = edges.par_iter().map(|edge| trials(&pictures.surface, edge)).collect();
+    let best = pictures.best_of_each(of_all).into_iter().enumerate();
+    let with_hope = |(index, best): (usize, Option<(f64, Change)>)| {
+        let (gain, change) = best?;
+        // What is wrong there may be mended once the new point has moved.
+        let hope: f64 = change.removed.iter().map(|&t| errors[t as usize]).sum();
+        Some((gain + 0.1 * hope / pictures.pixels(), index))
+    };
+    let mut order: Vec<(f64, usize)> = best.filter_map(with_hope).collect();
     order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     let mut added = 0;
     for (_, index) in order {
@@ -280,8 +275,7 @@ fn split_worst(pictures: &mut Pictures, high: &HighPoly, count: usize) {
         if pictures.surface.at_edge(a, b).is_empty() {
             continue;
         }
-        let trials = trials(&pictures.surface, &edges[index]).into_iter();
-        if let Some((_, change)) = pictures.best_of_on_all_cores(trials) {
+        if let Some((_, change)) = pictures.best_of(trials(&pictures.surface, &edges[index])) {
             added += change.added.len() - change.removed.len();
             pictures.apply(&change);
         }

@@ -8,7 +8,7 @@ use parbake_render::camera::Projection;
 use parbake_render::interpretation::Interpretation;
 use parbake_simplify::change::Change;
 use parbake_simplify::collapse::collapse_to;
-use parbake_simplify::pictures::{Pictures, Scratch};
+use parbake_simplify::pictures::Pictures;
 use parbake_simplify::polish::PolishOptions;
 use parbake_simplify::surface::Surface;
 use parbake_simplify::target::Target;
@@ -100,7 +100,6 @@ fn gains_are_what_changes_do() {
     let mut pictures = Pictures::new(&targets, Surface::new(&sphere(6)));
     let start = pictures.error();
     assert!(start > 0.0 && pictures.surface.count() == 6 * 12 * 2 - 24);
-    let mut scratch = Scratch::default();
     let mut kinds = [0; 4];
     for step in 0..60u32 {
         let edges = pictures.surface.edges();
@@ -115,7 +114,8 @@ fn gains_are_what_changes_do() {
         };
         let Some(change) = change else { continue };
         kinds[step as usize % 4] += 1;
-        let (before, said) = (pictures.error(), pictures.gain_of(&change, &mut scratch));
+        let before = pictures.error();
+        let (said, _) = pictures.best_of(vec![change.clone()]).unwrap();
         pictures.apply(&change);
         let anew = Pictures::new(&targets, pictures.surface.clone()).error();
         assert!((pictures.error() - anew).abs() < 1e-7, "what is kept is what is drawn: {step}");
