@@ -14,8 +14,8 @@ export function findBrowser() {
   return [process.env.CHROMIUM, ...PLACES].find((place) => place && fs.existsSync(place)) ?? null;
 }
 
-export function launch() {
-  return puppeteer.launch({ executablePath: findBrowser(), protocolTimeout: 180_000, args: FLAGS });
+export function launch(more = []) {
+  return puppeteer.launch({ executablePath: findBrowser(), protocolTimeout: 180_000, args: [...FLAGS, ...more] });
 }
 
 /** Starts the command; gives its address, and a function that ends it. */

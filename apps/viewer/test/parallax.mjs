@@ -12,6 +12,7 @@ import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import { drawn, findBrowser, launch, settled, watchedPage } from './browser.mjs';
 import { readFilm } from './film.mjs';
+import { MODELS, NUMBERS, NUMBERS_AT, modelOf } from './parallax_models.mjs';
 import { parallaxModel } from './parallax_model.mjs';
 import { below, serve, servePage } from './serve.mjs';
 
@@ -33,29 +34,6 @@ const verify = (isTrue, what) => {
 };
 const browser = await launch();
 
-const MODELS = {
-  ball: {},
-  'no offsets': { reach: 0 },
-  'no tangents': { change: (json) => { delete json.meshes[0].primitives[0].attributes.TANGENT; } },
-  'no normals': { change: (json) => { for (const key of ['NORMAL', 'TANGENT']) delete json.meshes[0].primitives[0].attributes[key]; } },
-  'no normal map': { change: (json) => { delete json.materials[0].normalTexture; } },
-  'no colour map': { change: (json) => { delete json.materials[0].pbrMetallicRoughness.baseColorTexture; } },
-  'alpha test': { change: (json) => { json.materials[0].alphaMode = 'MASK'; } },
-  'blended': { change: (json) => { json.materials[0].alphaMode = 'BLEND'; } },
-  'clearcoat': { change: (json) => {
-    const texture = { index: 4 };
-    json.extensionsUsed.push('KHR_materials_clearcoat');
-    json.materials[0].extensions.KHR_materials_clearcoat = { clearcoatFactor: 1, clearcoatTexture: texture, clearcoatNormalTexture: texture };
-  } },
-  'no cutout': { change: (_, map) => { delete map.cutout; } },
-  'fades': { change: (_, map) => { map.fadeFootprint = 0.01; } },
-  'faded': { reach: 0, change: (_, map) => { map.fadeFootprint = 1e-6; } },
-  'own textures': { change: (json, map) => { Object.assign(map, { baseColorTexture: { index: 4 }, normalTexture: { index: 4 } }); } },
-  'next version': { change: (_, map) => { map.version = 3; } },
-  'too few numbers': { change: (_, map) => { map.scale.pop(); } },
-  'no image': { change: (json) => { json.bufferViews[json.images[2].bufferView] = { buffer: 0, byteOffset: 0, byteLength: 16 }; } },
-};
-
 async function ofPackage() {
   const { outputFiles: [script] } = await esbuild.build({
     entryPoints: [path.join(here, 'parallax_lab.js')], bundle: true, format: 'esm', write: false, absWorkingDir: viewer,
@@ -63,17 +41,14 @@ async function ofPackage() {
   });
   const { url, stop } = await serve((name) => ({
     'index.html': '<!doctype html><link rel="icon" href="data:,"><script type="module" src="lab.js"></script>', 'lab.js': script.text,
-  })[name] ?? (MODELS[name] && parallaxModel(MODELS[name])));
+  })[name] ?? modelOf(name));
   const { page, errors } = await watchedPage(browser, { width: 400, height: 300 });
   await page.goto(url);
   await page.waitForFunction(() => window.lab);
   const run = (...args) => page.evaluate((all) => window.lab.run(...all), args);
 
-  const have = await run('numbers', [0.48, -0.6, 0.64]), want = [
-    1, 0.484974, -0.855072, -0.966018, 0.831384, -1.03923, 0.904181, -1.130226, -0.250969, -1.115419, -0.852992, -0.415653,
-    0.48, -0.6, 0.3072, -0.384, 0.48 / 0.25,
-  ];
-  want.forEach((number, k) => verify(Math.abs(have[k] - number) < 2e-5, `function ${k} is ${have[k]}, not ${number}`));
+  const have = await run('numbers', NUMBERS_AT);
+  NUMBERS.forEach((number, k) => verify(Math.abs(have[k] - number) < 2e-5, `function ${k} is ${have[k]}, not ${number}`));
 
   const { changed, back, materials } = await run('switching', 'ball');
   verify(changed > 0.05 && back === 0 && materials === 1, `the switch: ${changed} changed, ${back} on the way back, ${materials} materials`);
@@ -122,26 +97,25 @@ async function ofPackage() {
   await stop();
 }
 
-/** The package's own page. */
-async function ofExample() {
+/** A page of the package, and what it is called in the folder of pictures. */
+async function ofExample(file, called) {
   const folder = path.join(viewer, '../../integrations/three');
   const { url, stop } = await serve((name) => {
     if (name === 'ball.glb') return parallaxModel();
-    if (name === 'example/') return fs.readFileSync(path.join(folder, 'example/index.html'));
     return name.startsWith('node_modules/three/') ? below(viewer, name) : below(folder, name);
   });
   const { page, errors, outside } = await watchedPage(browser, { width: 500, height: 400 });
-  await page.goto(`${url}example/?model=/ball.glb`);
+  await page.goto(`${url}example/${file}?model=/ball.glb`);
   await page.waitForFunction(() => document.getElementById('told').textContent.includes('with parallax maps'));
   const shot = async (name) => {
     // Two frames later.
     await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
     return Buffer.from(await page.screenshot({ path: path.join(out, `${name}.png`), clip: { x: 0, y: 60, width: 500, height: 340 } }));
   };
-  const on = await shot('example_on');
+  const on = await shot(`${called}_on`);
   await page.click('#parallax');
-  verify(!on.equals(await shot('example_off')), 'the example: its switch changes the picture');
-  verify(errors.length === 0 && outside.length === 0, `the example: ${errors.join(' | ')} ${outside.join(' ')}`);
+  verify(!on.equals(await shot(`${called}_off`)), `${called}: its switch changes the picture`);
+  verify(errors.length === 0 && outside.length === 0, `${called}: ${errors.join(' | ')} ${outside.join(' ')}`);
   await page.close();
   await stop();
 }
@@ -242,7 +216,8 @@ async function tellCosts(name, page) {
 }
 
 await ofPackage();
-await ofExample();
+await ofExample('index.html', 'example');
+await ofExample('webgpu.html', 'example_nodes');
 const ball = path.join(out, 'ball.glb');
 fs.writeFileSync(ball, parallaxModel());
 await ofPage('ball', fs.readFileSync(ball), null);

@@ -1,8 +1,9 @@
 // Depth passes of what is cut out: shadow maps, and prepasses with the camera's own depth. They discard what the line
 // of sight misses, towards the light or the camera that draws them.
 import { MeshDepthMaterial, MeshDistanceMaterial, ShaderChunk } from 'three';
+import { OFFSET } from './format.js';
 import { SIDE } from './glsl.js';
-import { OFFSET, defines, patchFragment, patchVertex } from './patch.js';
+import { defines, patchFragment, patchVertex } from './patch.js';
 
 // Shadow passes leave normalMatrix as the camera's, but not modelViewMatrix.
 const NORMALS = ['beginnormal_vertex', 'morphnormal_vertex', 'skinnormal_vertex', 'defaultnormal_vertex', 'normal_vertex']

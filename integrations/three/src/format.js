@@ -2,6 +2,8 @@
 
 export const NAME = 'PARBAKE_materials_parallax';
 const VERSION = 2;
+/** The attribute of vertex offsets, as GLTFLoader names it. */
+export const OFFSET = '_parallax_offset';
 /** Layers of four channels in an image, one below the other. */
 export const LAYERS = { shift: 2, cutout: 3 };
 

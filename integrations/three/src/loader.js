@@ -1,9 +1,8 @@
-// The plug-in of GLTFLoader: reads the extension, loads its images, and gives the materials their maps.
+// What plug-ins of GLTFLoader have in common: reads the extension, and loads its images. Which materials get the maps is
+// up to the renderer.
 import { ClampToEdgeWrapping, LinearFilter, NoColorSpace, SRGBColorSpace, Vector3 } from 'three';
-import { ParallaxMaps, applyParallax } from './material.js';
-import { NAME, readParallax, withOwnTextures } from './format.js';
-import { addShadowMaterials } from './depth.js';
-import { OFFSET } from './patch.js';
+import { NAME, OFFSET, readParallax, withOwnTextures } from './format.js';
+import { ParallaxMaps } from './maps.js';
 
 const warn = (text) => console.warn(`${NAME}: ${text}`);
 
@@ -40,20 +39,19 @@ function growBounds(root) {
   });
 }
 
-/** `loader.register((parser) => new ParallaxPlugin(parser))` */
-export class ParallaxPlugin {
-  /**
-   * `alphaToCoverage: false` leaves the borders of cutouts jagged where the target has several samples. `fallback: true`
-   * also loads the textures for other viewers, which are shown while maps are switched off.
-   */
-  constructor(parser, { alphaToCoverage = true, fallback = false } = {}) {
+/** The base of the plug-ins; they have `give(material, maps, fallback)`, which returns the material with its maps. */
+export class MapLoader {
+  /** `fallback: true` also loads the textures for other viewers, which are shown while maps are switched off. */
+  constructor(parser, { fallback = false } = {}) {
     this.name = NAME;
     this.parser = parser;
-    this.options = { alphaToCoverage };
     this.loadsFallback = fallback;
     this.maps = [];
     this.plain = [];
   }
+
+  /** A scene is loaded. */
+  finish(scene) { growBounds(scene); }
 
   beforeRoot() {
     const { json } = this.parser;
@@ -78,7 +76,7 @@ export class ParallaxPlugin {
       if (!material.isMeshStandardMaterial) throw new Error('the material is not lit, and this reads lit ones');
       if (!shift?.image || (map.cutout && !cut?.image)) throw new Error('an image of it cannot be read');
       const cutout = map.cutout && { ...map.cutout, texture: asData(cut) };
-      applyParallax(material, new ParallaxMaps({ ...map, texture: asData(shift), cutout }), { ...this.options, fallback });
+      return this.give(material, new ParallaxMaps({ ...map, texture: asData(shift), cutout }), fallback);
     } catch (error) {
       warn(`the parallax map of material "${material.name}" was left out: ${error.message}`);
     }
@@ -98,10 +96,7 @@ export class ParallaxPlugin {
   }
 
   afterRoot({ scenes }) {
-    for (const scene of scenes) {
-      growBounds(scene);
-      addShadowMaterials(scene);
-    }
+    for (const scene of scenes) this.finish(scene);
     return null;
   }
 }

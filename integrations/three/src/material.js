@@ -1,36 +1,9 @@
 // The parallax of a material: MeshStandardMaterial and MeshPhysicalMaterial stay three.js' own; their shaders get the
 // format's formulas before they are compiled. Everything else of three.js goes on as it is.
-import { CustomBlending, MaxEquation, OneFactor, Vector2, Vector4, ZeroFactor } from 'three';
+import { OFFSET } from './format.js';
 import { SIDE } from './glsl.js';
-import { LAYERS } from './format.js';
-import { OFFSET, defines, patchFragment, patchVertex } from './patch.js';
-
-const vectors = (numbers) => Array.from({ length: numbers.length / 4 }, (_, i) => new Vector4(...numbers.slice(4 * i, 4 * i + 4)));
-
-function rowsOf(texture, layers) {
-  const { height } = texture.image;
-  if (height % layers) throw new Error(`an image of ${height} rows has no ${layers} layers of one height`);
-  return new Vector2(height / layers, height);
-}
-
-/** The maps of one or more materials, as the shaders have them. */
-export class ParallaxMaps {
-  /** `texture` and `cutout.texture` are textures; the rest is as in the format. */
-  constructor({ texture, scale, offset, limit = 0.25, fadeFootprint = Infinity, cutout = null }) {
-    this.textures = cutout ? [texture, cutout.texture] : [texture];
-    this.hasCutout = Boolean(cutout);
-    this.isFading = Number.isFinite(fadeFootprint);
-    this.uniforms = {
-      parallaxMap: { value: texture }, parallaxScale: { value: vectors(scale) }, parallaxOffset: { value: vectors(offset) },
-      parallaxRows: { value: rowsOf(texture, LAYERS.shift) }, parallaxLimit: { value: limit },
-      parallaxFootprint: { value: fadeFootprint }, parallaxIsMultisampled: { value: false },
-    };
-    if (cutout) Object.assign(this.uniforms, {
-      parallaxCutoutMap: { value: cutout.texture }, parallaxCutoutScale: { value: vectors(cutout.scale) },
-      parallaxCutoutOffset: { value: vectors(cutout.offset) }, parallaxCutoutRows: { value: rowsOf(cutout.texture, LAYERS.cutout) },
-    });
-  }
-}
+import { BORDERS } from './maps.js';
+import { defines, patchFragment, patchVertex } from './patch.js';
 
 /** `material.parallax`: the switch, and what it switches. */
 class Parallax {
@@ -157,11 +130,7 @@ export function applyParallax(material, maps, { alphaToCoverage = true, fallback
   };
   if (maps.hasCutout && alphaToCoverage && !material.transparent) {
     material.alphaToCoverage = true;
-    // Alpha chooses the samples, and is then no longer wanted: over an opaque background it stays 1.
-    Object.assign(material, {
-      blending: CustomBlending, blendSrc: OneFactor, blendDst: ZeroFactor, blendSrcAlpha: OneFactor, blendDstAlpha: OneFactor,
-      blendEquationAlpha: MaxEquation,
-    });
+    Object.assign(material, BORDERS);
   }
   return material;
 }
@@ -184,18 +153,4 @@ export function followOffsets(material) {
     isOn = on;
     material.needsUpdate = true;
   };
-}
-
-/** All materials below an object that have parallax maps. */
-export function parallaxMaterials(root) {
-  const found = new Set();
-  root.traverse((object) => {
-    for (const material of [object.material ?? []].flat()) if (material.parallax) found.add(material);
-  });
-  return [...found];
-}
-
-/** Switches the maps of all materials below an object on or off. */
-export function setParallax(root, isOn) {
-  for (const material of parallaxMaterials(root)) material.parallax.enabled = isOn;
 }

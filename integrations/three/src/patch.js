@@ -1,5 +1,6 @@
 // Puts the parallax into a shader of three.js, by exchanging whole chunks; what other patches look for stays there.
 import { ShaderChunk } from 'three';
+import { OFFSET } from './format.js';
 import { BEGIN, DECLARED, REACH } from './glsl.js';
 
 /** A fetch of one of the material's maps. Baked light has a layout of its own, and no depth. */
@@ -15,9 +16,6 @@ function shiftFetches(fragment) {
 }
 
 export const defines = (names) => names.map((name) => `#define ${name}\n`).join('');
-
-/** The attribute of vertex offsets, as GLTFLoader names it. */
-export const OFFSET = '_parallax_offset';
 
 /** The vertex shader with the offsets in it. */
 export function patchVertex(vertex) {
