@@ -70,3 +70,19 @@ pub struct Model {
     /// rest. Writers give each a mesh of its own in the node's space; all else that a model was read from is joined.
     pub parts: Option<Hierarchy>,
 }
+
+impl Model {
+    /// Drops the triangles, of F, that are not kept, with all that is said of them; vertices stay.
+    pub fn retain_triangles(&mut self, kept: &[bool]) {
+        fn retain<T>(values: &mut Vec<T>, kept: &[bool]) {
+            let mut kept = kept.iter();
+            values.retain(|_| kept.next().copied().unwrap_or(true));
+        }
+        retain(&mut self.mesh.triangles, kept);
+        retain(&mut self.mesh.triangle_materials, kept);
+        retain(&mut self.painted, kept);
+        for hierarchy in self.nodes.iter_mut().chain(&mut self.parts) {
+            retain(&mut hierarchy.of_triangles, kept);
+        }
+    }
+}

@@ -20,6 +20,7 @@ pub mod extension_maps;
 pub mod extension_values;
 pub mod frame;
 pub mod gutter;
+pub mod hidden;
 pub mod high_poly;
 pub mod importance;
 pub mod joint_extensions;

@@ -69,13 +69,14 @@ pub(crate) struct Figures {
 }
 
 impl<'a> Maker<'a> {
-    pub fn new(model: &'a Model, options: &'a LodOptions) -> Result<Self, BakeError> {
+    /// `whole` is how many triangles the model has with its hidden parts, of which ratios are.
+    pub fn new(model: &'a Model, whole: usize, options: &'a LodOptions) -> Result<Self, BakeError> {
         let high = prepare_high_poly(model, &options.bake(options.max_texture_size))?;
         options.triangles.iter().try_for_each(|&count| check_triangles(&high, model, count))?;
         let least = least_of(&high, model);
         let screens = ScreenComparison::new(model);
         let original = screens.place(&with_face_tangents(model))?;
-        let wanted = wanted_triangles(&high, options, least);
+        let wanted = wanted_triangles(&high, whole, options, least);
         let start = coarse_surfaces(&high, model);
         Ok(Self { model, high, options, screens, original, least, wanted, start })
     }
@@ -222,15 +223,21 @@ fn with_room<T>(
     }
 }
 
+/// Triangles for each pixel of a square as wide as a level, at the default error: machines of many small parts would have
+/// several under each pixel.
+const TRIANGLES_A_PIXEL: f64 = 1.0;
+
 /// Triangles of each level, of which none has fewer than `least`.
-fn wanted_triangles(high: &HighPoly, options: &LodOptions, least: usize) -> Vec<usize> {
+fn wanted_triangles(high: &HighPoly, whole: usize, options: &LodOptions, least: usize) -> Vec<usize> {
     let wanted = |level: usize| match (options.triangles.get(level), options.ratio.get(level)) {
         (Some(&count), _) => count,
-        (None, Some(share)) => ((share * high.triangles as f64).round() as usize).max(least),
+        (None, Some(share)) => ((share * whole as f64).round() as usize).max(least),
         (None, None) => {
             // The longest side is 2 long in the common frame.
-            let error = 2.0 * options.error / options.screen_size[level];
-            triangles_within(high.scene.mesh(), error as f32).max(least)
+            let (size, error) = (options.screen_size[level], options.error);
+            let needed = triangles_within(high.scene.mesh(), (2.0 * error / size) as f32);
+            let closer = LodOptions::default().error / error;
+            needed.min((TRIANGLES_A_PIXEL * size * size * closer) as usize).max(least)
         }
     };
     (0..options.screen_size.len()).into_par_iter().map(wanted).collect()

@@ -42,6 +42,7 @@ use parbake_mesh::parts::{draw_calls, part_reports, with_kept_parts, with_parted
 use parbake_model::Model;
 use parbake_progress::{Message, Watcher};
 use parbake_views::alpha_in_effect::with_alpha_in_effect;
+use parbake_views::hidden::without_hidden;
 use std::borrow::Cow;
 use std::time::Instant;
 use written::as_written;
@@ -63,8 +64,9 @@ pub fn make_levels<E: From<BakeError>>(
     let start = Instant::now();
     let kept = with_kept_parts(model, &options.keep_parts).map_err(BakeError::from)?;
     let parted = with_parted_materials(&kept);
-    let model = &*with_settled_alpha(&parted, watcher);
-    let maker = Maker::new(model, options)?;
+    let settled = with_settled_alpha(&parted, watcher);
+    let model = &*without_hidden_parts(&settled, options, watcher)?;
+    let maker = Maker::new(model, settled.mesh.triangles.len(), options)?;
     let sizes = (0..options.screen_size.len())
         .map(|level| (maker.wanted[level], maker.texture_size(model, options.screen_size[level])));
     let mut chain = Chain::new(watcher, start, options, &sizes.collect::<Vec<_>>());
@@ -118,10 +120,91 @@ pub fn make_levels<E: From<BakeError>>(
     Ok(count)
 }
 
+/// The model without parts that are seen from no side. One that moves may show them, and parts that were named stay.
+fn without_hidden_parts<'a>(
+    model: &'a Model,
+    options: &LodOptions,
+    watcher: &dyn Watcher,
+) -> Result<Cow<'a, Model>, BakeError> {
+    if options.keep_hidden || model.rig.is_some() || model.parts.is_some() {
+        return Ok(Cow::Borrowed(model));
+    }
+    let Some(found) = without_hidden(model)? else { return Ok(Cow::Borrowed(model)) };
+    let ([parts, all_parts], [triangles, all]) = (found.parts, found.triangles);
+    watcher.message(Message::Warning(format!(
+        "{}: levels go without {parts} of {all_parts} parts ({triangles} of {all} triangles), which are seen from no side; \
+         --keep-hidden keeps them",
+        model.name
+    )));
+    Ok(Cow::Owned(found.model))
+}
+
 /// The model with the alpha modes that have an effect; levels that keep its materials have them, too.
 fn with_settled_alpha<'a>(model: &'a Model, watcher: &dyn Watcher) -> Cow<'a, Model> {
     let (materials, told) = with_alpha_in_effect(model);
     let Some(told) = told else { return Cow::Borrowed(model) };
     watcher.message(Message::Warning(format!("{}: {told}", model.name)));
     Cow::Owned(Model { materials: materials.into_owned(), ..model.clone() })
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use parbake_model::glam::Vec3;
+    use parbake_model::{Material, Mesh};
+    use std::sync::Mutex;
+
+    struct Warnings(Mutex<Vec<String>>);
+
+    impl Watcher for Warnings {
+        fn message(&self, message: Message) {
+            if let Message::Warning(text) = message {
+                self.0.lock().unwrap().push(text);
+            }
+        }
+    }
+
+    /// An octahedron in another one.
+    fn nested() -> Model {
+        let mut mesh = Mesh::default();
+        for half in [1.0f32, 0.3] {
+            let first = mesh.positions.len() as u32;
+            let axes = [Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+            mesh.positions.extend(axes.map(|axis| half * axis));
+            let ring = (0..4u32).map(|k| [first + k, first + (k + 1) % 4]);
+            mesh.triangles.extend(ring.flat_map(|[a, b]| [[a, b, first + 4], [b, a, first + 5]]));
+        }
+        mesh.triangle_materials = vec![0; mesh.triangles.len()];
+        Model { name: "nested".into(), mesh, materials: vec![Material::default()], ..Model::default() }
+    }
+
+    /// Protects triangles and texels from going to what nobody sees, those who want it all the same, and ratios, which are of
+    /// the whole model.
+    #[test]
+    fn levels_go_without_hidden_parts() {
+        let made = |keep_hidden: bool| {
+            let options = LodOptions {
+                screen_size: vec![16.0],
+                ratio: vec![1.0],
+                max_texture_size: 32,
+                time_budget: Some(1.0),
+                keep_hidden,
+                ..LodOptions::default()
+            };
+            let (told, mut least) = (Warnings(Mutex::default()), f32::INFINITY);
+            make_levels::<BakeError>(&nested(), &options, &told, |level| {
+                let lengths = level.baked.model.mesh.positions.iter().map(|p| p.length());
+                least = lengths.fold(least, f32::min);
+                Ok(())
+            })
+            .unwrap();
+            let told = told.0.into_inner().unwrap();
+            (least, told.iter().any(|text| text.contains("1 of 2 parts (8 of 16 triangles)")))
+        };
+        let (least, is_told) = made(false);
+        assert!(least > 0.5 && is_told, "{least}");
+        let (least, is_told) = made(true);
+        assert!(least < 0.5 && !is_told, "{least}");
+    }
 }

@@ -19,7 +19,8 @@ pub struct LodOptions {
     #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "PIXELS", default_values_t = [300.0, 100.0, 50.0], help_heading = LEVELS))]
     pub screen_size: Vec<f64>,
 
-    /// Triangles of each level, at most, 4 or more; as many numbers as levels [default: as many as --error needs]
+    /// Triangles of each level, at most, 4 or more; as many numbers as levels [default: as many as --error needs, but no more than
+    /// pixels]
     #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "COUNT", conflicts_with = "ratio", help_heading = LEVELS))]
     pub triangles: Vec<usize>,
 
@@ -47,6 +48,11 @@ pub struct LodOptions {
     /// list, or several times
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", value_delimiter = ',', help_heading = LEVELS))]
     pub keep_parts: Vec<String>,
+
+    /// Keep parts that are seen from no side, such as the works inside a casing. By default levels are made without them,
+    /// unless the model moves or --keep-parts names some
+    #[cfg_attr(feature = "clap", arg(long, help_heading = LEVELS))]
+    pub keep_hidden: bool,
 
     /// PSNR in dB from which on a level cannot be told from the one before, 10 to 60; says where levels switch
     #[cfg_attr(feature = "clap", arg(long, value_name = "DECIBELS", default_value_t = 35.0, help_heading = LEVELS))]
@@ -116,6 +122,7 @@ impl Default for LodOptions {
             error: 0.25,
             target_psnr: None,
             keep_parts: Vec::new(),
+            keep_hidden: false,
             max_texture_size: 2048,
             switch_psnr: 35.0,
             viewport_height: 1080.0,
