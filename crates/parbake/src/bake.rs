@@ -275,7 +275,9 @@ pub(crate) fn run(
     let uv = check_mesh(written, size);
     warnings.tell(layout_warning(&low.name, &uv));
     let only_projected = plan.schedule.rounds == 0;
-    warnings.tell((!only_projected).then(|| unseen(&low.name, fitted.unseen, fitted.covered)).flatten());
+    // A chain has no options for it, and compares its levels in pictures.
+    let tells_unseen = !only_projected && work != Work::Level;
+    warnings.tell(tells_unseen.then(|| unseen(&low.name, fitted.unseen, fitted.covered)).flatten());
     let report = BakeReport {
         work,
         shape,
