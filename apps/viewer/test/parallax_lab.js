@@ -1,9 +1,8 @@
 // In the browser: scenes of three.js with the package of integrations/three, for parallax.mjs.
 import * as THREE from 'three';
-import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { ParallaxPlugin, PARALLAX_GLSL, createDepthMaterial, parallaxMaterials, setParallax } from '../../../integrations/three/src/index.js';
+import { PLACED, SIZE, TURN, arrange, differing, replaced } from './parallax_scene.js';
 
-const SIZE = 192;
 const renderers = {};
 
 /** A renderer whose canvas has several samples a pixel, or one. */
@@ -19,11 +18,6 @@ function rendererOf(antialias) {
   return (renderers[antialias] = renderer);
 }
 
-async function load(name, options) {
-  const loader = new GLTFLoader().register((parser) => new ParallaxPlugin(parser, options));
-  return loader.parseAsync(await (await fetch(name)).arrayBuffer(), '');
-}
-
 function pixels(renderer) {
   const gl = renderer.getContext(), out = new Uint8Array(4 * SIZE * SIZE);
   gl.readPixels(0, 0, SIZE, SIZE, gl.RGBA, gl.UNSIGNED_BYTE, out);
@@ -33,26 +27,15 @@ function pixels(renderer) {
 }
 
 const difference = (a, b) => a.reduce((most, x, i) => Math.max(most, Math.abs(x - b[i])), 0);
-/** Share of components that differ by more than rounding does. */
-const differing = (a, b) => a.reduce((count, x, i) => count + (Math.abs(x - b[i]) > 8 ? 1 : 0), 0) / a.length;
 const shareOf = (picture, test) => {
   let count = 0;
   for (let i = 0; i < picture.length; i += 4) if (test(picture[i], picture[i + 1], picture[i + 2], picture[i + 3])) count++;
   return count / (picture.length / 4);
 };
 
-/** A scene around a model; `change` may add to it. */
-async function stage(name, { options, antialias = false, change = () => {}, orthographic = false } = {}) {
-  const gltf = await load(name, options), scene = new THREE.Scene(), renderer = rendererOf(antialias);
-  const camera = orthographic ? new THREE.OrthographicCamera(-1.4, 1.4, 1.4, -1.4, 0.1, 400) : new THREE.PerspectiveCamera(40, 1, 0.1, 400);
-  camera.position.set(1.2, 1.6, 3.2);
-  camera.lookAt(0, 0, 0);
-  scene.background = new THREE.Color(0.02, 0.02, 0.02);
-  const lamp = new THREE.DirectionalLight(0xffffff, 2);
-  lamp.position.set(1, 2, 3);
-  scene.add(lamp, new THREE.AmbientLight(0xffffff, 0.5), gltf.scene);
-  const own = { gltf, scene, camera, renderer, lamp, mesh: gltf.scene.getObjectByProperty('isMesh', true) };
-  change(own);
+/** A scene around a model, and a function that draws it. */
+async function stage(name, { antialias = false, ...more } = {}) {
+  const own = await arrange(ParallaxPlugin, rendererOf(antialias), name, more), { renderer, scene, camera } = own;
   const draw = () => {
     renderer.setRenderTarget(null);
     renderer.render(scene, camera);
@@ -124,37 +107,10 @@ const tests = {
 
   /** The same surface by way of instances, bones and targets of morphing. */
   async ways(name) {
-    const turn = new THREE.Matrix4().makeRotationAxis(new THREE.Vector3(1, 2, 3).normalize(), 0.7);
-    const plain = await stage(name, { change: ({ mesh }) => mesh.applyMatrix4(turn) }), wanted = plain.draw(), out = {};
-    const replaced = async (make) => (await stage(name, { change: ({ mesh }) => {
-      const other = make(mesh);
-      other.frustumCulled = false;
-      mesh.parent.add(other);
-      mesh.removeFromParent();
-      // Bones know where they stand only now.
-      other.parent.updateMatrixWorld(true);
-    } })).draw();
-    out.instances = differing(wanted, await replaced((mesh) => {
-      const many = new THREE.InstancedMesh(mesh.geometry, mesh.material, 1);
-      many.setMatrixAt(0, turn);
-      return many;
-    }));
-    out.batches = differing(wanted, await replaced((mesh) => {
-      const { position } = mesh.geometry.attributes, batch = new THREE.BatchedMesh(1, position.count, mesh.geometry.index.count, mesh.material);
-      batch.setMatrixAt(batch.addInstance(batch.addGeometry(mesh.geometry)), turn);
-      return batch;
-    }));
-    out.bones = differing(wanted, await replaced((mesh) => {
-      const { geometry } = mesh, { count } = geometry.attributes.position;
-      geometry.setAttribute('skinIndex', new THREE.Uint16BufferAttribute(new Uint16Array(4 * count), 4));
-      geometry.setAttribute('skinWeight', new THREE.Float32BufferAttribute(Float32Array.from({ length: 4 * count }, (_, i) => (i % 4 ? 0 : 1)), 4));
-      const skinned = new THREE.SkinnedMesh(geometry, mesh.material), bone = new THREE.Bone();
-      skinned.add(bone);
-      skinned.bind(new THREE.Skeleton([bone]));
-      bone.applyMatrix4(turn);
-      return skinned;
-    }));
-    out.morphs = differing(wanted, await replaced((mesh) => {
+    const plain = await stage(name, { change: ({ mesh }) => mesh.applyMatrix4(TURN) }), wanted = plain.draw(), out = {};
+    const drawn = async (make) => (await stage(name, { change: replaced(make) })).draw();
+    for (const [way, make] of Object.entries(PLACED)) out[way] = differing(wanted, await drawn(make));
+    out.morphs = differing(wanted, await drawn((mesh) => {
       const { geometry } = mesh;
       for (const key of ['position', 'normal']) {
         // The ball's normals are also its points.
@@ -166,7 +122,7 @@ const tests = {
       const morphed = new THREE.Mesh(geometry, mesh.material);
       morphed.morphTargetInfluences = [0.5];
       // The target makes the ball larger.
-      morphed.applyMatrix4(turn.clone().scale(new THREE.Vector3().setScalar(1 / 1.15)));
+      morphed.applyMatrix4(TURN.clone().scale(new THREE.Vector3().setScalar(1 / 1.15)));
       return morphed;
     }));
     // A mirrored mesh is the mirrored picture: seen and lit from the other side.

@@ -10,6 +10,7 @@ export const MODELS = {
   'no normal map, no offsets': { reach: 0, change: (json) => { delete json.materials[0].normalTexture; } },
   'no colour map': { change: (json) => { delete json.materials[0].pbrMetallicRoughness.baseColorTexture; } },
   'alpha test': { change: (json) => { json.materials[0].alphaMode = 'MASK'; } },
+  'vertex alpha': { change: (json) => { json.meshes[0].primitives[0].attributes.COLOR_0 = json.meshes[0].primitives[0].attributes.TANGENT; } },
   'blended': { change: (json) => { json.materials[0].alphaMode = 'BLEND'; } },
   'clearcoat': { change: (json) => {
     const texture = { index: 4 };

@@ -27,6 +27,9 @@ const verify = (isTrue, what) => {
   failures++;
   console.error(`FAILED: ${what}`);
 };
+// Decibels: samples lie elsewhere, frames of instances and batches are those of triangles, and both renderers shade clearcoats
+// differently, also without maps.
+const LEAST = { samples: 42, hard: 45, instances: 37, batches: 37, clearcoat: 38 };
 const files = new Map(positionals.map((file) => [path.basename(file), file]));
 const three = path.join(viewer, 'node_modules/three');
 const { outputFiles: [script] } = await esbuild.build({
@@ -51,6 +54,7 @@ for (const kind of values.webgpu && webgpu ? ['nodes', 'webgpu'] : ['nodes']) {
   const cases = [
     ...['plain', 'orthographic', 'samples', 'hard', 'mirrored', 'bones', 'shadow'].map((scene) => ['ball', scene]),
     // Tangents of these are turned by one of three.js' renderers alone.
+    ['alpha test', 'samples'], ['vertex alpha', 'samples'],
     ...['instances', 'batches'].map((scene) => ['no normal map, no offsets', scene]),
     ...['no offsets', 'no tangents', 'no normals', 'no normal map', 'no colour map', 'alpha test', 'clearcoat', 'no cutout', 'fades', 'own textures']
       .map((name) => [name, 'plain']),
@@ -58,8 +62,7 @@ for (const kind of values.webgpu && webgpu ? ['nodes', 'webgpu'] : ['nodes']) {
   ];
   for (const [name, scene] of cases) {
     const alike = await run('alike', name, scene, kind), what = `${kind}, ${name}, ${scene}: ${JSON.stringify(alike)}`;
-    // Shading differs a little between both renderers, also without maps, and frames of instances and batches are those of triangles.
-    verify(alike.on > Math.min(alike.off - 2, 35), what);
+    verify(alike.on > (LEAST[scene] ?? LEAST[name] ?? 60), what);
     verify(alike.changed > 0.01 && alike.back === 0, what);
     told[`${kind} ${name} ${scene}`] = [alike.on, alike.off].map((x) => Math.round(10 * x) / 10);
   }

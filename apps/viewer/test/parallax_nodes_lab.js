@@ -3,11 +3,10 @@
 import * as THREE from 'three';
 import * as GPU from 'three/webgpu';
 import { float, uniform, vec3, vec4, Fn, screenCoordinate } from 'three/tsl';
-import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { ParallaxPlugin } from '../../../integrations/three/src/index.js';
 import { ParallaxNodePlugin, parallaxNodes, setParallax } from '../../../integrations/three/src/webgpu.js';
+import { PLACED, SIZE, arrange, differing, replaced } from './parallax_scene.js';
 
-const SIZE = 192;
 const made = new Map();
 
 /** A renderer of three.js: `webgl` is WebGLRenderer, `nodes` WebGPURenderer on WebGL, `webgpu` on WebGPU. */
@@ -46,65 +45,24 @@ async function picture(renderer, scene, camera, { kind, antialias }) {
   return brush.getImageData(0, 0, SIZE, SIZE).data;
 }
 
-/** Share of components that differ by more than rounding does. */
-const differing = (a, b) => a.reduce((count, x, i) => count + (Math.abs(x - b[i]) > 8 ? 1 : 0), 0) / a.length;
 const decibels = (a, b) => {
   const sum = a.reduce((total, x, i) => total + (x - b[i]) ** 2, 0);
   return sum ? -10 * Math.log10(sum / (a.length * 255 ** 2)) : Infinity;
 };
 
-async function stage(name, kind, { options, antialias = false, change = () => {}, orthographic = false } = {}) {
+async function stage(name, kind, { antialias = false, ...more } = {}) {
   const Plugin = kind === 'webgl' ? ParallaxPlugin : ParallaxNodePlugin;
-  const loader = new GLTFLoader().register((parser) => new Plugin(parser, options));
-  const gltf = await loader.parseAsync(await (await fetch(name)).arrayBuffer(), '');
-  const renderer = await rendererOf(kind, antialias), scene = new THREE.Scene();
-  const camera = orthographic ? new THREE.OrthographicCamera(-1.4, 1.4, 1.4, -1.4, 0.1, 400) : new THREE.PerspectiveCamera(40, 1, 0.1, 400);
-  camera.position.set(1.2, 1.6, 3.2);
-  camera.lookAt(0, 0, 0);
-  scene.background = new THREE.Color(0.02, 0.02, 0.02);
-  const lamp = new THREE.DirectionalLight(0xffffff, 2);
-  lamp.position.set(1, 2, 3);
-  scene.add(lamp, new THREE.AmbientLight(0xffffff, 0.5), gltf.scene);
-  const own = { gltf, scene, camera, renderer, lamp, mesh: gltf.scene.getObjectByProperty('isMesh', true) };
-  change(own);
-  const draw = () => picture(renderer, scene, camera, { kind, antialias });
-  return { ...own, draw };
+  const own = await arrange(Plugin, await rendererOf(kind, antialias), name, more), { renderer, scene, camera } = own;
+  return { ...own, draw: () => picture(renderer, scene, camera, { kind, antialias }) };
 }
 
-const turn = new THREE.Matrix4().makeRotationAxis(new THREE.Vector3(1, 2, 3).normalize(), 0.7);
-const replace = (make) => ({ mesh }) => {
-  const other = make(mesh);
-  other.frustumCulled = false;
-  mesh.parent.add(other);
-  mesh.removeFromParent();
-  other.parent.updateMatrixWorld(true);
-};
 const SCENES = {
   plain: {},
   orthographic: { orthographic: true },
   samples: { antialias: true },
   hard: { antialias: true, options: { alphaToCoverage: false } },
   mirrored: { change({ mesh }) { mesh.scale.x = -1; } },
-  instances: { change: replace((mesh) => {
-    const many = new THREE.InstancedMesh(mesh.geometry, mesh.material, 1);
-    many.setMatrixAt(0, turn);
-    return many;
-  }) },
-  batches: { change: replace((mesh) => {
-    const { position } = mesh.geometry.attributes, batch = new THREE.BatchedMesh(1, position.count, mesh.geometry.index.count, mesh.material);
-    batch.setMatrixAt(batch.addInstance(batch.addGeometry(mesh.geometry)), turn);
-    return batch;
-  }) },
-  bones: { change: replace((mesh) => {
-    const { geometry } = mesh, { count } = geometry.attributes.position;
-    geometry.setAttribute('skinIndex', new THREE.Uint16BufferAttribute(new Uint16Array(4 * count), 4));
-    geometry.setAttribute('skinWeight', new THREE.Float32BufferAttribute(Float32Array.from({ length: 4 * count }, (_, i) => (i % 4 ? 0 : 1)), 4));
-    const skinned = new THREE.SkinnedMesh(geometry, mesh.material), bone = new THREE.Bone();
-    skinned.add(bone);
-    skinned.bind(new THREE.Skeleton([bone]));
-    bone.applyMatrix4(turn);
-    return skinned;
-  }) },
+  ...Object.fromEntries(Object.entries(PLACED).map(([way, make]) => [way, { change: replaced(make) }])),
   shadow: { change({ scene, camera, lamp, mesh }) {
     lamp.position.set(0, 0, 4);
     lamp.castShadow = mesh.castShadow = true;

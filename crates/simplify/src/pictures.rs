@@ -117,7 +117,7 @@ impl<'a> Pictures<'a> {
 /// A change that is likely to be the best of its place.
 struct Best {
     change: Change,
-    /// By how much the error grows in every so-manieth view; none if there was no other change.
+    /// By how much the error grows in every [`GUESSED_FROM`]th view; empty if there was no other change.
     guessed: Vec<f64>,
 }
 

@@ -1,12 +1,12 @@
-//! Parts of a model that are seen from no side, such as the works inside a casing. Levels of detail leave them out: their
+//! Parts of a model that no view from outside shows, such as a motor inside its housing. Levels of detail leave them out: their
 //! triangles and texels would show nothing.
 //!
-//! A part is what hangs together by positions. It is seen if one of its triangles is at one sample of one view; small parts
-//! between samples are smaller than a level's pixels. What is behind glass, a mask or a blended surface is seen, and so is what lies behind the back
-//! of a single-sided triangle, which viewers do not draw: rooms without a ceiling, and shells that are open.
+//! A part is a connected piece of the mesh. It is seen if one of its triangles is seen at one sample of 64 views around the model,
+//! with about a sample for each pixel of the largest level. What is behind glass, a mask or a blended surface is seen, and so is
+//! what lies behind the back of a single-sided triangle, which viewers do not draw: rooms without a ceiling, open shells.
 //!
-//! Contract: by geometry and materials alone, no texture is looked at; depends on the model only. Parts are left out or kept as
-//! wholes, so no hole is torn into a surface.
+//! Contract: only geometry and materials count, no texture is looked at. Parts are left out or kept as wholes, so no hole is torn into a
+//! surface. Parts that are smaller than a sample, or deep in a narrow opening, may be missed.
 
 use crate::error::PrepareError;
 use crate::frame::common_frame;
@@ -23,15 +23,17 @@ use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Views that look for parts, and pixels along a side of each.
+/// Views that look for parts.
 const VIEWS: usize = 64;
-const SIZE: usize = 768;
+/// Pixels along a side of each, at least and at most, and for each pixel that the model's longest side spans.
+const SIZES: [f64; 2] = [768.0, 2048.0];
+const SIZE_A_PIXEL: f64 = 1.4;
 /// Far enough to look into openings about as a player would.
 const RIG: Rig = Rig { radius: 3.5, projection: Projection::Perspective(0.4) };
 
 /// A model without its hidden parts, and what was left out.
 pub struct WithoutHidden {
-    /// What is seen; vertices that nothing needs are gone, but of a model that moves.
+    /// What is seen. Vertices that no triangle has are gone, unless the model has a rig.
     pub model: Model,
     /// Parts that are hidden, and all parts.
     pub parts: [usize; 2],
@@ -39,11 +41,11 @@ pub struct WithoutHidden {
     pub triangles: [usize; 2],
 }
 
-/// The model without parts that are seen from no side; none where all are seen.
+/// The model without hidden parts, for pictures in which its longest side spans up to so many pixels; none where all parts are seen.
 ///
 /// # Errors
 /// A model without extent.
-pub fn without_hidden(model: &Model) -> Result<Option<WithoutHidden>, PrepareError> {
+pub fn without_hidden(model: &Model, pixels: f64) -> Result<Option<WithoutHidden>, PrepareError> {
     let part_of = parts(&model.mesh);
     let all: BTreeSet<u32> = part_of.iter().copied().collect();
     if all.len() < 2 {
@@ -59,6 +61,7 @@ pub fn without_hidden(model: &Model) -> Result<Option<WithoutHidden>, PrepareErr
     let material = |triangle: usize| &model.materials[mesh.triangle_materials[triangle] as usize];
     let lets_through: Vec<bool> = model.materials.iter().map(is_looked_through).collect();
     let is_solid = |triangle: usize| !lets_through[mesh.triangle_materials[triangle] as usize];
+    let size = (SIZE_A_PIXEL * pixels).clamp(SIZES[0], SIZES[1]) as usize;
     let views = view_pool(VIEWS, &RIG, 0);
     let found = views.par_iter().map(|view| {
         let drawn = |triangle: &usize| {
@@ -68,14 +71,14 @@ pub fn without_hidden(model: &Model) -> Result<Option<WithoutHidden>, PrepareErr
         let drawn: Vec<u32> = (0..mesh.triangles.len()).filter(drawn).map(|t| t as u32).collect();
         let corners: Vec<[u32; 3]> = drawn.iter().map(|&t| mesh.triangles[t as usize]).collect();
         let mut seen = Visibility::default();
-        let screen = ScreenTriangles::new(&mesh.positions, &corners, &view.camera, SIZE);
-        screen.rasterise(SIZE, (0.0, 0.0), None, &mut seen);
+        let screen = ScreenTriangles::new(&mesh.positions, &corners, &view.camera, size);
+        screen.rasterise(size, (0.0, 0.0), None, &mut seen);
         let shown = seen.triangle.iter().filter(|&&t| t != NOTHING);
         shown.map(|&t| part_of[drawn[t as usize] as usize]).collect::<BTreeSet<u32>>()
     });
     let mut seen = found.reduce(BTreeSet::new, |a, b| &a | &b);
     seen.extend((0..mesh.triangles.len()).filter(|&t| !is_solid(t)).map(|t| part_of[t]));
-    // Where views find hardly anything, as of a single-sided model that is inside out, nothing is known.
+    // Where no part is seen, nothing is known.
     if seen.is_empty() || seen.len() == all.len() {
         return Ok(None);
     }
@@ -136,7 +139,7 @@ mod tests {
     }
 
     fn kept(model: &Model) -> Vec<u32> {
-        let found = without_hidden(model).expect("it has an extent");
+        let found = without_hidden(model, 300.0).expect("it has an extent");
         let mesh = found.map_or(model.mesh.clone(), |found| found.model.mesh);
         let materials: BTreeSet<u32> = mesh.triangle_materials.into_iter().collect();
         materials.into_iter().collect()
@@ -148,7 +151,7 @@ mod tests {
     fn what_is_inside_goes_unless_it_shows() {
         let mut closed = cubes(|_| ());
         closed.painted = [[0.5; 12], [1.0; 12], [0.0; 12]].concat();
-        let found = without_hidden(&closed).expect("it has an extent").expect("two cubes are hidden");
+        let found = without_hidden(&closed, 300.0).expect("it has an extent").expect("two cubes are hidden");
         assert_eq!((found.parts, found.triangles), ([2, 3], [24, 36]));
         assert_eq!(found.model.mesh.positions, closed.mesh.positions[..8]);
         assert_eq!(found.model.painted, [0.5; 12]);
@@ -165,6 +168,6 @@ mod tests {
         let mut alone = closed.clone();
         alone.mesh.triangles.truncate(12);
         alone.mesh.triangle_materials.truncate(12);
-        assert!(without_hidden(&alone).expect("it has an extent").is_none());
+        assert!(without_hidden(&alone, 300.0).expect("it has an extent").is_none());
     }
 }

@@ -23,7 +23,7 @@ function growBounds(root) {
     if (!offsets) return;
     if (!reaches.has(geometry)) {
       let reach = 0;
-      for (let i = 0; i < offsets.count; i++) reach = Math.max(reach, offset.fromBufferAttribute(offsets, i).length());
+      for (let i = 0; i < offsets.count; i++) reach = Math.max(reach, offset.fromBufferAttribute(offsets, i).length() || 0);
       reaches.set(geometry, reach);
       geometry.computeBoundingSphere();
       geometry.boundingSphere.radius += reach;

@@ -1,10 +1,12 @@
 // The parallax of a material as nodes, for WebGPURenderer: MeshStandardNodeMaterial and MeshPhysicalNodeMaterial, whose textures
 // are read where the shift leads. three.js asks the material's context where to read, and with which gradients; everything else
 // goes on as it is.
-import { MeshPhysicalNodeMaterial, MeshStandardNodeMaterial } from 'three/webgpu';
 import {
-  Fn, attribute, context, dFdx, dFdy, determinant, faceDirection, float, fwidth, mat3, materialColor, materialOpacity, materialReference,
-  modelViewMatrix, normalFlat, normalMap, normalViewGeometry, positionView, positionViewDirection, sign, step, tangentLocal, texture, uniform, uv,
+  MeshPhysicalNodeMaterial, MeshStandardNodeMaterial, NormalRGPacking, RED_GREEN_RGTC2_Format, RG11_EAC_Format, RGFormat, TangentSpaceNormalMap,
+} from 'three/webgpu';
+import {
+  Fn, attribute, context, dFdx, dFdy, determinant, faceDirection, float, fwidth, mat3, materialReference,
+  modelViewMatrix, normalFlat, normalMap, normalViewGeometry, output, positionView, positionViewDirection, sign, step, tangentLocal, texture, uniform, uv,
   vec2, vec3, vec4,
 } from 'three/tsl';
 import { coefficients, derivedFrame, fade, line, opacity, shift, vertexFrame } from './formulas_tsl.js';
@@ -64,19 +66,27 @@ function shiftedReads(material, moved) {
   return context({
     getUV: (node, { shaderStage }) => (shaderStage === 'fragment' && isOwn(node) ? node.getDefaultUV().add(untransformed(node, moved)) : null),
     // Those that it would have without the shift.
-    getTextureGradient: (node) => (isOwn(node) ? [dFdx(node.getDefaultUV()), dFdy(node.getDefaultUV())] : null),
+    getTextureGradient: (node, { shaderStage }) => (shaderStage === 'fragment' && isOwn(node) ? [dFdx(node.getDefaultUV()), dFdy(node.getDefaultUV())] : null),
   });
 }
 
+/** Formats that hold two numbers of a normal. */
+const IN_TWO = [RGFormat, RED_GREEN_RGTC2_Format, RG11_EAC_Format];
+
 /** three.js reads normals without the context. */
-function shiftedNormal(image, scale, moved) {
+function shiftedNormal(image, scale, moved, type = TangentSpaceNormalMap) {
   const at = coordinate(image).toVar();
-  return normalMap(texture(image, at.add(moved)).grad(dFdx(at), dFdy(at)), materialReference(scale, 'vec2'));
+  const node = normalMap(texture(image, at.add(moved)).grad(dFdx(at), dFdy(at)), materialReference(scale, 'vec2'));
+  node.normalMapType = type;
+  if (IN_TWO.includes(image.format)) node.unpackNormalMode = NormalRGPacking;
+  return node;
 }
 
 /** `material.parallax`: the switch, and what it switches. */
 class Parallax {
   #isOn = true;
+  /** Nodes that are set now. */
+  #own = {};
 
   constructor(material, maps, fallback, coversSamples) {
     this.material = material;
@@ -104,33 +114,36 @@ class Parallax {
     this.update();
   }
 
+  /** Takes these nodes from the material, or from a copy of it. */
+  forget(copy) {
+    for (const [slot, node] of Object.entries(this.#own)) if (copy[slot] === node) copy[slot] = null;
+  }
+
   /** Makes the material's nodes. Needed where one of its textures was exchanged; the switch does so by itself. */
   update() {
-    const { material, maps } = this;
-    Object.assign(material, {
-      contextNode: null, normalNode: null, clearcoatNormalNode: null, colorNode: null, opacityNode: null, maskNode: null, maskShadowNode: null,
-    });
-    material.needsUpdate = true;
+    const { material } = this;
+    this.forget(material);
     // Without a coordinate nothing shifts.
-    if (!this.#isOn || !(material.map || material.normalMap)) return;
-    const { moved, there } = seen(material, maps);
-    material.contextNode = shiftedReads(material, moved);
-    if (material.normalMap) material.normalNode = shiftedNormal(material.normalMap, 'normalScale', moved);
-    if (material.clearcoatNormalMap)
-      material.clearcoatNormalNode = shiftedNormal(material.clearcoatNormalMap, 'clearcoatNormalScale', moved);
-    if (!there) return;
-    material.maskShadowNode = there.greaterThanEqual(0);
-    if (!this.coversSamples) {
-      material.maskNode = there.greaterThanEqual(0);
-      return;
-    }
+    this.#own = this.#isOn && (material.map || material.normalMap) ? this.#nodes() : {};
+    Object.assign(material, this.#own);
+    material.needsUpdate = true;
+  }
+
+  #nodes() {
+    const { material, maps } = this, { moved, there } = seen(material, maps);
+    const nodes = { contextNode: shiftedReads(material, moved) };
+    if (material.normalMap) nodes.normalNode = shiftedNormal(material.normalMap, 'normalScale', moved, material.normalMapType);
+    if (material.clearcoatNormalMap) nodes.clearcoatNormalNode = shiftedNormal(material.clearcoatNormalMap, 'clearcoatNormalScale', moved);
+    if (!there) return nodes;
+    const isThere = there.greaterThanEqual(0);
+    if (!this.coversSamples) return { ...nodes, maskNode: isThere };
     // The width is bounded, for past the edge of a triangle it is any number.
     const smooth = there.div(fwidth(there).clamp(1e-6, 10)).add(0.5).clamp(0, 1);
     const coverage = Fn(({ renderer }) => (renderer.currentSamples > 0 ? smooth : step(0, there)), 'float').once()().toVar('parallaxCoverage');
-    material.maskNode = coverage.greaterThan(0);
-    material.opacityNode = materialOpacity.mul(coverage);
     // What three.js would draw opaque is as opaque as it is covered, whatever the alpha of its map.
-    if (!(material.alphaTest > 0) && !material.alphaHash) material.colorNode = vec4(materialColor.xyz, 1);
+    const isOpaque = !(material.alphaTest > 0) && !material.alphaHash;
+    const alpha = isOpaque ? materialReference('opacity', 'float') : output.a;
+    return { ...nodes, maskNode: coverage.greaterThan(0), maskShadowNode: isThere, outputNode: vec4(output.rgb, alpha.mul(coverage)) };
   }
 }
 
@@ -142,6 +155,7 @@ function attach(own, maps, fallback, coversSamples) {
     const { enabled, fallback: other } = parallax, copy = new own.constructor().copy(own);
     // The copy's slots are those of the moment.
     const shown = Object.fromEntries(Object.keys(other).map((slot) => [slot, own[slot]]));
+    parallax.forget(copy);
     if (!enabled) Object.assign(copy, other);
     attach(copy, maps, enabled ? other : shown, coversSamples);
     copy.parallax.enabled = enabled;

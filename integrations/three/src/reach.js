@@ -9,8 +9,10 @@ class Reach {
     const { position, [OFFSET]: offsets } = geometry.attributes;
     const moved = new Float32Array(3 * position.count);
     for (let i = 0; i < position.count; i++)
-      for (let k = 0; k < 3; k++) moved[3 * i + k] = position.getComponent(i, k) + offsets.getComponent(i, k);
+      for (let k = 0; k < 3; k++) moved[3 * i + k] = position.getComponent(i, k) + (offsets.getComponent(i, k) || 0);
     this.geometry = geometry;
+    // Copies that are made while the maps are on would be moved twice.
+    geometry.deleteAttribute(OFFSET);
     this.plain = position;
     this.moved = new BufferAttribute(moved, 3);
   }
@@ -23,7 +25,7 @@ const made = new WeakMap();
 /** Lets the geometries below an object that have offsets follow the switches of their materials. */
 export function followSwitches(root) {
   root.traverse(({ geometry, material }) => {
-    if (!geometry?.attributes[OFFSET]) return;
+    if (!geometry?.attributes[OFFSET] && !made.has(geometry)) return;
     for (const { parallax } of [material].flat().filter((own) => own?.parallax?.reaches)) {
       if (!made.has(geometry)) made.set(geometry, new Reach(geometry));
       const reach = made.get(geometry);

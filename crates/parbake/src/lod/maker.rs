@@ -69,7 +69,7 @@ pub(crate) struct Figures {
 }
 
 impl<'a> Maker<'a> {
-    /// `whole` is how many triangles the model has with its hidden parts, of which ratios are.
+    /// `whole`: triangles with hidden parts; ratios are shares of these.
     pub fn new(model: &'a Model, whole: usize, options: &'a LodOptions) -> Result<Self, BakeError> {
         let high = prepare_high_poly(model, &options.bake(options.max_texture_size))?;
         options.triangles.iter().try_for_each(|&count| check_triangles(&high, model, count))?;

@@ -120,7 +120,7 @@ pub fn make_levels<E: From<BakeError>>(
     Ok(count)
 }
 
-/// The model without parts that are seen from no side. One that moves may show them, and parts that were named stay.
+/// The model without parts that no view from outside shows. One that moves may show them, and parts that were named stay.
 fn without_hidden_parts<'a>(
     model: &'a Model,
     options: &LodOptions,
@@ -129,11 +129,11 @@ fn without_hidden_parts<'a>(
     if options.keep_hidden || model.rig.is_some() || model.parts.is_some() {
         return Ok(Cow::Borrowed(model));
     }
-    let Some(found) = without_hidden(model)? else { return Ok(Cow::Borrowed(model)) };
+    let Some(found) = without_hidden(model, options.screen_size[0])? else { return Ok(Cow::Borrowed(model)) };
     let ([parts, all_parts], [triangles, all]) = (found.parts, found.triangles);
     watcher.message(Message::Warning(format!(
-        "{}: levels go without {parts} of {all_parts} parts ({triangles} of {all} triangles), which are seen from no side; \
-         --keep-hidden keeps them",
+        "{}: {parts} of {all_parts} parts ({triangles} of {all} triangles) are left out of the levels, since no view from \
+         outside shows them; --keep-hidden keeps them",
         model.name
     )));
     Ok(Cow::Owned(found.model))

@@ -19,8 +19,8 @@ pub struct LodOptions {
     #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "PIXELS", default_values_t = [300.0, 100.0, 50.0], help_heading = LEVELS))]
     pub screen_size: Vec<f64>,
 
-    /// Triangles of each level, at most, 4 or more; as many numbers as levels [default: as many as --error needs, but no more than
-    /// pixels]
+    /// Triangles of each level, at most, 4 or more; as many numbers as levels [default: as many as --error needs, at most
+    /// one for each pixel of a square of that size]
     #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "COUNT", conflicts_with = "ratio", help_heading = LEVELS))]
     pub triangles: Vec<usize>,
 
@@ -28,7 +28,8 @@ pub struct LodOptions {
     #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "SHARE", help_heading = LEVELS))]
     pub ratio: Vec<f64>,
 
-    /// How far a level's surface may be off, in pixels at the level's size, 0.01 to 10
+    /// How far a level's surface may be off, in pixels at the level's size, 0.01 to 10; models of many small parts may
+    /// be farther off
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", default_value_t = 0.25, help_heading = LEVELS))]
     pub error: f64,
 
@@ -49,8 +50,8 @@ pub struct LodOptions {
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", value_delimiter = ',', help_heading = LEVELS))]
     pub keep_parts: Vec<String>,
 
-    /// Keep parts that are seen from no side, such as the works inside a casing. By default levels are made without them,
-    /// unless the model moves or --keep-parts names some
+    /// Keep parts that no view from outside shows, such as a motor inside its housing. By default they are left out, unless
+    /// the model has a skin, morph targets or animations, or --keep-parts is used
     #[cfg_attr(feature = "clap", arg(long, help_heading = LEVELS))]
     pub keep_hidden: bool,
 
