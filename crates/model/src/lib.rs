@@ -72,7 +72,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// Drops the triangles, of F, that are not kept, with all that is said of them; vertices stay.
+    /// Keeps the triangles for which `kept`, F values, is true, with their materials, painted importances and nodes. All V vertices
+    /// stay.
     pub fn retain_triangles(&mut self, kept: &[bool]) {
         fn retain<T>(values: &mut Vec<T>, kept: &[bool]) {
             let mut kept = kept.iter();

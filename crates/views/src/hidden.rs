@@ -25,7 +25,7 @@ use std::collections::BTreeSet;
 
 /// Views that look for parts.
 const VIEWS: usize = 64;
-/// Pixels along a side of each, at least and at most, and for each pixel that the model's longest side spans.
+/// Least and most pixels along a side of a view, and how many for each pixel that the model's longest side spans: it fills 1 / 1.4 of a view.
 const SIZES: [f64; 2] = [768.0, 2048.0];
 const SIZE_A_PIXEL: f64 = 1.4;
 /// Far enough to look into openings about as a player would.
@@ -41,7 +41,8 @@ pub struct WithoutHidden {
     pub triangles: [usize; 2],
 }
 
-/// The model without hidden parts, for pictures in which its longest side spans up to so many pixels; none where all parts are seen.
+/// The model without hidden parts; none where all are seen. `pixels` is how many its longest side spans in the largest picture that
+/// it is for; parts that are smaller than a pixel there may be missed.
 ///
 /// # Errors
 /// A model without extent.

@@ -179,8 +179,7 @@ mod tests {
         Model { name: "nested".into(), mesh, materials: vec![Material::default()], ..Model::default() }
     }
 
-    /// Protects triangles and texels from going to what nobody sees, those who want it all the same, and ratios, which are of
-    /// the whole model.
+    /// Protects triangles and texels from going to what nobody sees, and users who want hidden parts all the same.
     #[test]
     fn levels_go_without_hidden_parts() {
         let made = |keep_hidden: bool| {
