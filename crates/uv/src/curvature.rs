@@ -15,11 +15,11 @@
 //! Contract: positive definite; coordinates that are not free stay zero. Deterministic.
 
 use crate::contact::Contact;
-use crate::distortion::Distortion;
+use crate::distortion::{Distortion, Element};
 use crate::lbfgs::Preconditioner;
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::Llt;
-use faer::sparse::{SparseColMat, Triplet};
+use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 use faer::{Mat, Side};
 use glam::{DMat2, DVec2, dvec2};
 use rayon::prelude::*;
@@ -32,13 +32,8 @@ pub struct Curvature {
     factors: Option<Llt<usize, f64>>,
 }
 
-/// Entries of the lower half, x and y of point i being rows 2 i and 2 i + 1.
-struct Entries<'a> {
-    free: &'a [DVec2],
-    triplets: Vec<Triplet<usize, usize, f64>>,
-    /// Sum of the diagonal's.
-    trace: f64,
-}
+/// A 2 × 2 block of the lower half: points i ≥ j, whose x and y are rows and columns 2 i and 2 i + 1, 2 j and 2 j + 1.
+type Block = (u32, u32, DMat2);
 
 impl Curvature {
     /// Of distortion, and of contact times its weight, at these points, of which `free` tells what
@@ -50,79 +45,130 @@ impl Curvature {
         points: &[DVec2],
         free: &[DVec2],
     ) -> Self {
-        let mut entries = Entries { free, triplets: Vec::with_capacity(24 * triangles.len()), trace: 0.0 };
-        let blocks: Vec<[[DMat2; 2]; 2]> = distortion
-            .elements
-            .par_iter()
-            .zip(triangles)
-            .map(|(element, corners)| {
-                let [a, b, c] = corners.map(|i| points[i as usize]);
-                element.curvature(DMat2::from_cols(b - a, c - a))
-            })
-            .collect();
-        for (edges, corners) in blocks.iter().zip(triangles) {
-            entries.add_triangle(*corners, edges);
+        let of_triangle = |(element, corners): (&Element, &[u32; 3])| {
+            let [a, b, c] = corners.map(|i| points[i as usize]);
+            triangle_blocks(*corners, element.curvature(DMat2::from_cols(b - a, c - a)))
+        };
+        let mut blocks: Vec<Block> =
+            distortion.elements.par_iter().zip(triangles).flat_map_iter(of_triangle).collect();
+        for pair in contact.curvatures(points) {
+            blocks.extend(pair_blocks(contact_weight * pair.curvature, pair.normal, pair.parts()));
         }
-        contact.for_each_curvature(points, |curvature, normal, parts| {
-            entries.add_pair(contact_weight * curvature, normal, parts);
-        });
-        Self { factors: entries.factorised(points.len()) }
+        let matrix = Blocks::sorted(&blocks, points.len()).matrix(free);
+        Self { factors: matrix.sp_cholesky(Side::Lower).ok() }
     }
 }
 
-impl Entries<'_> {
-    /// The 2 × 2 block for points i ≥ j, or the half of it that lies on the diagonal.
-    fn add(&mut self, i: u32, j: u32, block: DMat2) {
-        let (i, j, block) = if i >= j { (i, j, block) } else { (j, i, block.transpose()) };
-        let (rows, columns) = (self.free[i as usize], self.free[j as usize]);
-        for column in 0..2 {
-            for row in if i == j { column } else { 0 }..2 {
-                let value = block.col(column)[row] * rows[row] * columns[column];
-                if value != 0.0 {
-                    let place = [2 * i as usize + row, 2 * j as usize + column];
-                    if place[0] == place[1] {
-                        self.trace += value;
+fn block(i: u32, j: u32, block: DMat2) -> Block {
+    if i >= j { (i, j, block) } else { (j, i, block.transpose()) }
+}
+
+/// Blocks by edges become blocks by corners: an edge is its end less the first corner.
+fn triangle_blocks(
+    [a, b, c]: [u32; 3],
+    [[ee, ef], [fe, ff]]: [[DMat2; 2]; 2],
+) -> impl Iterator<Item = Block> {
+    let blocks = [
+        block(a, a, ee + ef + fe + ff),
+        block(b, b, ee),
+        block(c, c, ff),
+        block(b, a, -(ee + ef)),
+        block(c, a, -(fe + ff)),
+        block(c, b, fe),
+    ];
+    blocks.into_iter().take(if ee == DMat2::ZERO { 0 } else { 6 })
+}
+
+/// `curvature · n nᵀ`, n being `normal` times each point's part.
+fn pair_blocks(curvature: f64, normal: DVec2, parts: &[(u32, f64)]) -> impl Iterator<Item = Block> {
+    let outer = DMat2::from_cols(normal * normal.x, normal * normal.y) * curvature;
+    let lower = parts.iter().enumerate().flat_map(|(k, p)| parts[..=k].iter().map(move |q| (p, q)));
+    lower.map(move |((i, p), (j, q))| block(*i, *j, outer * (p * q)))
+}
+
+/// The lower half by columns: blocks of one place are summed.
+struct Blocks {
+    /// For each point where its column begins, and where the last one ends.
+    columns: Vec<usize>,
+    /// Ascending in each column, which begins on the diagonal.
+    rows: Vec<u32>,
+    values: Vec<DMat2>,
+}
+
+impl Blocks {
+    fn sorted(blocks: &[Block], points: usize) -> Self {
+        // By columns, then each by rows; both leave the order of equals, and so of sums, as it is.
+        let mut begin = vec![0; points + 1];
+        blocks.iter().for_each(|&(_, j, _)| begin[j as usize + 1] += 1);
+        for j in 0..points {
+            begin[j + 1] += begin[j];
+        }
+        let (mut next, mut by_column) = (begin.clone(), vec![(0u32, 0u32); blocks.len()]);
+        for (index, &(i, j, _)) in blocks.iter().enumerate() {
+            by_column[next[j as usize]] = (i, index as u32);
+            next[j as usize] += 1;
+        }
+        let most = blocks.len() + points;
+        let mut sorted = Self {
+            columns: Vec::with_capacity(points + 1),
+            rows: Vec::with_capacity(most),
+            values: Vec::with_capacity(most),
+        };
+        for j in 0..points {
+            sorted.columns.push(sorted.rows.len());
+            sorted.rows.push(j as u32);
+            sorted.values.push(DMat2::ZERO);
+            let column = &mut by_column[begin[j]..begin[j + 1]];
+            column.sort_unstable();
+            for &(i, index) in &*column {
+                let value = blocks[index as usize].2;
+                match (sorted.rows.last(), sorted.values.last_mut()) {
+                    (Some(&last), Some(sum)) if last == i => *sum += value,
+                    _ => {
+                        sorted.rows.push(i);
+                        sorted.values.push(value);
                     }
-                    self.triplets.push(Triplet::new(place[0], place[1], value));
                 }
             }
         }
+        sorted.columns.push(sorted.rows.len());
+        sorted
     }
 
-    /// Blocks by edges become blocks by corners: an edge is its end less the first corner.
-    fn add_triangle(&mut self, [a, b, c]: [u32; 3], [[ee, ef], [fe, ff]]: &[[DMat2; 2]; 2]) {
-        if *ee == DMat2::ZERO {
-            return;
-        }
-        self.add(a, a, *ee + *ef + *fe + *ff);
-        self.add(b, b, *ee);
-        self.add(c, c, *ff);
-        self.add(b, a, -(*ee + *ef));
-        self.add(c, a, -(*fe + *ff));
-        self.add(c, b, *fe);
-    }
-
-    /// `curvature · n nᵀ`, n being `normal` times each point's part.
-    fn add_pair(&mut self, curvature: f64, normal: DVec2, parts: &[(u32, f64)]) {
-        let outer = DMat2::from_cols(normal * normal.x, normal * normal.y) * curvature;
-        for (k, (i, p)) in parts.iter().enumerate() {
-            for (j, q) in &parts[..=k] {
-                self.add(*i, *j, outer * (p * q));
-            }
-        }
-    }
-
-    fn factorised(mut self, points: usize) -> Option<Llt<usize, f64>> {
-        let shift = (SHIFT * self.trace / (2 * points).max(1) as f64).max(f64::MIN_POSITIVE);
-        for (i, free) in self.free.iter().enumerate() {
+    /// The matrix of what is free, shifted.
+    fn matrix(&self, free: &[DVec2]) -> SparseColMat<usize, f64> {
+        let diagonal = |j: usize| self.values[self.columns[j]];
+        let own = |(j, free): (usize, &DVec2)| {
+            let (block, free) = (diagonal(j), *free * *free);
+            block.x_axis.x * free.x + block.y_axis.y * free.y
+        };
+        let trace: f64 = free.iter().enumerate().map(own).sum();
+        let shift = (SHIFT * trace / (2 * free.len()).max(1) as f64).max(f64::MIN_POSITIVE);
+        let size = 2 * free.len();
+        let mut begin = Vec::with_capacity(size + 1);
+        let (mut rows, mut values) =
+            (Vec::with_capacity(4 * self.rows.len()), Vec::with_capacity(4 * self.rows.len()));
+        for (j, &columns) in free.iter().enumerate() {
+            let column = self.columns[j]..self.columns[j + 1];
             for axis in 0..2 {
+                begin.push(rows.len());
                 // A coordinate that is not free has no other entry.
-                let own = if free[axis] == 0.0 { 1.0 } else { shift };
-                self.triplets.push(Triplet::new(2 * i + axis, 2 * i + axis, own));
+                let added = if columns[axis] == 0.0 { 1.0 } else { shift };
+                for (&i, block) in self.rows[column.clone()].iter().zip(&self.values[column.clone()]) {
+                    let block = block.col(axis) * columns[axis] * free[i as usize];
+                    let is_diagonal = i as usize == j;
+                    for row in if is_diagonal { axis } else { 0 }..2 {
+                        let value = if is_diagonal && row == axis { block[row] + added } else { block[row] };
+                        if value != 0.0 {
+                            rows.push(2 * i as usize + row);
+                            values.push(value);
+                        }
+                    }
+                }
             }
         }
-        let matrix = SparseColMat::try_new_from_triplets(2 * points, 2 * points, &self.triplets).ok()?;
-        matrix.sp_cholesky(Side::Lower).ok()
+        begin.push(rows.len());
+        SparseColMat::new(SymbolicSparseColMat::new_checked(size, size, begin, None, rows), values)
     }
 }
 
@@ -185,7 +231,8 @@ mod tests {
             gradient
         };
         let mut pairs = 0;
-        contact.for_each_curvature(&layout.points, |curvature, normal, parts| {
+        for pair in contact.curvatures(&layout.points) {
+            let (curvature, normal, parts) = (pair.curvature, pair.normal, pair.parts());
             pairs += 1;
             let h = 1e-6;
             let (mut up, mut down) = (layout.points.clone(), layout.points.clone());
@@ -197,7 +244,7 @@ mod tests {
                 let got = curvature * part * normal;
                 assert!((want - got).length() < 1e-5 * curvature, "{point}: {got}, {want} wanted");
             }
-        });
+        }
         assert_eq!(pairs, 1);
     }
 
@@ -211,6 +258,49 @@ mod tests {
         let want = (slope(0.8 + h) - slope(0.8 - h)) / (2.0 * h);
         let got = element.curvature(edges(0.8))[0][0].x_axis.x;
         assert!((got - want).abs() < 1e-5 * want, "{got}, {want} wanted");
+    }
+
+    /// Protects the sums: the matrix is that of all blocks, each of which holds for both of its points, without what is not
+    /// free.
+    #[test]
+    fn blocks_are_summed_where_they_belong() {
+        let (points, mut all) = (9u32, Vec::new());
+        let mut dense = vec![[0f64; 18]; 18];
+        let number = |k: u32| (f64::from(k) * 1.3).sin();
+        let free: Vec<DVec2> = (0..points)
+            .map(|i| dvec2(f64::from(u8::from(i != 4)), f64::from(u8::from(i % 4 != 0))))
+            .collect();
+        for k in 0..60u32 {
+            let (i, j) = (k * 7 % points, k * k % points);
+            let (x, y) = (dvec2(number(k), number(k + 7)), dvec2(number(k + 3), number(k + 5)));
+            let symmetric = DMat2::from_cols(x, dvec2(x.y, y.y)) + DMat2::IDENTITY * 3.0;
+            let own = if i == j { symmetric } else { DMat2::from_cols(x, y) };
+            all.push(block(i, j, own));
+            for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let value = own.col(column)[row] * free[i as usize][row] * free[j as usize][column];
+                let [a, b] = [2 * i as usize + row, 2 * j as usize + column];
+                dense[a][b] += value;
+                if i != j {
+                    dense[b][a] += value;
+                }
+            }
+        }
+        let matrix = Blocks::sorted(&all, points as usize).matrix(&free);
+        let trace: f64 = (0..18).map(|i| dense[i][i]).sum();
+        for (i, row) in dense.iter().enumerate() {
+            for (j, &value) in row[..=i].iter().enumerate() {
+                let is_fixed = i == j && free[i / 2][i % 2] == 0.0;
+                let own = if is_fixed {
+                    1.0
+                } else if i == j {
+                    SHIFT * trace / 18.0
+                } else {
+                    0.0
+                };
+                let found = matrix.get(i, j).copied().unwrap_or(0.0);
+                assert!((found - value - own).abs() < 1e-9, "{i} {j}: {found}, {value} wanted");
+            }
+        }
     }
 
     /// Protects the factorisation: definite, and without motion where nothing is free.

@@ -42,6 +42,23 @@ struct Active {
     count: usize,
 }
 
+/// A pair's second derivative: `curvature` times the outer product, with itself, of `normal` times each point's share.
+pub struct PairCurvature {
+    /// By the distance: texels over squared texture coordinates.
+    pub curvature: f64,
+    /// The distance's gradient for the boundary vertex.
+    pub normal: DVec2,
+    shares: [(u32, f64); 3],
+    count: usize,
+}
+
+impl PairCurvature {
+    /// Points, and how much of the distance's gradient each has.
+    pub fn parts(&self) -> &[(u32, f64)] {
+        &self.shares[..self.count]
+    }
+}
+
 impl Active {
     fn parts(&self) -> &[(u32, f64)] {
         &self.shares[..self.count]
@@ -89,19 +106,24 @@ impl Contact {
         part
     }
 
-    /// Gives `visit`, for each pair that the barrier repels, the energy's second derivative by the
-    /// distance (texels over squared texture coordinates), the distance's gradient for the boundary
-    /// vertex, and which points have which share of that gradient.
-    pub fn for_each_curvature(&self, points: &[DVec2], mut visit: impl FnMut(f64, DVec2, &[(u32, f64)])) {
+    /// What each pair that the barrier repels adds to the energy's second derivative.
+    pub fn curvatures(&self, points: &[DVec2]) -> Vec<PairCurvature> {
         let grid = self.grid(points, self.reach());
-        for vertex in 0..self.boundary.vertices.len() {
-            self.for_each_active(points, &grid, vertex, |active| {
-                let curvature = self.curvature(active.distance, active.limits);
-                if curvature > 0.0 {
-                    visit(curvature, active.normal, active.parts());
-                }
-            });
-        }
+        let bands: Vec<usize> = (0..self.boundary.vertices.len()).step_by(BAND).collect();
+        let of_band = |&first: &usize| {
+            let mut pairs = Vec::new();
+            for vertex in first..(first + BAND).min(self.boundary.vertices.len()) {
+                self.for_each_active(points, &grid, vertex, |active| {
+                    let curvature = self.curvature(active.distance, active.limits);
+                    if curvature > 0.0 {
+                        let &Active { normal, shares, count, .. } = active;
+                        pairs.push(PairCurvature { curvature, normal, shares, count });
+                    }
+                });
+            }
+            pairs
+        };
+        bands.par_iter().flat_map_iter(of_band).collect()
     }
 
     /// The distance from which on any pair is free.
