@@ -1,7 +1,7 @@
 //! `parbake compress`.
 
 use crate::arguments::CompressCommand;
-use crate::bake::{check_textures, compare, ending, gains, read, write_report};
+use crate::bake::{ComparisonReaders, check_textures, compare_for, ending, gains, read, write_report};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::formats::{check_formats, write_model};
@@ -12,7 +12,7 @@ use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;
 use parbake::{
-    BakeReport, Detail, MeshCompression, Message, Stage, StageTime, TextureFormat, UvMode, Watcher, Work,
+    BakeReport, MeshCompression, Message, Stage, StageTime, TextureFormat, UvMode, Watcher, Work,
     WriteOptions, check_budget, compress, has_colour_alone, with_normal_y, with_threads,
 };
 use std::path::Path;
@@ -55,10 +55,13 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
         baked.report.written = written;
         baked.report.warnings.splice(0..0, loaded.warnings.iter().map(|warning| warning.text.clone()));
         baked.report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
-        if !command.talk.quiet || command.json.is_some() || command.report.is_some() {
-            let (flip, channels) =
-                (command.report.is_some(), command.report.is_some() || command.json.is_some());
-            compare(&loaded.model, &mut baked, Detail { flip, channels }, &console)?;
+        let reads = ComparisonReaders {
+            terminal: !command.talk.quiet,
+            json: command.json.is_some(),
+            report: command.report.is_some(),
+        };
+        if !command.no_comparison {
+            compare_for(reads, &loaded.model, &mut baked, &console)?;
         }
         if let Some(path) = &command.json {
             let about =

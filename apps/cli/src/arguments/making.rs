@@ -36,6 +36,10 @@ pub struct BakeCommand {
     #[arg(long, value_name = "FILE", help_heading = IO)]
     pub report: Option<PathBuf>,
 
+    /// Leave out the comparison with a ray-cast bake at the end, which takes seconds; JSON then has none
+    #[arg(long, conflicts_with = "report", help_heading = IO)]
+    pub no_comparison: bool,
+
     /// Fail if a texture or material that a model names is missing, instead of warning
     #[arg(long, help_heading = IO)]
     pub strict: bool,
@@ -156,6 +160,10 @@ pub struct CompressCommand {
     /// Write a report with pictures to this .html file
     #[arg(long, value_name = "FILE", help_heading = IO)]
     pub report: Option<PathBuf>,
+
+    /// Leave out the comparison with the model as it was at the end, which takes seconds; JSON then has none
+    #[arg(long, conflicts_with = "report", help_heading = IO)]
+    pub no_comparison: bool,
 
     /// Fail if a texture or material that a model names is missing, instead of warning
     #[arg(long, help_heading = IO)]

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// A jobs file of four quick jobs over the demo's models in this folder, and one that fails.
+/// A jobs file of four quick jobs over two models in this folder, and one that fails.
 fn jobs(folder: &Path, with_failure: bool) {
     demo_pair(folder);
     fs::write(folder.join("broken.glb"), "glTF and no more").unwrap();

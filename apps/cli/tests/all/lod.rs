@@ -69,8 +69,7 @@ fn a_level_is_the_smallest_file_of_a_psnr() {
     let folder = folder.path();
     demo_pair(folder);
     // Bakes are many, and those that reach for a target in vain have as many triangles as there are.
-    run(folder, &["simplify", "demo_high.glb", "-t", "60", "-o", "model.glb"]);
-    run(folder, &["simplify", "demo_high.glb", "-t", "12", "-o", "coarse.glb"]);
+    run(folder, &["simplify", "demo_high.glb", "-t", "12", "-o", "model.glb"]);
     let small = ["--screen-size", "24", "--max-texture-size", "24"];
     let level = |model: &str, output: &str, code: i32, more: &[&str]| {
         let ended = parbake(folder)
@@ -83,14 +82,14 @@ fn a_level_is_the_smallest_file_of_a_psnr() {
         assert_eq!(ended.status.code(), Some(code), "{}", text(&ended.stderr));
         (json(&folder.join(output).join("lods.json"))["levels"][0].clone(), text(&ended.stderr))
     };
-    let (found, _) = level("model.glb", "found", 0, &["--target-psnr", "28"]);
+    let (found, _) = level("model.glb", "found", 0, &["--target-psnr", "30"]);
     let trials = found["target"]["trials"].as_array().unwrap();
     let chosen: Vec<&Value> = trials.iter().filter(|trial| trial["chosen"] == true).collect();
     assert_eq!(chosen.len(), 1);
     assert_eq!(chosen[0]["bytes"], found["bytes"]);
     assert_eq!(chosen[0]["triangles"], found["triangles"]);
     let psnr = [chosen[0], &found["at_screen_size"]].map(|of| of["psnr"].as_f64().unwrap());
-    assert!(psnr[0] >= 28.0 && (psnr[0] - psnr[1]).abs() < 1e-6, "{psnr:?}");
+    assert!(psnr[0] >= 30.0 && (psnr[0] - psnr[1]).abs() < 1e-6, "{psnr:?}");
     // One that ends closer to the target may be a little larger.
     let bytes = |of: &Value| of["bytes"].as_u64().unwrap();
     let smaller = |trial: &&Value| trial["reached"] == true && 103 * bytes(trial) < 100 * bytes(&found);
@@ -99,7 +98,7 @@ fn a_level_is_the_smallest_file_of_a_psnr() {
     let glb = document(&folder.join("found").join(found["file"].as_str().unwrap()));
     let sizes = chosen[0]["maps"].as_array().unwrap().iter().filter(|map| map["size"] != 0);
     assert_eq!(glb["images"].as_array().map_or(0, Vec::len), sizes.count());
-    let (missed, told) = level("coarse.glb", "missed", 4, &["--target-psnr", "60"]);
+    let (missed, told) = level("model.glb", "missed", 4, &["--target-psnr", "60"]);
     assert_eq!(missed["target"]["verdict"], "missed");
     assert!(told.contains("60 dB cannot be reached"), "{told}");
     let both = parbake(folder)
@@ -117,7 +116,17 @@ fn a_bake_makes_its_low_poly() {
     let folder = folder.path();
     demo_pair(folder);
     // Whatever time there is, the number of triangles and the layout are as promised.
-    let small = ["--texture-size", "64", "--preset", "fast", "--views", "24", "--time-budget", "6"];
+    let small = [
+        "--texture-size",
+        "64",
+        "--preset",
+        "fast",
+        "--views",
+        "24",
+        "--time-budget",
+        "4",
+        "--no-comparison",
+    ];
     run(
         folder,
         &[&["bake", "demo_high.glb", "-t", "80", "-o", "out.glb", "--json", "out.json"], &small[..]].concat(),

@@ -42,10 +42,10 @@ fn a_glb_goes_the_whole_way() {
     let folder = folder.path();
     let high = data.join("pbr/ExplodingBarrel/ExplodingBarrel.glb");
     let name = high.to_str().unwrap();
-    run(folder, &["simplify", name, "-o", "low.glb", "--triangles", "800", "-q"]);
+    run(folder, &["simplify", name, "-o", "low.glb", "--triangles", "400", "-q"]);
     run(
         folder,
-        &["bake", name, "low.glb", "-o", "baked.glb", "--preset", "fast", "--texture-size", "256", "-q"],
+        &["bake", name, "low.glb", "-o", "baked.glb", "--preset", "fast", "--texture-size", "128", "-q"],
     );
     let (before, after) =
         (psnr(folder, &high, "low.glb".as_ref()), psnr(folder, &high, "baked.glb".as_ref()));

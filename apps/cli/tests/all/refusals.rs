@@ -1,6 +1,6 @@
 //! What the command says before it works: help in groups, and one sentence for each wrong usage.
 
-use crate::common::{SMALL, demo_pair, json, parbake, run, text};
+use crate::common::{PLAIN, SMALL, demo_pair, json, parbake, run, text};
 use parbake::{Limits, read_model};
 use std::fs;
 use std::path::Path;
@@ -261,7 +261,7 @@ fn normal_maps_can_point_down() {
     demo_pair(folder);
     let bake = |name: &str, direction: &str| {
         let arguments = ["bake", "demo_high.glb", "demo_low.glb", "-q", "-o", name, "--json", "a.json"];
-        run(folder, &[&arguments[..], &SMALL, &["--normal-y", direction]].concat());
+        run(folder, &[&arguments[..], &SMALL, &PLAIN, &["--normal-y", direction]].concat());
         assert_eq!(json(&folder.join("a.json"))["options"]["normal_y"], direction);
         read_model(&folder.join(name), &Limits::default()).unwrap().model
     };

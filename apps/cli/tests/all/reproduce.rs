@@ -11,7 +11,7 @@ fn data(folder: &Path) {
     std::fs::create_dir_all(pair.join("lod3")).unwrap();
     std::fs::create_dir_all(folder.join("data/images2d")).unwrap();
     demo_pair(folder);
-    let high = parbake::simplified(&parbake::demo_pair().0, 1200);
+    let high = parbake::simplified(&parbake::demo_pair().0, 400);
     parbake::write_glb(&pair.join("high/jar.glb"), &high).unwrap();
     std::fs::rename(folder.join("demo_low.glb"), pair.join("lod3/jar.glb")).unwrap();
     picture(folder, 3);
@@ -109,7 +109,7 @@ fn mistakes_are_told_before_any_work() {
 fn further_maps_are_shown_under_random_lights() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let mut high = parbake::simplified(&parbake::demo_pair().0, 1200);
+    let mut high = parbake::simplified(&parbake::demo_pair().0, 400);
     let place = |name: &str| {
         let place = folder.join("data/pbr").join(name);
         std::fs::create_dir_all(&place).unwrap();

@@ -60,7 +60,7 @@ fn a_watched_bake_shows_itself_and_writes_the_same_file() {
     let folder = folder.path();
     demo_files(folder, &["demo_high.glb", "demo_low.glb"]);
     let mut files = vec!["bake", "demo_high.glb", "demo_low.glb", "--preset", "fast", "-q"];
-    files.extend(["--texture-size", "64", "--views", "60", "--view-size", "96"]);
+    files.extend(["--texture-size", "64", "--views", "40", "--view-size", "64"]);
     run(folder, &[&files[..], &["-o", "alone.glb"]].concat());
     let mut command = parbake(folder);
     command.args(&files).args(["-o", "watched.glb", "--watch", "--no-open"]).stderr(Stdio::piped());
@@ -143,7 +143,7 @@ fn script(name: &str) -> Option<Command> {
     Some(command)
 }
 
-const SIZE: usize = 256;
+const SIZE: usize = 192;
 
 /// Protects what the page shows, and so what people judge a bake by: its pictures are those of the CPU renderer, from
 /// the same cameras under the same light. The headlight and the studio are `eval`'s; unlit is the base colour alone.

@@ -1,12 +1,13 @@
 //! Emission from glTF to glTF: fitted from views as every other map, written, and read back.
 
+use crate::small_pair;
 use parbake::{BakeOptions, EvaluateOptions, Limits, Model, Parallax, Preset};
-use parbake::{bake, demo_pair, evaluate, read_model, write_glb};
+use parbake::{bake, evaluate, read_model, write_glb};
 use parbake_model::TextureSlot;
 
 /// The demo's pair; the high-poly glows where its colours are bright.
 fn glowing_pair() -> (Model, Model) {
-    let (mut high, low) = demo_pair();
+    let (mut high, low) = small_pair();
     let mut glow = high.images[0].clone();
     for [r, g, b, _] in &mut glow.pixels {
         let bright = (u32::from(*r) + u32::from(*g) + u32::from(*b)) / 3 > 110;
@@ -54,7 +55,7 @@ fn emission_is_fitted_written_and_read_back() {
         assert!(with > without + 3.0, "{parallax:?}: {with} {without}");
         assert!(baked.report.losses.iter().any(|loss| loss.moved == "emissive"));
     }
-    let (plain, low) = demo_pair();
+    let (plain, low) = small_pair();
     let baked = bake(&plain, &low, &quick(Parallax::None), &()).expect("the pair can be baked");
     assert!(baked.model.materials[0].emissive_texture.is_none());
 }

@@ -1,7 +1,8 @@
 //! A whole material, from model to written file.
 
+use crate::small_pair;
 use parbake::{BakeOptions, Limits, Model, Preset, Shading, ShapeMode};
-use parbake::{bake, demo_pair, read_model, write_glb};
+use parbake::{bake, read_model, write_glb};
 use parbake_fit::material_problem::MaterialProblem;
 use parbake_fit::problem::Problem;
 use parbake_image::display::{Curve, Display};
@@ -21,7 +22,7 @@ use parbake_views::reference::Sampling;
 /// default, and files carry it; `lambert` leaves it out.
 #[test]
 fn a_shiny_model_stays_shiny() {
-    let (mut high, low) = demo_pair();
+    let (mut high, low) = small_pair();
     for material in &mut high.materials {
         (material.metallic, material.roughness) = (1.0, 0.3);
         (material.emissive, material.emissive_strength) = ([0.0, 0.5, 0.0], 4.0);
@@ -78,7 +79,7 @@ fn error_of_normals(high: &Model, baked: &Model) -> f64 {
 /// fitted to a headlight, and than projected ones.
 #[test]
 fn normals_are_those_of_the_high_poly() {
-    let (high, low) = demo_pair();
+    let (high, low) = small_pair();
     let error = |options: BakeOptions| {
         let options = BakeOptions {
             texture_size: 64,

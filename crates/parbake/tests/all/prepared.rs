@@ -1,8 +1,7 @@
 //! A high-poly that is prepared once.
 
-use parbake::{
-    BakeError, BakeOptions, Convention, Preset, bake, bake_prepared, demo_pair, prepare_high_poly,
-};
+use crate::small_pair;
+use parbake::{BakeError, BakeOptions, Convention, Preset, bake, bake_prepared, prepare_high_poly};
 use parbake::{Message, Stage, Watcher};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -33,7 +32,7 @@ fn quick() -> BakeOptions {
 /// and the second low-poly has no view rendered again.
 #[test]
 fn views_are_rendered_once_for_any_number_of_low_polys() {
-    let (high, low) = demo_pair();
+    let (high, low) = small_pair();
     let prepared = prepare_high_poly(&high, &quick()).expect("the demo has an extent");
     let (first, second) = (Counter::default(), Counter::default());
     let own = bake(&high, &low, &quick(), &()).expect("the pair can be baked");
@@ -49,7 +48,7 @@ fn views_are_rendered_once_for_any_number_of_low_polys() {
 /// another.
 #[test]
 fn another_convention_is_refused() {
-    let (high, low) = demo_pair();
+    let (high, low) = small_pair();
     let prepared = prepare_high_poly(&high, &quick()).expect("the demo has an extent");
     let options = BakeOptions { convention: Convention::Paper, ..quick() };
     let refused = bake_prepared(&prepared, &low, &options, &());

@@ -1,7 +1,8 @@
 //! What a bake is compared with: a ray-cast bake of the low-poly as it was delivered.
 
+use crate::small_pair;
 use parbake::{BakeOptions, EvaluateOptions, Preset, ShapeMode, UvMode};
-use parbake::{Detail, bake, compare_bake, compared_as, demo_pair, evaluate_on};
+use parbake::{Detail, bake, compare_bake, compared_as, evaluate_on};
 
 fn quick() -> BakeOptions {
     BakeOptions {
@@ -18,7 +19,7 @@ fn quick() -> BakeOptions {
 /// what a plain bake of the delivered low-poly gives, to the bit.
 #[test]
 fn the_baseline_is_a_plain_bake() {
-    let (high, low) = demo_pair();
+    let (high, low) = small_pair();
     let plain = BakeOptions { uv: UvMode::Keep, shape: ShapeMode::Keep, rounds: Some(0), ..quick() };
     let plain = bake(&high, &low, &plain, &()).unwrap();
     let moved = bake(&high, &low, &quick(), &()).unwrap();
@@ -31,7 +32,7 @@ fn the_baseline_is_a_plain_bake() {
 /// Protects low-polys without coordinates: the baseline gets those that `repair` makes, and its own vertices.
 #[test]
 fn a_baseline_without_coordinates_is_repaired() {
-    let (high, mut low) = demo_pair();
+    let (high, mut low) = small_pair();
     low.mesh.uvs.clear();
     let moved = bake(&high, &low, &quick(), &()).unwrap();
     assert_eq!(moved.ray_cast.mesh.triangles.len(), low.mesh.triangles.len());
@@ -43,7 +44,7 @@ fn a_baseline_without_coordinates_is_repaired() {
 /// Protects one figure everywhere: what terminal, report and JSON show is what `evaluate` gives.
 #[test]
 fn the_figures_are_those_of_evaluate() {
-    let (high, low) = demo_pair();
+    let (high, low) = small_pair();
     let baked = bake(&high, &low, &quick(), &()).unwrap();
     let comparison = compare_bake(&high, &baked, Detail::default(), &()).unwrap();
     let options = EvaluateOptions { no_flip: true, ..compared_as(&baked.report.options) };

@@ -1,7 +1,8 @@
 //! Vertices through whole bakes of the built-in pair.
 
+use crate::small_pair;
 use parbake::{BakeOptions, Method, Preset, ShapeMode, UvMode};
-use parbake::{bake, demo_pair, with_threads};
+use parbake::{bake, with_threads};
 use parbake_model::Mesh;
 
 fn quick(shape: ShapeMode) -> BakeOptions {
@@ -29,7 +30,7 @@ fn is_sane(before: &Mesh, after: &Mesh) -> bool {
 /// Protects the mesh: vertices move, and it stays what it was.
 #[test]
 fn vertices_move_and_the_mesh_stays_sane() {
-    let (high, low) = demo_pair();
+    let (high, low) = small_pair();
     for (method, shape) in
         [(Method::Fit, ShapeMode::Free), (Method::Fit, ShapeMode::Normal), (Method::Paper, ShapeMode::Normal)]
     {
@@ -46,7 +47,7 @@ fn vertices_move_and_the_mesh_stays_sane() {
 /// closer, the mesh stays what it was, and threads change nothing.
 #[test]
 fn coarse_views_bring_outlines_closer_whatever_the_number_of_threads() {
-    let (high, mut low) = demo_pair();
+    let (high, mut low) = small_pair();
     low.mesh.positions.iter_mut().for_each(|p| *p *= 1.06);
     let options = BakeOptions { view_size: Some(160), ..quick(ShapeMode::Free) };
     let baked = |threads| with_threads(threads, || bake(&high, &low, &options, &())).unwrap().unwrap();
@@ -62,7 +63,7 @@ fn coarse_views_bring_outlines_closer_whatever_the_number_of_threads() {
 /// Protects who wants their vertices as they are.
 #[test]
 fn kept_vertices_are_kept_to_the_bit() {
-    let (high, low) = demo_pair();
+    let (high, low) = small_pair();
     let baked = bake(&high, &low, &quick(ShapeMode::Keep), &()).unwrap();
     assert_eq!(baked.model.mesh.positions, low.mesh.positions);
     assert!(baked.report.shape.is_none());

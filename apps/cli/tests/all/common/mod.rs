@@ -12,6 +12,9 @@ use tempfile::TempDir;
 pub const SMALL: [&str; 10] =
     ["--texture-size", "64", "--preset", "fast", "--views", "12", "--view-size", "64", "--rounds", "1"];
 
+/// A bake of which only what is written matters: nothing moves, and nothing is compared.
+pub const PLAIN: [&str; 5] = ["--uv", "repair", "--shape", "keep", "--no-comparison"];
+
 /// The command in this folder.
 pub fn parbake(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_parbake"));
@@ -36,20 +39,32 @@ pub fn json(path: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
 }
 
-/// The built-in pair as files in this folder: `demo_high.glb` and `demo_low.glb`.
+/// The built-in pair, with a tenth of the high-poly's triangles, as files in this folder: `demo_high.glb` and
+/// `demo_low.glb`.
 pub fn demo_pair(folder: &Path) {
     demo_files(folder, &["demo_high.glb", "demo_low.glb"]);
 }
 
-/// These files of what `demo` writes.
+/// These of the built-in pair's files, or `demo.glb`, a small bake of it.
 pub fn demo_files(folder: &Path, names: &[&str]) {
-    // Made once a program: its report takes longer than most of these tests.
-    static MADE: OnceLock<TempDir> = OnceLock::new();
-    let made = MADE.get_or_init(|| {
+    // Made once a program.
+    static PAIR: OnceLock<TempDir> = OnceLock::new();
+    static BAKED: OnceLock<()> = OnceLock::new();
+    let made = PAIR.get_or_init(|| {
         let made = tempfile::tempdir().unwrap();
-        run(made.path(), &[&["demo", "-o", ".", "-q"][..], &SMALL].concat());
+        let (high, low) = parbake::demo_pair();
+        let high = parbake::simplified(&high, 6000);
+        for (name, model) in [("demo_high.glb", &high), ("demo_low.glb", &low)] {
+            parbake::write_glb(&made.path().join(name), model).unwrap();
+        }
         made
     });
+    if names.contains(&"demo.glb") {
+        BAKED.get_or_init(|| {
+            let bake = ["bake", "demo_high.glb", "demo_low.glb", "-o", "demo.glb", "-q"];
+            run(made.path(), &[&bake[..], &SMALL].concat());
+        });
+    }
     for name in names {
         std::fs::copy(made.path().join(name), folder.join(name)).unwrap();
     }
