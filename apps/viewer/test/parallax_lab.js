@@ -18,6 +18,17 @@ function rendererOf(antialias) {
   return (renderers[antialias] = renderer);
 }
 
+/** The light of an even sky; made once, since on a processor it takes seconds. */
+const skies = new Map();
+function skyOf(renderer) {
+  if (!skies.has(renderer)) {
+    const sky = new THREE.Scene();
+    sky.background = new THREE.Color(0.4, 0.5, 0.7);
+    skies.set(renderer, new THREE.PMREMGenerator(renderer).fromScene(sky).texture);
+  }
+  return skies.get(renderer);
+}
+
 function pixels(renderer) {
   const gl = renderer.getContext(), out = new Uint8Array(4 * SIZE * SIZE);
   gl.readPixels(0, 0, SIZE, SIZE, gl.RGBA, gl.UNSIGNED_BYTE, out);
@@ -90,9 +101,7 @@ const tests = {
   async everything(name) {
     const { gltf, draw, mesh } = await stage(name, { antialias: true, change({ scene, renderer, lamp, mesh: object }) {
       scene.fog = new THREE.Fog(0x8899aa, 2, 6);
-      const generator = new THREE.PMREMGenerator(renderer), sky = new THREE.Scene();
-      sky.background = new THREE.Color(0.4, 0.5, 0.7);
-      scene.environment = generator.fromScene(sky).texture;
+      scene.environment = skyOf(renderer);
       const [point, spot] = [new THREE.PointLight(0xff8844, 8), new THREE.SpotLight(0x88aaff, 8)];
       point.position.set(-2, 1, 2);
       spot.position.set(0, 3, 1);
