@@ -63,13 +63,9 @@ fn bake_files(
                 finish(baked, &pair, options, output, console)?
             }
         };
-        let reads = ComparisonReaders {
-            terminal: !command.talk.quiet,
-            json: command.json.is_some(),
-            report: command.report.is_some(),
-        };
-        if !command.no_comparison {
-            compare_for(reads, &pair.high, &mut baked, console)?;
+        let figures = figures_read(command.talk, command.json.is_some(), command.report.is_some());
+        if let Some(detail) = figures.filter(|_| !command.no_comparison) {
+            compare(&pair.high, &mut baked, detail, console)?;
         }
         if let Some(path) = &command.json {
             let names = ["high", "low"].into_iter();
@@ -221,30 +217,10 @@ fn finish(
     Ok(baked)
 }
 
-/// Who reads the comparison of a result with a ray-cast bake.
-#[derive(Clone, Copy)]
-pub struct ComparisonReaders {
-    /// The last line.
-    pub terminal: bool,
-    /// The figures of the run.
-    pub json: bool,
-    /// The HTML report.
-    pub report: bool,
-}
-
-/// Compares if anybody reads it. FLIP, which takes most of the time, is for the HTML report alone; channels are for
-/// the report and for JSON.
-pub fn compare_for(
-    reads: ComparisonReaders,
-    high: &Model,
-    baked: &mut Baked,
-    console: &Console,
-) -> Result<(), Failure> {
-    let ComparisonReaders { terminal, json, report } = reads;
-    match terminal || json || report {
-        true => compare(high, baked, Detail { flip: report, channels: report || json }, console),
-        false => Ok(()),
-    }
+/// Which figures of a comparison somebody reads; none where nobody does. FLIP, which takes most of the time, is for the
+/// HTML report alone; channels are for the report and for JSON.
+pub fn figures_read(talk: Talk, json: bool, report: bool) -> Option<Detail> {
+    (!talk.quiet || json || report).then_some(Detail { flip: report, channels: report || json })
 }
 
 /// Compares the result with a ray-cast bake, for the last line, the report and JSON.
@@ -263,9 +239,9 @@ pub fn write_report(path: &Path, high: &Model, baked: &Baked, console: &Console)
 /// The last lines: what came of it.
 pub fn tell(console: &Console, talk: Talk, report: &BakeReport, output: &Path) {
     let decibels = |mean_square: f64| -10.0 * mean_square.max(1e-10).log10();
-    let gains = report.comparison.as_ref().map(|comparison| gains(comparison, "ray-cast", "baked") + "; ");
-    let gains = gains.unwrap_or_default();
-    console.say(&format!("{}: {gains}{:.1} s", output.display(), console.seconds()));
+    let compared = report.comparison.as_ref().map(|made| gains(made, "ray-cast", "baked") + "; ");
+    let compared = compared.unwrap_or_default();
+    console.say(&format!("{}: {compared}{:.1} s", output.display(), console.seconds()));
     if report.options.normal_y == NormalY::Down {
         console.say(
             "the normal map is written with -Y (--normal-y down); glTF viewers and eval show it wrongly",

@@ -1,7 +1,7 @@
 //! `parbake compress`.
 
 use crate::arguments::CompressCommand;
-use crate::bake::{ComparisonReaders, check_textures, compare_for, ending, gains, read, write_report};
+use crate::bake::{check_textures, compare, ending, figures_read, gains, read, write_report};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::formats::{check_formats, write_model};
@@ -55,13 +55,9 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
         baked.report.written = written;
         baked.report.warnings.splice(0..0, loaded.warnings.iter().map(|warning| warning.text.clone()));
         baked.report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
-        let reads = ComparisonReaders {
-            terminal: !command.talk.quiet,
-            json: command.json.is_some(),
-            report: command.report.is_some(),
-        };
-        if !command.no_comparison {
-            compare_for(reads, &loaded.model, &mut baked, &console)?;
+        let figures = figures_read(command.talk, command.json.is_some(), command.report.is_some());
+        if let Some(detail) = figures.filter(|_| !command.no_comparison) {
+            compare(&loaded.model, &mut baked, detail, &console)?;
         }
         if let Some(path) = &command.json {
             let about =
@@ -98,7 +94,7 @@ fn grown([before, after]: [u64; 2], output: &Path, write: &WriteOptions) -> Opti
 
 /// `bytes` are those of the model as delivered and as written, with all files that belong to it.
 fn summary(report: &BakeReport, [before, after]: [u64; 2], output: &Path, seconds: f64) -> String {
-    let mut text = String::new();
+    let mut text = format!("{}: ", output.display());
     if let Some(comparison) = &report.comparison {
         let before = match report.losses.first().map(|first| first.moved.as_str()) {
             Some("delivered") => "coordinates as they are",
@@ -106,7 +102,7 @@ fn summary(report: &BakeReport, [before, after]: [u64; 2], output: &Path, second
             _ => "ray-cast",
         };
         let gains = gains(comparison, before, "compressed").replace("HIGH BAKED", "MODEL COMPRESSED");
-        text += &format!("{}: {gains}\n", output.display());
+        text += &format!("{gains}\n");
     }
     text += &format!("{before} bytes → {after} bytes, ");
     let [given, now] = [report.high_triangles, report.low_triangles];

@@ -18,15 +18,15 @@ function rendererOf(antialias) {
   return (renderers[antialias] = renderer);
 }
 
+let sky;
 /** The light of an even sky; made once, since on a processor it takes seconds. */
-const skies = new Map();
 function skyOf(renderer) {
-  if (!skies.has(renderer)) {
-    const sky = new THREE.Scene();
-    sky.background = new THREE.Color(0.4, 0.5, 0.7);
-    skies.set(renderer, new THREE.PMREMGenerator(renderer).fromScene(sky).texture);
+  if (!sky) {
+    const scene = new THREE.Scene();
+    scene.background = new THREE.Color(0.4, 0.5, 0.7);
+    sky = new THREE.PMREMGenerator(renderer).fromScene(scene).texture;
   }
-  return skies.get(renderer);
+  return sky;
 }
 
 function pixels(renderer) {

@@ -1,5 +1,5 @@
 // The view in a report: node test/report.mjs REPORT.html [--out FOLDER]
-// Fails on: a model that does not come, a message in the console, a request to anywhere, a control that changes nothing, a
+// Fails on: a model that does not come, a message in the console, a request to anywhere, a control that changes nothing (in light colours and on a phone), a
 // key or a drag that does not turn the model, more than 3 MB of page besides pictures and textures.
 import fs from 'node:fs';
 import os from 'node:os';
@@ -45,7 +45,7 @@ for (const [name, options] of Object.entries({ desktop: { scheme: 'light' }, dar
     verify(!after.equals(before), `${name}: ${what} changes nothing`);
     before = after;
   };
-  // Other colours change nothing of what controls do.
+  // The colour scheme does not change what controls do.
   if (options.scheme !== 'dark') {
     await changes('wireframe', () => page.click('#view-wireframe'));
     if (await page.$eval('#view-parallax', (input) => !input.closest('label').hidden)) await changes('plain', () => page.click('#view-parallax'));

@@ -51,16 +51,17 @@ impl Curvature {
         };
         let mut blocks: Vec<Block> =
             distortion.elements.par_iter().zip(triangles).flat_map_iter(of_triangle).collect();
-        for pair in contact.curvatures(points) {
-            blocks.extend(pair_blocks(contact_weight * pair.curvature, pair.normal, pair.parts()));
+        for (curvature, pair) in contact.curvatures(points) {
+            blocks.extend(pair_blocks(contact_weight * curvature, pair.normal, pair.parts()));
         }
-        let matrix = Blocks::sorted(&blocks, points.len()).matrix(free);
+        let matrix = Columns::new(&blocks, points.len()).matrix(free);
         Self { factors: matrix.sp_cholesky(Side::Lower).ok() }
     }
 }
 
-fn block(i: u32, j: u32, block: DMat2) -> Block {
-    if i >= j { (i, j, block) } else { (j, i, block.transpose()) }
+/// The block in the lower half: transposed if i < j.
+fn lower(i: u32, j: u32, value: DMat2) -> Block {
+    if i >= j { (i, j, value) } else { (j, i, value.transpose()) }
 }
 
 /// Blocks by edges become blocks by corners: an edge is its end less the first corner.
@@ -69,12 +70,12 @@ fn triangle_blocks(
     [[ee, ef], [fe, ff]]: [[DMat2; 2]; 2],
 ) -> impl Iterator<Item = Block> {
     let blocks = [
-        block(a, a, ee + ef + fe + ff),
-        block(b, b, ee),
-        block(c, c, ff),
-        block(b, a, -(ee + ef)),
-        block(c, a, -(fe + ff)),
-        block(c, b, fe),
+        lower(a, a, ee + ef + fe + ff),
+        lower(b, b, ee),
+        lower(c, c, ff),
+        lower(b, a, -(ee + ef)),
+        lower(c, a, -(fe + ff)),
+        lower(c, b, fe),
     ];
     blocks.into_iter().take(if ee == DMat2::ZERO { 0 } else { 6 })
 }
@@ -82,22 +83,23 @@ fn triangle_blocks(
 /// `curvature · n nᵀ`, n being `normal` times each point's part.
 fn pair_blocks(curvature: f64, normal: DVec2, parts: &[(u32, f64)]) -> impl Iterator<Item = Block> {
     let outer = DMat2::from_cols(normal * normal.x, normal * normal.y) * curvature;
-    let lower = parts.iter().enumerate().flat_map(|(k, p)| parts[..=k].iter().map(move |q| (p, q)));
-    lower.map(move |((i, p), (j, q))| block(*i, *j, outer * (p * q)))
+    let pairs = parts.iter().enumerate().flat_map(|(k, p)| parts[..=k].iter().map(move |q| (p, q)));
+    pairs.map(move |((i, p), (j, q))| lower(*i, *j, outer * (p * q)))
 }
 
-/// The lower half by columns: blocks of one place are summed.
-struct Blocks {
+/// The lower half as compressed sparse columns of blocks.
+struct Columns {
     /// For each point where its column begins, and where the last one ends.
-    columns: Vec<usize>,
+    pointers: Vec<usize>,
     /// Ascending in each column, which begins on the diagonal.
     rows: Vec<u32>,
     values: Vec<DMat2>,
 }
 
-impl Blocks {
-    fn sorted(blocks: &[Block], points: usize) -> Self {
-        // By columns, then each by rows; both leave the order of equals, and so of sums, as it is.
+impl Columns {
+    /// Sums blocks of one place. A counting sort by column, then by row and index: they are summed in the order in which
+    /// they come, so the bits are the same each time.
+    fn new(blocks: &[Block], points: usize) -> Self {
         let mut begin = vec![0; points + 1];
         blocks.iter().for_each(|&(_, j, _)| begin[j as usize + 1] += 1);
         for j in 0..points {
@@ -108,67 +110,65 @@ impl Blocks {
             by_column[next[j as usize]] = (i, index as u32);
             next[j as usize] += 1;
         }
-        let most = blocks.len() + points;
-        let mut sorted = Self {
-            columns: Vec::with_capacity(points + 1),
-            rows: Vec::with_capacity(most),
-            values: Vec::with_capacity(most),
-        };
+        let capacity = blocks.len() + points;
+        let (mut pointers, mut rows) = (Vec::with_capacity(points + 1), Vec::with_capacity(capacity));
+        let mut values = Vec::with_capacity(capacity);
         for j in 0..points {
-            sorted.columns.push(sorted.rows.len());
-            sorted.rows.push(j as u32);
-            sorted.values.push(DMat2::ZERO);
+            pointers.push(rows.len());
+            rows.push(j as u32);
+            values.push(DMat2::ZERO);
             let column = &mut by_column[begin[j]..begin[j + 1]];
             column.sort_unstable();
             for &(i, index) in &*column {
                 let value = blocks[index as usize].2;
-                match (sorted.rows.last(), sorted.values.last_mut()) {
+                match (rows.last(), values.last_mut()) {
                     (Some(&last), Some(sum)) if last == i => *sum += value,
                     _ => {
-                        sorted.rows.push(i);
-                        sorted.values.push(value);
+                        rows.push(i);
+                        values.push(value);
                     }
                 }
             }
         }
-        sorted.columns.push(sorted.rows.len());
-        sorted
+        pointers.push(rows.len());
+        Self { pointers, rows, values }
     }
 
     /// The matrix of what is free, shifted.
     fn matrix(&self, free: &[DVec2]) -> SparseColMat<usize, f64> {
-        let diagonal = |j: usize| self.values[self.columns[j]];
-        let own = |(j, free): (usize, &DVec2)| {
-            let (block, free) = (diagonal(j), *free * *free);
+        let own = |(&pointer, free): (&usize, &DVec2)| {
+            let (block, free) = (self.values[pointer], *free * *free);
             block.x_axis.x * free.x + block.y_axis.y * free.y
         };
-        let trace: f64 = free.iter().enumerate().map(own).sum();
-        let shift = (SHIFT * trace / (2 * free.len()).max(1) as f64).max(f64::MIN_POSITIVE);
+        let trace: f64 = self.pointers.iter().zip(free).map(own).sum();
         let size = 2 * free.len();
-        let mut begin = Vec::with_capacity(size + 1);
-        let (mut rows, mut values) =
-            (Vec::with_capacity(4 * self.rows.len()), Vec::with_capacity(4 * self.rows.len()));
-        for (j, &columns) in free.iter().enumerate() {
-            let column = self.columns[j]..self.columns[j + 1];
+        let shift = (SHIFT * trace / size.max(1) as f64).max(f64::MIN_POSITIVE);
+        let mut pointers = Vec::with_capacity(size + 1);
+        let mut rows = Vec::with_capacity(4 * self.rows.len());
+        let mut values = Vec::with_capacity(4 * self.rows.len());
+        for (j, &free_here) in free.iter().enumerate() {
+            let range = self.pointers[j]..self.pointers[j + 1];
             for axis in 0..2 {
-                begin.push(rows.len());
+                pointers.push(rows.len());
                 // A coordinate that is not free has no other entry.
-                let added = if columns[axis] == 0.0 { 1.0 } else { shift };
-                for (&i, block) in self.rows[column.clone()].iter().zip(&self.values[column.clone()]) {
-                    let block = block.col(axis) * columns[axis] * free[i as usize];
+                let added = if free_here[axis] == 0.0 { 1.0 } else { shift };
+                for (&i, block) in self.rows[range.clone()].iter().zip(&self.values[range.clone()]) {
+                    let mut column = block.col(axis) * free_here[axis] * free[i as usize];
                     let is_diagonal = i as usize == j;
+                    if is_diagonal {
+                        column[axis] += added;
+                    }
                     for row in if is_diagonal { axis } else { 0 }..2 {
-                        let value = if is_diagonal && row == axis { block[row] + added } else { block[row] };
-                        if value != 0.0 {
+                        if column[row] != 0.0 {
                             rows.push(2 * i as usize + row);
-                            values.push(value);
+                            values.push(column[row]);
                         }
                     }
                 }
             }
         }
-        begin.push(rows.len());
-        SparseColMat::new(SymbolicSparseColMat::new_checked(size, size, begin, None, rows), values)
+        pointers.push(rows.len());
+        SparseColMat::new(SymbolicSparseColMat::new_checked(size, size, pointers, None, rows), values)
     }
 }
 
@@ -187,7 +187,6 @@ impl Preconditioner for Curvature {
 mod tests {
     use super::*;
     use crate::contact::{Border, ContactOptions};
-    use crate::distortion::Element;
     use parbake_atlas::Layout;
 
     /// Two right triangles on top of each other, 1.2 texels of 10 apart: one pair of a vertex and an
@@ -231,8 +230,8 @@ mod tests {
             gradient
         };
         let mut pairs = 0;
-        for pair in contact.curvatures(&layout.points) {
-            let (curvature, normal, parts) = (pair.curvature, pair.normal, pair.parts());
+        for (curvature, pair) in contact.curvatures(&layout.points) {
+            let (normal, parts) = (pair.normal, pair.parts());
             pairs += 1;
             let h = 1e-6;
             let (mut up, mut down) = (layout.points.clone(), layout.points.clone());
@@ -260,14 +259,14 @@ mod tests {
         assert!((got - want).abs() < 1e-5 * want, "{got}, {want} wanted");
     }
 
-    /// Protects the sums: the matrix is that of all blocks, each of which holds for both of its points, without what is not
-    /// free.
+    /// Protects the assembly: each block lands in its own rows and columns, blocks of one place add up, and what is not
+    /// free, or has no block, has its diagonal alone.
     #[test]
     fn blocks_are_summed_where_they_belong() {
         let (points, mut all) = (9u32, Vec::new());
-        let mut dense = vec![[0f64; 18]; 18];
+        let mut dense = vec![[0f64; 20]; 20];
         let number = |k: u32| (f64::from(k) * 1.3).sin();
-        let free: Vec<DVec2> = (0..points)
+        let free: Vec<DVec2> = (0..=points)
             .map(|i| dvec2(f64::from(u8::from(i != 4)), f64::from(u8::from(i % 4 != 0))))
             .collect();
         for k in 0..60u32 {
@@ -275,7 +274,7 @@ mod tests {
             let (x, y) = (dvec2(number(k), number(k + 7)), dvec2(number(k + 3), number(k + 5)));
             let symmetric = DMat2::from_cols(x, dvec2(x.y, y.y)) + DMat2::IDENTITY * 3.0;
             let own = if i == j { symmetric } else { DMat2::from_cols(x, y) };
-            all.push(block(i, j, own));
+            all.push(lower(i, j, own));
             for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 let value = own.col(column)[row] * free[i as usize][row] * free[j as usize][column];
                 let [a, b] = [2 * i as usize + row, 2 * j as usize + column];
@@ -285,20 +284,21 @@ mod tests {
                 }
             }
         }
-        let matrix = Blocks::sorted(&all, points as usize).matrix(&free);
-        let trace: f64 = (0..18).map(|i| dense[i][i]).sum();
+        let matrix = Columns::new(&all, points as usize + 1).matrix(&free);
+        let trace: f64 = (0..20).map(|i| dense[i][i]).sum();
         for (i, row) in dense.iter().enumerate() {
             for (j, &value) in row[..=i].iter().enumerate() {
                 let is_fixed = i == j && free[i / 2][i % 2] == 0.0;
                 let own = if is_fixed {
                     1.0
                 } else if i == j {
-                    SHIFT * trace / 18.0
+                    SHIFT * trace / 20.0
                 } else {
                     0.0
                 };
                 let found = matrix.get(i, j).copied().unwrap_or(0.0);
                 assert!((found - value - own).abs() < 1e-9, "{i} {j}: {found}, {value} wanted");
+                assert!(i == j || matrix.get(j, i).is_none(), "{i} {j}");
             }
         }
     }

@@ -36,7 +36,7 @@ pub struct BakeCommand {
     #[arg(long, value_name = "FILE", help_heading = IO)]
     pub report: Option<PathBuf>,
 
-    /// Leave out the comparison with a ray-cast bake at the end, which takes seconds; JSON then has none
+    /// Do not compare the result with a ray-cast bake at the end, which saves seconds; `comparison` in JSON is then null
     #[arg(long, conflicts_with = "report", help_heading = IO)]
     pub no_comparison: bool,
 
@@ -161,7 +161,7 @@ pub struct CompressCommand {
     #[arg(long, value_name = "FILE", help_heading = IO)]
     pub report: Option<PathBuf>,
 
-    /// Leave out the comparison with the model as it was at the end, which takes seconds; JSON then has none
+    /// Do not compare the result with the original at the end, which saves seconds; `comparison` in JSON is then null
     #[arg(long, conflicts_with = "report", help_heading = IO)]
     pub no_comparison: bool,
 

@@ -10,6 +10,8 @@ use std::time::{Duration, Instant};
 /// A jobs file of four quick jobs over two models in this folder, and one that fails.
 fn jobs(folder: &Path, with_failure: bool) {
     demo_pair(folder);
+    // With all of its triangles, so that there is time to interrupt a job.
+    parbake::write_glb(&folder.join("demo_high.glb"), &parbake::demo_pair().0).unwrap();
     fs::write(folder.join("broken.glb"), "glTF and no more").unwrap();
     let broken = "[[job]]\nname = 'broken'\ninputs = ['broken.glb']\n";
     let file = format!(

@@ -102,6 +102,7 @@ fn mistakes_are_named() {
         (vec!["simplify", "bad.obj", "-o", "./bad.obj"], 2, "overwrite"),
         (with(&["--json", "nowhere/never.json"]), 2, "nowhere"),
         (with(&["--json", "never.glb"]), 2, "two outputs"),
+        (with(&["--no-comparison", "--report", "never.html"]), 2, "--report"),
         (with(&["--threads", "99999"]), 2, "0 to 256"),
         (with(&["--max-distance", "-1"]), 2, "0 to 1"),
         ([&pair("demo_high.glb", "far.obj")[..], &SMALL].concat(), 1, "outside of every view"),
@@ -126,9 +127,27 @@ fn a_spent_budget_gives_the_projection() {
     let folder = folder.path();
     demo_pair(folder);
     let arguments = ["bake", "demo_high.glb", "demo_low.glb", "-o", "a.glb", "--texture-size", "64"];
-    run(folder, &[&arguments[..], &["--time-budget", "0", "--json", "a.json", "--no-comparison"]].concat());
-    assert_eq!(json(&folder.join("a.json"))["stopped_early"], true);
+    run(folder, &[&arguments[..], &["--time-budget", "0", "--json", "a.json"]].concat());
+    let report = json(&folder.join("a.json"));
+    assert_eq!(report["stopped_early"], true);
+    // The comparison is made all the same.
+    assert!(report["comparison"]["backgrounds"].is_array());
     run(folder, &["simplify", "a.glb", "-o", "b.glb", "--triangles", "100"]);
+}
+
+/// Protects who bakes thousands of props: the comparison at the end can be left out, and then nothing claims figures.
+#[test]
+fn a_comparison_may_be_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    let bake = ["bake", "demo_high.glb", "demo_low.glb", "-o", "a.glb", "--json", "a.json"];
+    let said = text(&run(folder, &[&bake[..], &SMALL, &PLAIN].concat()).stderr);
+    assert!(said.lines().any(|line| line.starts_with("a.glb: ")) && !said.contains("dB"), "{said}");
+    assert!(json(&folder.join("a.json"))["comparison"].is_null());
+    let compress = ["compress", "a.glb", "-o", "b.glb", "--texture-size", "32", "--uv", "repair"];
+    let printed = text(&run(folder, &[&compress[..], &["--no-comparison"]].concat()).stdout);
+    assert!(printed.starts_with("b.glb: ") && !printed.contains("dB"), "{printed}");
 }
 
 /// Protects people who lose patience: Ctrl-C writes the best state so far.

@@ -94,7 +94,7 @@ fn a_level_is_the_smallest_file_of_a_psnr() {
     let bytes = |of: &Value| of["bytes"].as_u64().unwrap();
     let smaller = |trial: &&Value| trial["reached"] == true && 103 * bytes(trial) < 100 * bytes(&found);
     assert_eq!(trials.iter().filter(smaller).count(), 0);
-    assert!(found["target"]["bakes"].as_u64().unwrap() <= 8);
+    assert!(trials.len() > 1 && found["target"]["bakes"].as_u64().unwrap() <= 8, "{trials:?}");
     let glb = document(&folder.join("found").join(found["file"].as_str().unwrap()));
     let sizes = chosen[0]["maps"].as_array().unwrap().iter().filter(|map| map["size"] != 0);
     assert_eq!(glb["images"].as_array().map_or(0, Vec::len), sizes.count());

@@ -60,7 +60,7 @@ fn a_watched_bake_shows_itself_and_writes_the_same_file() {
     let folder = folder.path();
     demo_files(folder, &["demo_high.glb", "demo_low.glb"]);
     let mut files = vec!["bake", "demo_high.glb", "demo_low.glb", "--preset", "fast", "-q"];
-    files.extend(["--texture-size", "64", "--views", "40", "--view-size", "64"]);
+    files.extend(["--texture-size", "64", "--views", "60", "--view-size", "96"]);
     run(folder, &[&files[..], &["-o", "alone.glb"]].concat());
     let mut command = parbake(folder);
     command.args(&files).args(["-o", "watched.glb", "--watch", "--no-open"]).stderr(Stdio::piped());

@@ -169,10 +169,11 @@ mod tests {
         let enlarged = |i: usize| model.images[0].pixels[i / 1024 / 32 * 32 + i % 1024 / 32];
         let pixels = (0..1024 * 1024).map(enlarged).collect();
         model.images[0] = Image { name: "fields".into(), width: 1024, height: 1024, pixels };
-        let [level] = &levels(&model, 500)[..] else { panic!("one level") };
+        let [level] = &levels(&model, 120)[..] else { panic!("one level") };
         let Level { report, baked, .. } = level;
         assert_eq!(report.way, Way::Scaled, "{:?}", report.candidates);
         assert_eq!(report.candidates.len(), 1);
+        assert!(report.triangles <= 120);
         assert!(report.texels <= 512 * 512 && report.texels >= 32 * 32, "{}", report.texels);
         let mesh = &baked.model.mesh;
         let is_own = |(uv, p): (&Vec2, &Vec3)| (*uv - 0.5 * p.truncate()).length() < 0.01;

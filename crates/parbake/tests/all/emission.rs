@@ -5,7 +5,7 @@ use parbake::{BakeOptions, EvaluateOptions, Limits, Model, Parallax, Preset};
 use parbake::{bake, evaluate, read_model, write_glb};
 use parbake_model::TextureSlot;
 
-/// The demo's pair; the high-poly glows where its colours are bright.
+/// The small pair; the high-poly glows where its colours are bright.
 fn glowing_pair() -> (Model, Model) {
     let (mut high, low) = small_pair();
     let mut glow = high.images[0].clone();

@@ -20,7 +20,7 @@ fn quick(parallax: Parallax) -> BakeOptions {
     }
 }
 
-/// With enough to see that what maps gain does not hang on the seed: 0.3 dB and more.
+/// With enough that what maps gain does not hang on the seed.
 fn baked(high: &Model, low: &Model, parallax: Parallax) -> Baked {
     let options = BakeOptions { texture_size: 64, views: Some(96), ..quick(parallax) };
     bake(high, low, &options, &()).expect("the pair can be baked")

@@ -31,36 +31,20 @@ struct Part {
 }
 
 /// A boundary vertex with an edge, or with a side of the square, that are near each other.
-struct Active {
+pub struct Active {
     distance: f64,
     limits: Limits,
     /// The distance's gradient for the vertex; without direction where the distance is zero.
-    normal: DVec2,
+    pub normal: DVec2,
     /// The vertex, the edge's ends, and how much of that gradient each has…
     shares: [(u32, f64); 3],
     /// …or the vertex alone: so many of them count.
     count: usize,
 }
 
-/// A pair's second derivative: `curvature` times the outer product, with itself, of `normal` times each point's share.
-pub struct PairCurvature {
-    /// By the distance: texels over squared texture coordinates.
-    pub curvature: f64,
-    /// The distance's gradient for the boundary vertex.
-    pub normal: DVec2,
-    shares: [(u32, f64); 3],
-    count: usize,
-}
-
-impl PairCurvature {
+impl Active {
     /// Points, and how much of the distance's gradient each has.
     pub fn parts(&self) -> &[(u32, f64)] {
-        &self.shares[..self.count]
-    }
-}
-
-impl Active {
-    fn parts(&self) -> &[(u32, f64)] {
         &self.shares[..self.count]
     }
 }
@@ -106,24 +90,25 @@ impl Contact {
         part
     }
 
-    /// What each pair that the barrier repels adds to the energy's second derivative.
-    pub fn curvatures(&self, points: &[DVec2]) -> Vec<PairCurvature> {
+    /// The pairs that the barrier repels, each with the energy's second derivative by the distance, above 0, in texels over
+    /// squared texture coordinates.
+    pub fn curvatures(&self, points: &[DVec2]) -> Vec<(f64, Active)> {
         let grid = self.grid(points, self.reach());
-        let bands: Vec<usize> = (0..self.boundary.vertices.len()).step_by(BAND).collect();
-        let of_band = |&first: &usize| {
+        let of_vertex = |vertex: usize| {
             let mut pairs = Vec::new();
-            for vertex in first..(first + BAND).min(self.boundary.vertices.len()) {
-                self.for_each_active(points, &grid, vertex, |active| {
-                    let curvature = self.curvature(active.distance, active.limits);
-                    if curvature > 0.0 {
-                        let &Active { normal, shares, count, .. } = active;
-                        pairs.push(PairCurvature { curvature, normal, shares, count });
-                    }
-                });
-            }
+            self.for_each_active(points, &grid, vertex, |active| {
+                let curvature = self.curvature(active.distance, active.limits);
+                if curvature > 0.0 {
+                    pairs.push((curvature, active));
+                }
+            });
             pairs
         };
-        bands.par_iter().flat_map_iter(of_band).collect()
+        (0..self.boundary.vertices.len())
+            .into_par_iter()
+            .with_min_len(BAND)
+            .flat_map_iter(of_vertex)
+            .collect()
     }
 
     /// The distance from which on any pair is free.
@@ -134,7 +119,7 @@ impl Contact {
 
     /// Pairs of this boundary vertex that are near enough to be repelled, with edges and with
     /// the border.
-    fn for_each_active(&self, points: &[DVec2], grid: &Grid, vertex: usize, mut visit: impl FnMut(&Active)) {
+    fn for_each_active(&self, points: &[DVec2], grid: &Grid, vertex: usize, mut visit: impl FnMut(Active)) {
         let index = self.boundary.vertices[vertex];
         let at = points[index as usize];
         grid.for_each(&Bounds::of(at, at, 0.0), |edge| {
@@ -150,13 +135,13 @@ impl Contact {
             let Some(limits) = self.limits.of(&self.boundary, vertex, edge) else { return };
             let normal = closest.offset / closest.distance;
             let shares = [(index, 1.0), (ends[0], closest.along - 1.0), (ends[1], -closest.along)];
-            visit(&Active { distance: closest.distance, limits, normal, shares, count: 3 });
+            visit(Active { distance: closest.distance, limits, normal, shares, count: 3 });
         });
         for (side, limits) in self.border.sides[vertex].iter().enumerate() {
             let Some(limits) = *limits else { continue };
             let (normal, distance) = super::border::inwards(at, side);
             let shares = [(index, 1.0); 3];
-            visit(&Active { distance, limits, normal, shares, count: 1 });
+            visit(Active { distance, limits, normal, shares, count: 1 });
         }
     }
 
