@@ -64,6 +64,9 @@ impl Default for PackOptions {
 /// From this number of charts on they are packed by their boxes.
 const MOST_SHAPES: usize = 4000;
 
+/// Cells along a side of the coarsest grid.
+const COARSE_CELLS: usize = 256;
+
 /// Packs a layout's charts into the unit square.
 ///
 /// Charts are moved, turned and scaled, never mirrored; charts that share a point move
@@ -124,9 +127,14 @@ fn arrange(pieces: &[Piece], texels: f64, gutter: f64, options: &PackOptions) ->
     // As fine as the texels; on smaller textures up to 64 charts of average size are at least some 64 cells wide.
     let by_charts = (64.0 * (pieces.len() as f64).sqrt()).clamp(256.0, 512.0);
     let cells = texels.max(by_charts).ceil() as usize;
-    let coarse = Square { cells: cells.min(256), gutter, rotate: options.rotate };
-    let fine = Square { cells, ..coarse };
-    search(pieces, coarse, fine, options.effort)
+    let doubled = std::iter::successors(Some(COARSE_CELLS), |cells| Some(2 * cells));
+    let mut grids: Vec<usize> = doubled.take_while(|grid| 3 * grid < 2 * cells).chain([cells]).collect();
+    if options.effort == 0 {
+        grids.truncate(1);
+    }
+    let square = |cells| Square { cells, gutter, rotate: options.rotate };
+    let squares: Vec<Square> = grids.into_iter().map(square).collect();
+    search(pieces, &squares, options.effort)
 }
 
 /// The pieces' points, the whole arrangement scaled up about the corner until it touches

@@ -9,9 +9,11 @@ use parbake_views::low_poly::LowPoly;
 
 /// The delivered low-poly made ready to be compared with, as [`Baked::ray_cast`](crate::Baked::ray_cast)
 /// says; none where that is what
-/// was prepared for the bake already, or where its own coordinates have no place for a texture.
+/// was prepared for the bake already, or where its own coordinates have no place for a texture. `sound` is the delivered
+/// low-poly repaired, where the bake began with that.
 pub(crate) fn other_baseline(
     delivered: &Model,
+    sound: Option<RepairedLowPoly>,
     prepared: &LowPoly,
     work: Work,
     high: &HighPoly,
@@ -24,10 +26,13 @@ pub(crate) fn other_baseline(
     if work == Work::Compress || same(&delivered.mesh) {
         return None;
     }
-    let mode = if options.uv == UvMode::Keep { UvMode::Keep } else { UvMode::Repair };
-    // A gutter that was asked for is no reason to pack anew what is sound.
-    let asked = UvStageOptions { gutter_required: false, ..options.uv_stage_as(mode) };
-    let RepairedLowPoly { name, mut mesh, .. } = repair_uvs(delivered, &asked).ok()?;
+    let repaired = || {
+        let mode = if options.uv == UvMode::Keep { UvMode::Keep } else { UvMode::Repair };
+        // A gutter that was asked for is no reason to pack anew what is sound.
+        let asked = UvStageOptions { gutter_required: false, ..options.uv_stage_as(mode) };
+        repair_uvs(delivered, &asked).ok()
+    };
+    let RepairedLowPoly { name, mut mesh, .. } = sound.or_else(repaired)?;
     if same(&mesh) {
         return None;
     }

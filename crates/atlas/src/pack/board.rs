@@ -51,7 +51,8 @@ impl Board {
         }
         let mut best: Option<Place> = None;
         let mut bound = limit;
-        let mut free = vec![0u64; (self.size - mask.width) / 64 + 1];
+        let columns = self.size - mask.width + 1;
+        let mut free = vec![0u64; columns.div_ceil(64)];
         let mut order: Vec<u32> = (0..mask.runs.len() as u32).collect();
         for y in 0..=self.size - mask.height {
             let lowest = cost(preference, 0, y, mask);
@@ -59,7 +60,12 @@ impl Board {
                 // Costs grow with y in the first place.
                 break;
             }
-            if let Some(x) = self.first_free(mask, y, &mut free, &mut order) {
+            // Further to the right the cost is above the bound.
+            let columns = match preference {
+                Preference::Corner => columns.min((bound.0 - mask.width).saturating_add(1)),
+                Preference::Bottom | Preference::Centre => columns,
+            };
+            if let Some(x) = self.first_free(mask, y, columns, &mut free, &mut order) {
                 let found = cost(preference, x, y, mask);
                 if found < bound {
                     bound = found;
@@ -85,16 +91,23 @@ impl Board {
             })
     }
 
-    /// The leftmost column at which the mask fits in row `y`. Runs are tried in the `order` given; the one that leaves
-    /// no column comes first from then on, since it meets the same obstacle in the next row.
-    fn first_free(&self, mask: &Mask, y: usize, free: &mut [u64], order: &mut [u32]) -> Option<usize> {
+    /// The leftmost of the first `columns` at which the mask fits in row `y`. Runs are tried in the `order` given; the one that
+    /// leaves no column comes first from then on, since it meets the same obstacle in the next row.
+    fn first_free(
+        &self,
+        mask: &Mask,
+        y: usize,
+        columns: usize,
+        free: &mut [u64],
+        order: &mut [u32],
+    ) -> Option<usize> {
         // Most rows are ruled out by the longest runs alone.
         if mask.runs.iter().take(32).any(|run| self.longest_free[y + run.row] < run.length) {
             return None;
         }
         free.fill(0);
-        set_range(free, 0, self.size - mask.width + 1);
-        let (mut first, mut last) = (0, free.len() - 1);
+        set_range(free, 0, columns);
+        let (mut first, mut last) = (0, (columns - 1) / 64);
         for place in 0..order.len() {
             let run = &mask.runs[order[place] as usize];
             let level = run.length.ilog2() as usize;
@@ -196,27 +209,32 @@ mod tests {
         Mask::new(&Shape { points: &points, triangles: &[[0, 1, 2], [0, 2, 3]], outline: &outline }, reach)
     }
 
-    /// Protects the search: the place is the lowest and leftmost by trying all cells.
+    /// Protects the search: the place is the best one by trying all cells.
     #[test]
-    fn finds_the_first_place_that_is_free() {
+    fn finds_the_best_place_that_is_free() {
         let size = 150;
-        let mut board = Board::new(size);
-        let mut taken = vec![false; size * size];
-        let mut state = 7u32;
-        for _ in 0..60 {
-            state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
-            let (w, h) = (1 + (state >> 8) as usize % 40, 1 + (state >> 20) as usize % 40);
-            let mask = rectangle(w as f64, h as f64, 0.0);
-            assert_eq!((mask.width, mask.height), (w, h));
-            let fits = |x: usize, y: usize| (y..y + h).all(|r| (x..x + w).all(|c| !taken[r * size + c]));
-            let wanted =
-                (0..=size - h).flat_map(|y| (0..=size - w).map(move |x| (x, y))).find(|&(x, y)| fits(x, y));
-            let found = board.find(&mask, Preference::Bottom, (usize::MAX, 0));
-            assert_eq!(found.map(|p| (p.x, p.y)), wanted);
-            if let Some((x, y)) = wanted {
-                board.take(&mask, x as i32, y as i32);
-                for r in y..y + h {
-                    taken[r * size + x..r * size + x + w].fill(true);
+        for preference in [Preference::Bottom, Preference::Corner, Preference::Centre] {
+            let mut board = Board::new(size);
+            let mut taken = vec![false; size * size];
+            let mut state = 7u32;
+            for _ in 0..60 {
+                state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+                let (w, h) = (1 + (state >> 8) as usize % 40, 1 + (state >> 20) as usize % 40);
+                let mask = rectangle(w as f64, h as f64, 0.0);
+                assert_eq!((mask.width, mask.height), (w, h));
+                let fits = |x: usize, y: usize| (y..y + h).all(|r| (x..x + w).all(|c| !taken[r * size + c]));
+                let places = (0..=size - h).flat_map(|y| (0..=size - w).map(move |x| (x, y)));
+                let wanted =
+                    places.filter(|&(x, y)| fits(x, y)).min_by_key(|&(x, y)| cost(preference, x, y, &mask));
+                let find = |limit| board.find(&mask, preference, limit).map(|p| (p.x, p.y));
+                assert_eq!(find((usize::MAX, 0)), wanted);
+                if let Some((x, y)) = wanted {
+                    let least = cost(preference, x, y, &mask);
+                    assert_eq!((find(least), find((least.0, least.1 + 1))), (None, wanted));
+                    board.take(&mask, x as i32, y as i32);
+                    for r in y..y + h {
+                        taken[r * size + x..r * size + x + w].fill(true);
+                    }
                 }
             }
         }

@@ -1,10 +1,16 @@
 //! The search for the largest scale at which all pieces find a place.
 //!
-//! One attempt puts the pieces down one after the other, each where it lies lowest. The
-//! search bisects on a coarse grid, then asks again and again for a little more on the
-//! fine one: a piece that found no place moves forward in the order ("squeaky wheel",
-//! Joslin and Clements 1999). The number of attempts is counted, not timed, so that
-//! the result is the same everywhere.
+//! One attempt puts the pieces down one after the other, each where it lies lowest, in the order of a plan.
+//!
+//! ```text
+//! coarse grid    the first plan alone, at several scales at once: the largest that fits
+//! finer grids    the same, from there on upwards: on finer cells pieces lie closer
+//! finest grid    all plans, a little larger each time: a piece that found no place moves forward in the order
+//! ```
+//!
+//! The last is a "squeaky wheel" (Joslin and Clements 1999). Where a scale is well below the largest nearly every plan
+//! fits, so one is enough to find it. Attempts are counted, not timed, and what one that was not needed found is not
+//! looked at, so that the result is the same everywhere.
 
 use super::board::{Board, Place, Preference};
 use super::mask::{Mask, Shape, TOUCH};
@@ -13,6 +19,7 @@ use super::polygon::bounds;
 use glam::{DVec2, dvec2};
 use rayon::prelude::*;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How the pieces are put down.
 #[derive(Clone)]
@@ -42,46 +49,101 @@ pub(super) struct Square {
 
 /// Scales below this are given up.
 const LEAST_SCALE: f64 = 1e-6;
+/// Scales that one order of pieces is tried at side by side.
+const AT_ONCE: i32 = 4;
+/// From one scale to the next, as a share of it: where nothing is known yet, and from one grid to the next.
+const COARSE_STEP: f64 = 0.1;
+const FINE_STEP: f64 = 0.02;
+/// The same in the search with all plans: the first one, by what it shrinks where none fits, and the least.
+const FIRST_STEP: f64 = 0.015;
+const SHRINK: f64 = 0.8;
+const LAST_STEP: f64 = 0.001;
 
-/// The best arrangement found, or `None` where none fits at any scale.
-pub(super) fn search(pieces: &[Piece], coarse: Square, fine: Square, effort: usize) -> Option<Arrangement> {
+/// The best arrangement found, or `None` where none fits at any scale. From one to the next `squares` have more cells.
+pub(super) fn search(pieces: &[Piece], squares: &[Square], effort: usize) -> Option<Arrangement> {
+    let (coarsest, finer) = squares.split_first()?;
+    let finest = finer.last().unwrap_or(coarsest);
     let mut plans = plans(pieces);
-    let mut best = first_fit(pieces, coarse, &mut plans)?;
-    let mut scale = best.scale;
-    let mut step = 0.02;
-    let mut rounds = rounds(pieces.len(), effort);
-    while rounds > 0 && step > 0.0005 {
-        rounds -= 1;
-        let wanted = scale * (1.0 + step);
-        match try_all(pieces, wanted, fine, &mut plans) {
-            Some(found) => {
-                scale = wanted;
-                best = found;
-            }
-            None => step *= 0.8,
+    let mut best = first_fit(pieces, *coarsest, &mut plans)?;
+    for square in finer {
+        let scale = best.scale;
+        let larger = |k: i32| scale * (1.0 + FINE_STEP * f64::from(k));
+        best = largest(pieces, *square, &plans[0], larger).unwrap_or(best);
+    }
+    let mut step = FIRST_STEP;
+    for _ in 0..rounds(pieces.len(), effort) {
+        if step < LAST_STEP {
+            break;
+        }
+        match try_all(pieces, best.scale * (1.0 + step), *finest, &mut plans) {
+            Some(found) => best = found,
+            None => step *= SHRINK,
         }
     }
     Some(best)
 }
 
-/// Tries all plans at a scale. Those that fail learn from it; one that fits comes first
-/// and replaces the last.
-fn try_all(pieces: &[Piece], scale: f64, square: Square, plans: &mut [Plan]) -> Option<Arrangement> {
-    let sheet = Sheet::new(pieces, scale, square)?;
-    let results: Vec<Result<Arrangement, usize>> = plans.par_iter().map(|plan| sheet.attempt(plan)).collect();
-    let mut fitted = None;
-    for (plan, result) in plans.iter_mut().zip(results) {
-        match result {
-            Ok(found) => fitted = fitted.or(Some(found)),
-            Err(failed) => promote(&mut plan.order, failed),
-        }
-    }
-    fitted
-}
-
 /// Rounds of attempts that a number of pieces is worth.
 fn rounds(count: usize, effort: usize) -> usize {
-    effort * (400 / count.max(1)).clamp(6, 16)
+    effort * (1600 / count.max(1)).clamp(5, 32)
+}
+
+/// An arrangement on the coarse grid whose scale is not much below the largest.
+fn first_fit(pieces: &[Piece], square: Square, plans: &mut [Plan]) -> Option<Arrangement> {
+    let mut high = 1.0 / (1.0 - COARSE_STEP);
+    while high > LEAST_SCALE {
+        let scale = |k: i32| high * (1.0 - COARSE_STEP).powi(AT_ONCE + 1 - k);
+        if let Some(found) = largest(pieces, square, &plans[0], scale) {
+            let between = |k: i32| found.scale * (1.0 + FINE_STEP * f64::from(k));
+            return largest(pieces, square, &plans[0], between).or(Some(found));
+        }
+        high = scale(1);
+    }
+    // Where gutters alone nearly fill the square, other orders may fit.
+    let mut scale = 1.0;
+    while scale > LEAST_SCALE {
+        if let Some(found) = try_all(pieces, scale, square, plans) {
+            return Some(found);
+        }
+        scale *= 1.0 - COARSE_STEP;
+    }
+    None
+}
+
+/// One plan at the scales that `scale` gives for 1 to [`AT_ONCE`], ascending, side by side: the largest that fits.
+fn largest(
+    pieces: &[Piece],
+    square: Square,
+    plan: &Plan,
+    scale: impl Fn(i32) -> f64 + Sync,
+) -> Option<Arrangement> {
+    let attempt = |k| Sheet::new(pieces, scale(k), square)?.attempt(plan, &|| false).ok();
+    let descending: Vec<i32> = (1..=AT_ONCE).rev().collect();
+    descending.into_par_iter().find_map_first(attempt)
+}
+
+/// Tries all plans at a scale. The first one that fits counts; those before it learn from their failure.
+fn try_all(pieces: &[Piece], scale: f64, square: Square, plans: &mut [Plan]) -> Option<Arrangement> {
+    let sheet = Sheet::new(pieces, scale, square)?;
+    let failed: Vec<OnceLock<usize>> = plans.iter().map(|_| OnceLock::new()).collect();
+    let winner = AtomicUsize::new(usize::MAX);
+    let fitted = plans.par_iter().enumerate().find_map_first(|(index, plan)| {
+        match sheet.attempt(plan, &|| winner.load(Ordering::Relaxed) < index) {
+            Ok(found) => {
+                winner.fetch_min(index, Ordering::Relaxed);
+                Some((index, found))
+            }
+            Err(position) => {
+                let _ = failed[index].set(position);
+                None
+            }
+        }
+    });
+    let learning = fitted.as_ref().map_or(plans.len(), |(index, _)| *index);
+    for (plan, failed) in plans.iter_mut().zip(&failed).take(learning) {
+        failed.get().iter().for_each(|position| promote(&mut plan.order, **position));
+    }
+    fitted.map(|(_, found)| found)
 }
 
 /// Orders to begin with: by area, by the longer side, by the outline's length.
@@ -111,34 +173,6 @@ fn plans(pieces: &[Piece]) -> Vec<Plan> {
         }
     }
     plans
-}
-
-/// Bisection on the coarse grid.
-fn first_fit(pieces: &[Piece], square: Square, plans: &mut [Plan]) -> Option<Arrangement> {
-    let mut fits = |scale: f64| try_all(pieces, scale, square, plans);
-    let mut high = 1.0;
-    let mut low = 1.0;
-    let mut best = loop {
-        if let Some(found) = fits(low) {
-            break found;
-        }
-        if low < LEAST_SCALE {
-            return None;
-        }
-        high = low;
-        low *= 0.9;
-    };
-    while high > low * 1.02 {
-        let middle = 0.5 * (low + high);
-        match fits(middle) {
-            Some(found) => {
-                low = middle;
-                best = found;
-            }
-            None => high = middle,
-        }
-    }
-    Some(best)
 }
 
 /// Moves a piece that found no place forward, by half its way to the front.
@@ -190,13 +224,16 @@ impl<'a> Sheet<'a> {
         turns.iter().all(|t| !t.is_empty()).then_some(Self { pieces, scale, square, turns })
     }
 
-    /// Puts all pieces down, or says which place in the order failed.
-    fn attempt(&self, plan: &Plan) -> Result<Arrangement, usize> {
+    /// Puts all pieces down, or says which place in the order failed, or was next when the attempt `is_needless`.
+    fn attempt(&self, plan: &Plan, is_needless: &dyn Fn() -> bool) -> Result<Arrangement, usize> {
         let cells = self.square.cells as f64;
         let mut board = Board::new(self.square.cells);
         let mut axes = vec![DVec2::X; self.pieces.len()];
         let mut corners = vec![DVec2::ZERO; self.pieces.len()];
         for (position, &index) in plan.order.iter().enumerate() {
+            if is_needless() {
+                return Err(position);
+            }
             let mut best: Option<(Place, &Turn)> = None;
             for turn in &self.turns[index] {
                 let limit = best.as_ref().map_or((usize::MAX, usize::MAX), |b| b.0.cost);

@@ -1,11 +1,13 @@
 //! From charts that may have faults to a layout that has none, always.
 //!
 //! Triangles that are mirrored, have no area or lie on others of their own chart are cut
-//! out and packed by themselves; the others are packed as they are. Packing rounds, so
-//! the packed layout is looked at once more and the charts are cut again if need be.
-//! A triangle by itself cannot be at fault, so this ends.
+//! out and packed by themselves; the others are packed as they are. Packing rounds, and
+//! triangles that touched may overlap by that: these are put where the packed layout has
+//! room, or all is packed again without them. A triangle by itself cannot be at fault, so
+//! this ends.
 
 use super::corners::{Corners, NONE, Surface};
+use crate::pack::free_space::place;
 use crate::predicates::{orientation, triangles_overlap};
 use crate::{AtlasError, ChartScale, Layout, PackOptions, pack};
 
@@ -44,7 +46,11 @@ pub(crate) fn settled(
             Ok(packed) => {
                 let faults = at_fault(&packed);
                 if faults.is_empty() {
-                    return Ok(filled_in(surface, corners, &packed, &live));
+                    return Ok(finished(surface, moved(corners, &packed, &live)));
+                }
+                let moved = moved(corners.clone(), &packed, &live);
+                if let Some(apart) = set_apart(surface, moved, &packed, &faults, &options) {
+                    return Ok(finished(surface, apart));
                 }
                 faults
             }
@@ -57,14 +63,45 @@ pub(crate) fn settled(
     Err(AtlasError::Unsound { triangles: at_fault(&layout).len() })
 }
 
-/// The packed places as corners, with those of triangles without area in space.
-fn filled_in(surface: &Surface, mut corners: Corners, packed: &Layout, live: &[u32]) -> Corners {
+/// Corners where a layout of the `live` triangles has them, with its charts.
+fn moved(mut corners: Corners, layout: &Layout, live: &[u32]) -> Corners {
     for (i, &t) in live.iter().enumerate() {
-        corners.uv[t as usize] = packed.corners(i);
-        corners.chart[t as usize] = packed.charts[i];
+        corners.uv[t as usize] = layout.corners(i);
+        corners.chart[t as usize] = layout.charts[i];
     }
+    corners.next = corners.next.max(charts(layout) as u32);
+    corners
+}
+
+/// Corners with those of triangles without area in space.
+fn finished(surface: &Surface, mut corners: Corners) -> Corners {
     surface.place_dead(&mut corners);
     corners
+}
+
+/// Packed corners with the triangles at fault where there is room for them; what else is packed stays where it is. None
+/// where there is no room, or where a chart falls apart without them.
+fn set_apart(
+    surface: &Surface,
+    mut corners: Corners,
+    packed: &Layout,
+    faults: &[u32],
+    options: &PackOptions,
+) -> Option<Corners> {
+    let (_, live) = surface.layout(&corners);
+    cut_out(surface, &mut corners, packed, &live, faults, Apart::Triangles);
+    let (layout, _) = surface.layout(&corners);
+    if charts(&layout) != charts(packed) + faults.len() {
+        return None;
+    }
+    let mut is_free = vec![false; charts(&layout)];
+    faults.iter().for_each(|&i| is_free[layout.charts[i as usize] as usize] = true);
+    let placed = place(&layout, &is_free, options)?.layout;
+    at_fault(&placed).is_empty().then(|| moved(corners, &placed, &live))
+}
+
+fn charts(layout: &Layout) -> usize {
+    layout.charts.iter().max().map_or(0, |&last| last as usize + 1)
 }
 
 /// Takes triangles out of their charts, or their whole charts apart.
@@ -76,7 +113,7 @@ fn cut_out(
     faults: &[u32],
     how: Apart,
 ) {
-    let charts = layout.charts.iter().max().map_or(0, |&c| c as usize + 1);
+    let charts = charts(layout);
     let mut area = vec![[0.0; 2]; charts];
     for i in 0..live.len() {
         let sums = &mut area[layout.charts[i] as usize];
@@ -124,7 +161,7 @@ pub(crate) fn at_fault(layout: &Layout) -> Vec<u32> {
 
 /// The triangles of each chart.
 pub(crate) fn by_chart(layout: &Layout) -> Vec<Vec<u32>> {
-    let mut charts = vec![Vec::new(); layout.charts.iter().max().map_or(0, |&c| c as usize + 1)];
+    let mut charts = vec![Vec::new(); charts(layout)];
     for (t, &chart) in layout.charts.iter().enumerate() {
         charts[chart as usize].push(t as u32);
     }
@@ -172,4 +209,42 @@ fn overlaps(layout: &Layout, triangles: &[u32], skipped: &[bool]) -> Vec<[u32; 2
         }
     }
     pairs
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::check;
+    use crate::repair::corners_of;
+    use parbake_model::Mesh;
+    use parbake_model::glam::{Vec3, vec2};
+
+    /// Squares in a row, two triangles each, in one chart in the middle of the texture.
+    fn strip(squares: u32) -> Mesh {
+        let mut mesh = Mesh::default();
+        for (x, y) in (0..=squares).flat_map(|x| [(x, 0), (x, 1)]) {
+            mesh.positions.push(Vec3::new(x as f32, -(y as f32), 0.0));
+            mesh.uvs.push(vec2(0.3 + 0.1 * x as f32, 0.5 + 0.1 * y as f32));
+        }
+        let square = |v: u32| [[v, v + 1, v + 2], [v + 2, v + 1, v + 3]];
+        mesh.triangles = (0..squares).flat_map(|x| square(2 * x)).collect();
+        mesh.triangle_materials = vec![0; mesh.triangles.len()];
+        mesh
+    }
+
+    /// Protects what is packed: a triangle at fault gets a place of its own, a gutter away, and nothing else moves. A chart
+    /// whose parts would lie side by side without a gutter is packed again.
+    #[test]
+    fn faults_of_rounding_are_set_apart() {
+        let mesh = strip(3);
+        let surface = Surface::new(&mesh);
+        let options = PackOptions { texture_size: 64, gutter_texels: 2.0, ..PackOptions::default() };
+        let packed = surface.layout(&corners_of(&surface)).0;
+        let apart = set_apart(&surface, corners_of(&surface), &packed, &[5], &options).unwrap();
+        assert_eq!(apart.uv[..5], corners_of(&surface).uv[..5]);
+        let found = check(&surface.layout(&apart).0, 64);
+        assert!(found.is_bijective() && found.gutter.unwrap().texels >= 2.0);
+        assert!(set_apart(&surface, corners_of(&surface), &packed, &[2], &options).is_none());
+    }
 }

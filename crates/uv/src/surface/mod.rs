@@ -254,21 +254,28 @@ impl UvStageOptions {
     }
 }
 
+/// What [`repair_uvs`] gives, and what moves from there on.
+pub struct RoomyLowPoly {
+    /// With the gutter that was asked for.
+    pub repaired: RepairedLowPoly,
+    /// With a wider one; none where there is no need or no room for it.
+    pub roomy: Option<RepairedLowPoly>,
+}
+
 /// [`repair_uvs`], with room for a parallax map where charts are few: near another chart's a fetch blends in that
 /// one's coefficients, which costs 0.1 to 0.4 dB; and for the smallest mip level. The gutter becomes that of `options`.
 ///
 /// # Errors
 /// As of [`repair_uvs`].
-pub fn repair_uvs_with_room(
-    low: &Model,
-    options: &mut UvStageOptions,
-) -> Result<RepairedLowPoly, AtlasError> {
+pub fn repair_uvs_with_room(low: &Model, options: &mut UvStageOptions) -> Result<RoomyLowPoly, AtlasError> {
     let repaired = repair_uvs(low, options)?;
-    let Some(wide) = options.with_room(&repaired.mesh) else { return Ok(repaired) };
     // What does not fit so goes without it.
-    let Ok(roomy) = repair_uvs(low, &wide) else { return Ok(repaired) };
-    *options = wide;
-    Ok(roomy)
+    let roomy = options.with_room(&repaired.mesh).and_then(|wide| {
+        let roomy = repair_uvs(low, &wide).ok()?;
+        *options = wide;
+        Some(roomy)
+    });
+    Ok(RoomyLowPoly { repaired, roomy })
 }
 
 fn packing(options: &UvStageOptions) -> PackOptions {
@@ -382,9 +389,11 @@ mod tests {
     fn few_charts_get_room_for_a_parallax_map() {
         for (asked, wanted) in [(None, 8.0), (Some(3.0), 3.0)] {
             let mut options = with_parallax(asked);
-            let repaired = repair_uvs_with_room(&sheet(4), &mut options).expect("four charts fit");
-            assert_eq!(options.gutter, wanted);
-            let gutter = check(&Layout::new(&repaired.mesh), 256).gutter.expect("several charts").texels;
+            let RoomyLowPoly { repaired, roomy } =
+                repair_uvs_with_room(&sheet(4), &mut options).expect("four charts fit");
+            assert_eq!((options.gutter, roomy.is_some()), (wanted, asked.is_none()));
+            let mesh = roomy.unwrap_or(repaired).mesh;
+            let gutter = check(&Layout::new(&mesh), 256).gutter.expect("several charts").texels;
             assert!(gutter >= wanted, "{gutter} of {wanted}");
         }
     }
@@ -404,9 +413,10 @@ mod tests {
         for (charts, mip, wanted) in [(4, 2.0, 8.0), (16, 1.5, 2.0 * 2f64.powf(1.5)), (16, 3.0, 8.0)] {
             let mut options =
                 UvStageOptions { parallax_size: None, smallest_mip: Some(mip), ..with_parallax(None) };
-            let repaired = repair_uvs_with_room(&sheet(charts), &mut options).expect("they fit");
+            let roomy = repair_uvs_with_room(&sheet(charts), &mut options).expect("they fit").roomy;
             assert!((options.gutter - wanted).abs() < 1e-9, "{}", options.gutter);
-            let gutter = check(&Layout::new(&repaired.mesh), 256).gutter.expect("several charts").texels;
+            let mesh = roomy.expect("a wider gutter").mesh;
+            let gutter = check(&Layout::new(&mesh), 256).gutter.expect("several charts").texels;
             assert!(gutter >= wanted, "{gutter} of {wanted}");
         }
     }
