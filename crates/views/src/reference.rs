@@ -3,7 +3,8 @@
 //!
 //! Each pixel is the mean of a few samples spread over a box narrower than the
 //! pixel: with the views' shifted grids the pool then shows the sharpness of much
-//! larger pictures. Kept as four half floats a pixel: linear, premultiplied.
+//! larger pictures. Where samples fill the pixel, those of one triangle are shaded once.
+//! Kept as four half floats a pixel: linear, premultiplied.
 
 use crate::pool::View;
 use half::f16;
@@ -91,21 +92,6 @@ fn render(high: &Scene, brdf: &impl Brdf, view: &View, sampling: &Sampling) -> R
     let screen = high.on_screen(&view.camera, size);
     let mut sum = vec![[0.0f32; 4]; size * size];
     let share = 1.0 / (samples * samples) as f32;
-    let footprint = (filter / samples as f32).max(1.0 / 16.0);
-    let mut add = |pixel: usize, triangle: u32, offset: (f32, f32)| {
-        if triangle == NOTHING {
-            return;
-        }
-        let at = (
-            (pixel % size) as f64 + 0.5 + f64::from(offset.0),
-            (pixel / size) as f64 + 0.5 + f64::from(offset.1),
-        );
-        let light = high.shade(brdf, &view.camera, &screen, triangle as usize, at, footprint);
-        for k in 0..3 {
-            sum[pixel][k] += light[k] * share;
-        }
-        sum[pixel][3] += share;
-    };
     let offset = |sample: usize| {
         let shift =
             [sample % samples, sample / samples].map(|i| filter * ((i as f32 + 0.5) / samples as f32 - 0.5));
@@ -129,7 +115,30 @@ fn render(high: &Scene, brdf: &impl Brdf, view: &View, sampling: &Sampling) -> R
     // Pixel by pixel: what the samples of one read of a texture lies close together, what their neighbours' do
     // is often in other pages of memory.
     for (pixel, triangles) in triangles.chunks_exact(count).enumerate() {
-        triangles.iter().enumerate().for_each(|(sample, &triangle)| add(pixel, triangle, offset(sample)));
+        let mut add = |triangle: u32, own: &[usize], width: f32| {
+            let centre = own.iter().fold([0.0; 2], |sum, &sample| {
+                let (x, y) = offset(sample);
+                [sum[0] + f64::from(x), sum[1] + f64::from(y)]
+            });
+            let [x, y] = centre.map(|sum| sum / own.len() as f64);
+            let at = ((pixel % size) as f64 + 0.5 + x, (pixel / size) as f64 + 0.5 + y);
+            let footprint = (filter * width).max(1.0 / 16.0);
+            let light = high.shade(brdf, &view.camera, &screen, triangle as usize, at, footprint);
+            let weight = own.len() as f32 * share;
+            (0..3).for_each(|k| sum[pixel][k] += light[k] * weight);
+            sum[pixel][3] += weight;
+        };
+        let seen = (0..count).filter(|&sample| triangles[sample] != NOTHING);
+        if fills_pixels {
+            // As on a GPU with multisampling: a triangle is shaded once, in the middle of what is seen of it.
+            let mut order: Vec<usize> = seen.collect();
+            order.sort_by_key(|&sample| triangles[sample]);
+            for own in order.chunk_by(|&a, &b| triangles[a] == triangles[b]) {
+                add(triangles[own[0]], own, (own.len() as f32 * share).sqrt());
+            }
+        } else {
+            seen.for_each(|sample| add(triangles[sample], &[sample], 1.0 / samples as f32));
+        }
     }
     let mut pixels = vec![[f16::ZERO; 4]; sum.len()];
     pixels.as_flattened_mut().convert_from_f32_slice(sum.as_flattened());
@@ -150,7 +159,10 @@ fn by_pixel(seen: &Visibility, samples: usize) -> Vec<u32> {
 mod tests {
     use super::*;
     use parbake_model::glam::Vec3;
+    use parbake_model::{Material, Mesh};
     use parbake_render::camera::{Camera, Projection};
+    use parbake_render::interpretation::Interpretation;
+    use parbake_render::shade::Lambert;
 
     /// Protects coarse views: each pixel is the mean of its own four, also where a side is odd.
     #[test]
@@ -162,5 +174,33 @@ mod tests {
         let red: Vec<f32> = halved.linear().iter().map(|p| p[0]).collect();
         assert_eq!(red, [3.0, 5.0, 13.0, 15.0]);
         assert!(halved.linear().iter().all(|p| p[3] == 1.0));
+    }
+
+    /// Protects what vertices follow: where samples fill pixels, each triangle is shaded once and counts by its share, which
+    /// shows what shading each sample does.
+    #[test]
+    fn shading_a_triangle_once_a_pixel_shows_the_same() {
+        let corners = [[-1.0, -1.0], [1.0, -0.9], [0.9, 1.0], [-0.8, 0.9]];
+        let positions: Vec<Vec3> = corners.iter().map(|&[x, y]| Vec3::new(x, y, 0.3 * x)).collect();
+        let triangles = vec![[0, 1, 2], [0, 2, 3]];
+        let normals = vec![Vec3::Z; 4];
+        let mesh = Mesh { positions, normals, triangles, triangle_materials: vec![0, 1], ..Mesh::default() };
+        let painted = |base_color| Material { base_color, ..Material::default() };
+        let materials = [painted([0.9, 0.1, 0.2, 1.0]), painted([0.1, 0.7, 0.3, 1.0])];
+        let scene = Scene::new(mesh, &materials, &[], Interpretation::default());
+        let camera = Camera::towards_origin(Vec3::new(0.3, 0.2, 1.0), 3.5, Projection::Perspective(0.4));
+        let view = View { camera, jitter: [0.0; 2] };
+        let of = |filter| {
+            let sampling = Sampling { size: 16, filter, samples: 3 };
+            render(&scene, &Lambert, &view, &sampling).linear()
+        };
+        // A box that is a little narrower is sampled one by one.
+        let (once, each) = (of(1.0), of(1.0 - 1e-6));
+        let is_mixed = |p: &&[f32; 4]| p[0] > 0.12 && p[1] > 0.12 && p[3] == 1.0;
+        assert!(once.iter().filter(is_mixed).count() > 5, "pixels along the diagonal");
+        let difference =
+            |(a, b): (&[f32; 4], &[f32; 4])| (0..4).map(|k| (a[k] - b[k]).abs()).fold(0.0, f32::max);
+        let most = once.iter().zip(&each).map(difference).fold(0.0, f32::max);
+        assert!(most < 2e-3, "{most}");
     }
 }
