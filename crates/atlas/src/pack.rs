@@ -16,6 +16,7 @@ mod shelves;
 
 use crate::{AtlasError, Layout};
 use glam::{DVec2, dvec2};
+pub(crate) use pieces::LEAST_EXTENT;
 use pieces::Piece;
 use search::{Arrangement, Square, search};
 
@@ -42,8 +43,8 @@ pub struct PackOptions {
     /// Whether charts may be turned.
     pub rotate: bool,
     /// How long to search for a denser packing: 0 takes what a coarse grid gives, 1 some
-    /// tenths of a second for tens of charts, 8 some eight times as long for a few per
-    /// cent more.
+    /// tenths of a second for tens of charts and seconds for a thousand. More tries more
+    /// sizes, and more directions of each chart.
     pub effort: usize,
     /// The charts' relative scales.
     pub chart_scale: ChartScale,
@@ -127,7 +128,8 @@ fn arrange(pieces: &[Piece], texels: f64, gutter: f64, options: &PackOptions) ->
     // As fine as the texels; on smaller textures up to 64 charts of average size are at least some 64 cells wide.
     let by_charts = (64.0 * (pieces.len() as f64).sqrt()).clamp(256.0, 512.0);
     let cells = texels.max(by_charts).ceil() as usize;
-    let doubled = std::iter::successors(Some(COARSE_CELLS), |cells| Some(2 * cells));
+    let doubled = std::iter::successors(Some(COARSE_CELLS), |grid| Some(2 * grid));
+    // Coarser grids have less than two thirds of the finest one's cells along a side.
     let mut grids: Vec<usize> = doubled.take_while(|grid| 3 * grid < 2 * cells).chain([cells]).collect();
     if options.effort == 0 {
         grids.truncate(1);

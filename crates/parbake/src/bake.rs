@@ -206,14 +206,14 @@ pub(crate) fn run(
     // Of a low-poly that was made here there is nothing that its maker should mend.
     let is_given = work != Work::Level;
     warnings.tell(turned.iter().filter(|_| is_given).flat_map(|(_, of_normals)| of_normals.clone()));
-    let Geometry { uv_stage, sound, shape, growth, map } =
+    let Geometry { uv_stage, repaired, shape, growth, map } =
         move_geometry(low, work, high, options, &scope, &mut clock)?;
     let low = uv_stage.as_ref().map_or(low, |u| &u.model);
     // The surface that maps are fitted on: that which viewers of parallax maps show.
     let prepared = LowPoly::for_parallax(low, &high.frame, size)?;
     warnings.tell(prepared.warnings.iter().cloned());
-    let repaired = uv_stage.iter().filter(|_| is_given).flat_map(|u| &u.report.repaired);
-    warnings.tell(repaired.map(|done| format!("{}: {done}", low.name)));
+    let done = uv_stage.iter().filter(|_| is_given).flat_map(|u| &u.report.repaired);
+    warnings.tell(done.map(|done| format!("{}: {done}", low.name)));
     clock.lap(Stage::Prepare);
 
     let projected = project(&prepared, high);
@@ -259,7 +259,7 @@ pub(crate) fn run(
     warnings.tell(unfit.map(|text| format!("{}: {text}", high.name)));
 
     let missed_texels = projected.missed;
-    let ray_cast = match other_baseline(delivered, sound, &prepared, work, high, options) {
+    let ray_cast = match other_baseline(delivered, repaired, &prepared, work, high, options) {
         // What was projected to begin with makes room for what is projected now.
         Some(baseline) => {
             drop(projected);

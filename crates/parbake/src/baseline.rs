@@ -7,13 +7,12 @@ use parbake_uv::surface::{RepairedLowPoly, UvStageOptions, repair_uvs};
 use parbake_views::high_poly::HighPoly;
 use parbake_views::low_poly::LowPoly;
 
-/// The delivered low-poly made ready to be compared with, as [`Baked::ray_cast`](crate::Baked::ray_cast)
-/// says; none where that is what
-/// was prepared for the bake already, or where its own coordinates have no place for a texture. `sound` is the delivered
-/// low-poly repaired, where the bake began with that.
+/// The delivered low-poly made ready to be compared with, as [`Baked::ray_cast`](crate::Baked::ray_cast) says; none where that
+/// is what was prepared for the bake already, or where its own coordinates have no place for a texture. `repaired` is the
+/// delivered low-poly where the bake began with its own coordinates.
 pub(crate) fn other_baseline(
     delivered: &Model,
-    sound: Option<RepairedLowPoly>,
+    repaired: Option<RepairedLowPoly>,
     prepared: &LowPoly,
     work: Work,
     high: &HighPoly,
@@ -26,17 +25,17 @@ pub(crate) fn other_baseline(
     if work == Work::Compress || same(&delivered.mesh) {
         return None;
     }
-    let repaired = || {
+    let repair = || {
         let mode = if options.uv == UvMode::Keep { UvMode::Keep } else { UvMode::Repair };
         // A gutter that was asked for is no reason to pack anew what is sound.
         let asked = UvStageOptions { gutter_required: false, ..options.uv_stage_as(mode) };
         repair_uvs(delivered, &asked).ok()
     };
-    let RepairedLowPoly { name, mut mesh, .. } = sound.or_else(repaired)?;
+    let RepairedLowPoly { name, mut mesh, .. } = repaired.or_else(repair)?;
     if same(&mesh) {
         return None;
     }
     mesh.triangle_materials.fill(0);
-    let repaired = Model { name, mesh, materials: vec![Material::default()], ..Model::default() };
-    LowPoly::new(&repaired, &high.frame, options.texture_size).ok()
+    let model = Model { name, mesh, materials: vec![Material::default()], ..Model::default() };
+    LowPoly::new(&model, &high.frame, options.texture_size).ok()
 }

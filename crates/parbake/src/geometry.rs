@@ -19,7 +19,7 @@ use parbake_render::parallax::ParallaxCoefficients;
 use parbake_shape::paper_joint_fit::paper_joint_fit;
 use parbake_shape::stage::{ShapeReport, grow_for_cutout, shape};
 use parbake_uv::surface::{
-    RepairedLowPoly, RoomyLowPoly, Source, UvStageResult, optimise_uvs, repair_uvs_with_room,
+    RepairedLowPoly, RepairedLowPolys, Source, UvStageResult, optimise_uvs, repair_uvs_with_room,
 };
 use parbake_views::high_poly::HighPoly;
 use parbake_views::importance::importances_of;
@@ -29,9 +29,9 @@ use parbake_views::importance::importances_of;
 pub struct Geometry {
     /// The low-poly with its coordinates; none where nothing was to move.
     pub uv_stage: Option<UvStageResult>,
-    /// The low-poly with its own coordinates, sound and not moved; none where nothing was to move, and where the user asked
-    /// for other coordinates or for a gutter.
-    pub sound: Option<RepairedLowPoly>,
+    /// The low-poly with its own coordinates, repaired and not moved; none where nothing was to move, where a model is
+    /// compressed, and where the user asked for other coordinates or for a gutter.
+    pub repaired: Option<RepairedLowPoly>,
     /// How vertices moved, where they did.
     pub shape: Option<ShapeReport>,
     /// How far vertices reach beyond the high-poly for a cutout to take away, if they do: the offsets of
@@ -67,10 +67,11 @@ pub fn move_geometry(
         return Ok(geometry);
     }
     let mut uv_options = options.uv_stage_for(work);
+    // As `baseline.rs` asks for it.
     let is_own = matches!(options.uv, UvMode::Optimize | UvMode::Repair) && !uv_options.gutter_required;
-    let RoomyLowPoly { repaired, roomy } = repair_uvs_with_room(low, &mut uv_options)?;
-    geometry.sound = (is_own && !same).then(|| repaired.clone());
-    let mut low = roomy.unwrap_or(repaired);
+    let RepairedLowPolys { plain, roomy } = repair_uvs_with_room(low, &mut uv_options)?;
+    let mut low = roomy.unwrap_or_else(|| plain.clone());
+    geometry.repaired = (is_own && !same).then_some(plain);
     clock.lap(Stage::Prepare);
     let name = low.name.clone();
     let shown = |snapshot| Some(of_surface(&name, high, snapshot));

@@ -59,8 +59,8 @@ impl Seen {
     }
 }
 
-/// The high-poly from so many views of `size`² pixels, with `samples`² samples a pixel: pictures for gradients through
-/// silhouettes. `seed` chooses the directions. Fewer views where the watcher stops them.
+/// The high-poly from so many views of `size`² pixels, with `samples`² samples of coverage a pixel: pictures for gradients
+/// through silhouettes. `seed` chooses the directions. Fewer views where the watcher stops them.
 pub fn smooth_references(
     high: &HighPoly,
     views: usize,

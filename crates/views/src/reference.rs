@@ -3,7 +3,7 @@
 //!
 //! Each pixel is the mean of a few samples spread over a box narrower than the
 //! pixel: with the views' shifted grids the pool then shows the sharpness of much
-//! larger pictures. Where samples fill the pixel, those of one triangle are shaded once.
+//! larger pictures. Where samples fill the pixel, those of one triangle are shaded once, at their centroid.
 //! Kept as four half floats a pixel: linear, premultiplied.
 
 use crate::pool::View;
@@ -114,30 +114,25 @@ fn render(high: &Scene, brdf: &impl Brdf, view: &View, sampling: &Sampling) -> R
     };
     // Pixel by pixel: what the samples of one read of a texture lies close together, what their neighbours' do
     // is often in other pages of memory.
+    let mut order = Vec::with_capacity(count);
     for (pixel, triangles) in triangles.chunks_exact(count).enumerate() {
-        let mut add = |triangle: u32, own: &[usize], width: f32| {
-            let centre = own.iter().fold([0.0; 2], |sum, &sample| {
-                let (x, y) = offset(sample);
-                [sum[0] + f64::from(x), sum[1] + f64::from(y)]
-            });
-            let [x, y] = centre.map(|sum| sum / own.len() as f64);
-            let at = ((pixel % size) as f64 + 0.5 + x, (pixel / size) as f64 + 0.5 + y);
-            let footprint = (filter * width).max(1.0 / 16.0);
-            let light = high.shade(brdf, &view.camera, &screen, triangle as usize, at, footprint);
-            let weight = own.len() as f32 * share;
+        order.clear();
+        order.extend((0..count).filter(|&sample| triangles[sample] != NOTHING));
+        if fills_pixels {
+            // As multisampling with centroid sampling: each triangle is shaded once, at the centroid of its samples.
+            order.sort_by_key(|&sample| triangles[sample]);
+        }
+        for own in order.chunk_by(|&a, &b| fills_pixels && triangles[a] == triangles[b]) {
+            let (count, weight) = (own.len() as f32, own.len() as f32 * share);
+            let shifts = own.iter().map(|&sample| offset(sample));
+            let (x, y) = shifts.fold((0.0, 0.0), |sum, shift| (sum.0 + shift.0, sum.1 + shift.1));
+            let at = [(pixel % size, x / count), (pixel / size, y / count)]
+                .map(|(pixel, shift)| pixel as f64 + 0.5 + f64::from(shift));
+            let footprint = (filter * weight.sqrt()).max(1.0 / 16.0);
+            let triangle = triangles[own[0]] as usize;
+            let light = high.shade(brdf, &view.camera, &screen, triangle, (at[0], at[1]), footprint);
             (0..3).for_each(|k| sum[pixel][k] += light[k] * weight);
             sum[pixel][3] += weight;
-        };
-        let seen = (0..count).filter(|&sample| triangles[sample] != NOTHING);
-        if fills_pixels {
-            // As on a GPU with multisampling: a triangle is shaded once, in the middle of what is seen of it.
-            let mut order: Vec<usize> = seen.collect();
-            order.sort_by_key(|&sample| triangles[sample]);
-            for own in order.chunk_by(|&a, &b| triangles[a] == triangles[b]) {
-                add(triangles[own[0]], own, (own.len() as f32 * share).sqrt());
-            }
-        } else {
-            seen.for_each(|sample| add(triangles[sample], &[sample], 1.0 / samples as f32));
         }
     }
     let mut pixels = vec![[f16::ZERO; 4]; sum.len()];
@@ -183,7 +178,7 @@ mod tests {
         let corners = [[-1.0, -1.0], [1.0, -0.9], [0.9, 1.0], [-0.8, 0.9]];
         let positions: Vec<Vec3> = corners.iter().map(|&[x, y]| Vec3::new(x, y, 0.3 * x)).collect();
         let triangles = vec![[0, 1, 2], [0, 2, 3]];
-        let normals = vec![Vec3::Z; 4];
+        let normals = positions.iter().map(|p| Vec3::new(0.7 * p.x, 0.5 * p.y, 1.0).normalize()).collect();
         let mesh = Mesh { positions, normals, triangles, triangle_materials: vec![0, 1], ..Mesh::default() };
         let painted = |base_color| Material { base_color, ..Material::default() };
         let materials = [painted([0.9, 0.1, 0.2, 1.0]), painted([0.1, 0.7, 0.3, 1.0])];

@@ -8,7 +8,7 @@ use glam::{DVec2, dvec2};
 
 /// No piece's longer side gets shorter than this part of the texture, so that 32-bit
 /// coordinates can hold its triangles.
-const LEAST_EXTENT: f64 = 1e-4;
+pub(crate) const LEAST_EXTENT: f64 = 1e-4;
 
 /// What moves as one: a chart, or several that share points.
 pub(super) struct Piece {

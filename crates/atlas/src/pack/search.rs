@@ -1,6 +1,6 @@
 //! The search for the largest scale at which all pieces find a place.
 //!
-//! One attempt puts the pieces down one after the other, each where it lies lowest, in the order of a plan.
+//! One attempt puts the pieces down one after the other, in the order of a plan and each at the best place by its preference.
 //!
 //! ```text
 //! coarse grid    the first plan alone, at several scales at once: the largest that fits
@@ -9,8 +9,8 @@
 //! ```
 //!
 //! The last is a "squeaky wheel" (Joslin and Clements 1999). Where a scale is well below the largest nearly every plan
-//! fits, so one is enough to find it. Attempts are counted, not timed, and what one that was not needed found is not
-//! looked at, so that the result is the same everywhere.
+//! fits, so one is enough to find it. Attempts are counted, not timed, and results of cancelled ones are dropped, so that
+//! the result does not depend on timing.
 
 use super::board::{Board, Place, Preference};
 use super::mask::{Mask, Shape, TOUCH};
@@ -59,16 +59,21 @@ const FIRST_STEP: f64 = 0.015;
 const SHRINK: f64 = 0.8;
 const LAST_STEP: f64 = 0.001;
 
-/// The best arrangement found, or `None` where none fits at any scale. From one to the next `squares` have more cells.
+/// The best arrangement found, or `None` where none fits at any scale. `squares` go from coarse to fine.
 pub(super) fn search(pieces: &[Piece], squares: &[Square], effort: usize) -> Option<Arrangement> {
     let (coarsest, finer) = squares.split_first()?;
     let finest = finer.last().unwrap_or(coarsest);
     let mut plans = plans(pieces);
     let mut best = first_fit(pieces, *coarsest, &mut plans)?;
     for square in finer {
-        let scale = best.scale;
-        let larger = |k: i32| scale * (1.0 + FINE_STEP * f64::from(k));
-        best = largest(pieces, *square, &plans[0], larger).unwrap_or(best);
+        loop {
+            let scale = best.scale;
+            let larger = |k: i32| scale * (1.0 + FINE_STEP * f64::from(k));
+            best = largest(pieces, *square, &plans[0], larger).unwrap_or(best);
+            if best.scale < larger(AT_ONCE) {
+                break;
+            }
+        }
     }
     let mut step = FIRST_STEP;
     for _ in 0..rounds(pieces.len(), effort) {
@@ -117,33 +122,46 @@ fn largest(
     plan: &Plan,
     scale: impl Fn(i32) -> f64 + Sync,
 ) -> Option<Arrangement> {
-    let attempt = |k| Sheet::new(pieces, scale(k), square)?.attempt(plan, &|| false).ok();
     let descending: Vec<i32> = (1..=AT_ONCE).rev().collect();
-    descending.into_par_iter().find_map_first(attempt)
+    let found = first_fitting(&descending, |_, &k, is_cancelled| {
+        Sheet::new(pieces, scale(k), square)?.attempt(plan, is_cancelled).ok()
+    });
+    found.map(|(_, found)| found)
 }
 
-/// Tries all plans at a scale. The first one that fits counts; those before it learn from their failure.
+/// Tries all plans at a scale. The first one that fits counts, and comes first from then on; those before it learn from
+/// their failure.
 fn try_all(pieces: &[Piece], scale: f64, square: Square, plans: &mut [Plan]) -> Option<Arrangement> {
     let sheet = Sheet::new(pieces, scale, square)?;
     let failed: Vec<OnceLock<usize>> = plans.iter().map(|_| OnceLock::new()).collect();
-    let winner = AtomicUsize::new(usize::MAX);
-    let fitted = plans.par_iter().enumerate().find_map_first(|(index, plan)| {
-        match sheet.attempt(plan, &|| winner.load(Ordering::Relaxed) < index) {
-            Ok(found) => {
-                winner.fetch_min(index, Ordering::Relaxed);
-                Some((index, found))
-            }
-            Err(position) => {
-                let _ = failed[index].set(position);
-                None
-            }
-        }
+    let fitted = first_fitting(plans, |index, plan, is_cancelled| {
+        let result = sheet.attempt(plan, is_cancelled);
+        result.map_err(|position| failed[index].get_or_init(|| position)).ok()
     });
     let learning = fitted.as_ref().map_or(plans.len(), |(index, _)| *index);
     for (plan, failed) in plans.iter_mut().zip(&failed).take(learning) {
-        failed.get().iter().for_each(|position| promote(&mut plan.order, **position));
+        if let Some(&position) = failed.get() {
+            promote(&mut plan.order, position);
+        }
     }
-    fitted.map(|(_, found)| found)
+    fitted.map(|(index, found)| {
+        plans[..=index].rotate_right(1);
+        found
+    })
+}
+
+/// The first item by whose attempt all pieces fit, and its index. All are attempted side by side; attempts after one that
+/// fitted are cancelled.
+fn first_fitting<T: Sync>(
+    items: &[T],
+    attempt: impl Fn(usize, &T, &dyn Fn() -> bool) -> Option<Arrangement> + Sync,
+) -> Option<(usize, Arrangement)> {
+    let first = AtomicUsize::new(usize::MAX);
+    items.par_iter().enumerate().find_map_first(|(index, item)| {
+        let found = attempt(index, item, &|| first.load(Ordering::Relaxed) < index)?;
+        first.fetch_min(index, Ordering::Relaxed);
+        Some((index, found))
+    })
 }
 
 /// Orders to begin with: by area, by the longer side, by the outline's length.
@@ -224,14 +242,14 @@ impl<'a> Sheet<'a> {
         turns.iter().all(|t| !t.is_empty()).then_some(Self { pieces, scale, square, turns })
     }
 
-    /// Puts all pieces down, or says which place in the order failed, or was next when the attempt `is_needless`.
-    fn attempt(&self, plan: &Plan, is_needless: &dyn Fn() -> bool) -> Result<Arrangement, usize> {
+    /// Puts all pieces down, or says which place in the order failed, or was next when the attempt `is_cancelled`.
+    fn attempt(&self, plan: &Plan, is_cancelled: &dyn Fn() -> bool) -> Result<Arrangement, usize> {
         let cells = self.square.cells as f64;
         let mut board = Board::new(self.square.cells);
         let mut axes = vec![DVec2::X; self.pieces.len()];
         let mut corners = vec![DVec2::ZERO; self.pieces.len()];
         for (position, &index) in plan.order.iter().enumerate() {
-            if is_needless() {
+            if is_cancelled() {
                 return Err(position);
             }
             let mut best: Option<(Place, &Turn)> = None;

@@ -7,6 +7,7 @@
 //! this ends.
 
 use super::corners::{Corners, NONE, Surface};
+use crate::pack::LEAST_EXTENT;
 use crate::pack::free_space::place;
 use crate::predicates::{orientation, triangles_overlap};
 use crate::{AtlasError, ChartScale, Layout, PackOptions, pack};
@@ -48,9 +49,9 @@ pub(crate) fn settled(
                 if faults.is_empty() {
                     return Ok(finished(surface, moved(corners, &packed, &live)));
                 }
-                let moved = moved(corners.clone(), &packed, &live);
-                if let Some(apart) = set_apart(surface, moved, &packed, &faults, &options) {
-                    return Ok(finished(surface, apart));
+                let as_packed = moved(corners.clone(), &packed, &live);
+                if let Some(placed) = set_apart(surface, as_packed, &packed, (&live, &faults), &options) {
+                    return Ok(finished(surface, placed));
                 }
                 faults
             }
@@ -79,25 +80,30 @@ fn finished(surface: &Surface, mut corners: Corners) -> Corners {
     corners
 }
 
-/// Packed corners with the triangles at fault where there is room for them; what else is packed stays where it is. None
-/// where there is no room, or where a chart falls apart without them.
+/// Packed corners with the triangles at fault where there is room for them; what else is packed stays where it is. None where
+/// there is no room, where they are smaller than packing makes them, and where a chart falls apart without them.
 fn set_apart(
     surface: &Surface,
     mut corners: Corners,
     packed: &Layout,
-    faults: &[u32],
+    (live, faults): (&[u32], &[u32]),
     options: &PackOptions,
 ) -> Option<Corners> {
-    let (_, live) = surface.layout(&corners);
-    cut_out(surface, &mut corners, packed, &live, faults, Apart::Triangles);
+    cut_out(surface, &mut corners, packed, live, faults, Apart::Triangles);
+    let extent = |[a, b, c]: [glam::DVec2; 3]| (a.max(b).max(c) - a.min(b).min(c)).max_element();
+    let is_large = |&i: &u32| extent(corners.uv[live[i as usize] as usize]) >= LEAST_EXTENT;
+    let mut labels: Vec<u32> = live.iter().map(|&t| corners.chart[t as usize]).collect();
+    labels.sort_unstable();
+    labels.dedup();
     let (layout, _) = surface.layout(&corners);
-    if charts(&layout) != charts(packed) + faults.len() {
+    // Parts with one label that share no edge would be charts side by side.
+    if charts(&layout) != labels.len() || !faults.iter().all(is_large) {
         return None;
     }
     let mut is_free = vec![false; charts(&layout)];
     faults.iter().for_each(|&i| is_free[layout.charts[i as usize] as usize] = true);
-    let placed = place(&layout, &is_free, options)?.layout;
-    at_fault(&placed).is_empty().then(|| moved(corners, &placed, &live))
+    let placed = place(&layout, &is_free, options).filter(|placed| placed.smaller == 0)?.layout;
+    at_fault(&placed).is_empty().then(|| moved(corners, &placed, live))
 }
 
 fn charts(layout: &Layout) -> usize {
@@ -220,12 +226,12 @@ mod tests {
     use parbake_model::Mesh;
     use parbake_model::glam::{Vec3, vec2};
 
-    /// Squares in a row, two triangles each, in one chart in the middle of the texture.
+    /// Squares in a row, two triangles each, in one chart that leaves a part of the texture.
     fn strip(squares: u32) -> Mesh {
         let mut mesh = Mesh::default();
         for (x, y) in (0..=squares).flat_map(|x| [(x, 0), (x, 1)]) {
             mesh.positions.push(Vec3::new(x as f32, -(y as f32), 0.0));
-            mesh.uvs.push(vec2(0.3 + 0.1 * x as f32, 0.5 + 0.1 * y as f32));
+            mesh.uvs.push(vec2(0.1 + 0.1 * x as f32, 0.1 + 0.4 * y as f32));
         }
         let square = |v: u32| [[v, v + 1, v + 2], [v + 2, v + 1, v + 3]];
         mesh.triangles = (0..squares).flat_map(|x| square(2 * x)).collect();
@@ -234,17 +240,23 @@ mod tests {
     }
 
     /// Protects what is packed: a triangle at fault gets a place of its own, a gutter away, and nothing else moves. A chart
-    /// whose parts would lie side by side without a gutter is packed again.
+    /// whose parts would lie side by side without a gutter, and triangles that would be too small, are packed again.
     #[test]
     fn faults_of_rounding_are_set_apart() {
-        let mesh = strip(3);
+        let mesh = strip(7);
         let surface = Surface::new(&mesh);
-        let options = PackOptions { texture_size: 64, gutter_texels: 2.0, ..PackOptions::default() };
-        let packed = surface.layout(&corners_of(&surface)).0;
-        let apart = set_apart(&surface, corners_of(&surface), &packed, &[5], &options).unwrap();
-        assert_eq!(apart.uv[..5], corners_of(&surface).uv[..5]);
-        let found = check(&surface.layout(&apart).0, 64);
-        assert!(found.is_bijective() && found.gutter.unwrap().texels >= 2.0);
-        assert!(set_apart(&surface, corners_of(&surface), &packed, &[2], &options).is_none());
+        let own = || corners_of(&surface);
+        let (packed, live) = surface.layout(&own());
+        let options = PackOptions { texture_size: 16, gutter_texels: 2.0, ..PackOptions::default() };
+        let apart = |fault: u32| set_apart(&surface, own(), &packed, (&live, &[fault]), &options);
+        let placed = apart(13).unwrap();
+        assert_eq!(placed.uv[..13], own().uv[..13]);
+        let found = check(&surface.layout(&placed).0, 16);
+        assert!(found.is_bijective() && found.gutter.as_ref().unwrap().texels >= 2.0, "{found:?}");
+        assert!(apart(6).is_none(), "the strip would fall apart");
+        let tiny = Mesh { uvs: mesh.uvs.iter().map(|uv| *uv * 1e-4).collect(), ..mesh.clone() };
+        let surface = Surface::new(&tiny);
+        let (packed, live) = surface.layout(&corners_of(&surface));
+        assert!(set_apart(&surface, corners_of(&surface), &packed, (&live, &[13]), &options).is_none());
     }
 }

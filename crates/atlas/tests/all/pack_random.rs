@@ -96,6 +96,7 @@ proptest! {
         texture_size in 24usize..300,
         rotate: bool,
         equal: bool,
+        effort in 0usize..2,
     ) {
         let polygons: Vec<Vec<Vec2>> = shapes
             .iter()
@@ -111,7 +112,7 @@ proptest! {
             .collect();
         let layout = Layout::new(&fans(&polygons));
         let chart_scale = if equal { ChartScale::Equal } else { ChartScale::Keep };
-        let options = PackOptions { texture_size, gutter_texels: gutter, rotate, chart_scale, effort: 0 };
+        let options = PackOptions { texture_size, gutter_texels: gutter, rotate, chart_scale, effort };
         assert_packed(&pack(&layout, &options).unwrap(), &options);
     }
 }
@@ -197,16 +198,19 @@ fn many_charts_are_packed() {
     }
 }
 
-/// Protects results from the number of threads.
+/// Protects results from the number of threads and from timing, on one grid and on several.
 #[test]
 fn the_same_for_any_number_of_threads() {
     let charts: Vec<_> = (0..30).map(|i| rectangle(i as f32, 0.0, 0.1 + (i % 7) as f32 * 0.1, 0.3)).collect();
     let layout = Layout::new(&fans(&charts));
-    let packed = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| pack(&layout, &PackOptions { texture_size: 128, ..PackOptions::default() }).unwrap())
-    };
-    assert!(packed(1) == packed(2) && packed(1) == packed(5));
+    for texture_size in [128, 520] {
+        let packed = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| pack(&layout, &PackOptions { texture_size, ..PackOptions::default() }).unwrap())
+        };
+        let one = packed(1);
+        assert!([2, 5, 2, 5, 2, 5].into_iter().all(|threads| packed(threads) == one));
+    }
 }
 
 /// Protects layouts of nothing, points and lines, and options that make no sense.

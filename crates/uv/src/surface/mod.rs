@@ -254,11 +254,11 @@ impl UvStageOptions {
     }
 }
 
-/// What [`repair_uvs`] gives, and what moves from there on.
-pub struct RoomyLowPoly {
-    /// With the gutter that was asked for.
-    pub repaired: RepairedLowPoly,
-    /// With a wider one; none where there is no need or no room for it.
+/// What [`repair_uvs`] gives, and the same with a wider gutter.
+pub struct RepairedLowPolys {
+    /// What it gives.
+    pub plain: RepairedLowPoly,
+    /// With a wider gutter; none where there is no need or no room for it.
     pub roomy: Option<RepairedLowPoly>,
 }
 
@@ -267,15 +267,18 @@ pub struct RoomyLowPoly {
 ///
 /// # Errors
 /// As of [`repair_uvs`].
-pub fn repair_uvs_with_room(low: &Model, options: &mut UvStageOptions) -> Result<RoomyLowPoly, AtlasError> {
-    let repaired = repair_uvs(low, options)?;
+pub fn repair_uvs_with_room(
+    low: &Model,
+    options: &mut UvStageOptions,
+) -> Result<RepairedLowPolys, AtlasError> {
+    let plain = repair_uvs(low, options)?;
     // What does not fit so goes without it.
-    let roomy = options.with_room(&repaired.mesh).and_then(|wide| {
+    let roomy = options.with_room(&plain.mesh).and_then(|wide| {
         let roomy = repair_uvs(low, &wide).ok()?;
         *options = wide;
         Some(roomy)
     });
-    Ok(RoomyLowPoly { repaired, roomy })
+    Ok(RepairedLowPolys { plain, roomy })
 }
 
 fn packing(options: &UvStageOptions) -> PackOptions {
@@ -389,13 +392,27 @@ mod tests {
     fn few_charts_get_room_for_a_parallax_map() {
         for (asked, wanted) in [(None, 8.0), (Some(3.0), 3.0)] {
             let mut options = with_parallax(asked);
-            let RoomyLowPoly { repaired, roomy } =
+            let RepairedLowPolys { plain, roomy } =
                 repair_uvs_with_room(&sheet(4), &mut options).expect("four charts fit");
             assert_eq!((options.gutter, roomy.is_some()), (wanted, asked.is_none()));
-            let mesh = roomy.unwrap_or(repaired).mesh;
+            let mesh = roomy.unwrap_or(plain).mesh;
             let gutter = check(&Layout::new(&mesh), 256).gutter.expect("several charts").texels;
             assert!(gutter >= wanted, "{gutter} of {wanted}");
         }
+    }
+
+    /// Protects what bakes are compared with: coordinates that are repaired to move later are those that are only repaired.
+    #[test]
+    fn coordinates_are_repaired_alike_whether_they_move_or_not() {
+        let mut low = sheet(4);
+        let (first, others) = low.mesh.uvs.split_at_mut(3);
+        others[..3].copy_from_slice(first);
+        let mut options = with_parallax(None);
+        let repair = UvStageOptions { mode: UvMode::Repair, parallax_size: None, ..options };
+        let repaired = repair_uvs(&low, &repair).expect("four charts fit");
+        let both = repair_uvs_with_room(&low, &mut options).expect("four charts fit");
+        assert!(both.roomy.is_some() && !repaired.repaired.is_empty());
+        assert_eq!((both.plain.mesh, both.plain.repaired), (repaired.mesh, repaired.repaired));
     }
 
     /// Protects texels: gutters of many charts would leave none.
