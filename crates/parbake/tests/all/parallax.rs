@@ -98,8 +98,9 @@ fn assert_fallback_is_a_bake(high: &Model, with: &Baked, without: &Baked) {
 #[test]
 fn a_map_without_depth_to_show_begins_anew() {
     let (high, low) = demo_pair();
-    // More than the first pass's 128 texels, so that there is a finer texture.
-    let options = BakeOptions { texture_size: 256, ..quick(Parallax::Tangent) };
+    // More than the first pass's 128 texels, so that there is a finer texture; a map that is fine enough for the relief.
+    let options =
+        BakeOptions { texture_size: 256, parallax_size: 32, view_size: Some(96), ..quick(Parallax::Tangent) };
     let begun_anew = |high: &Model, low: &Model| {
         let baked = bake(high, low, &options, &()).unwrap();
         baked.report.parallax_maps.unwrap().begun_anew
