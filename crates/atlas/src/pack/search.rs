@@ -49,7 +49,7 @@ pub(super) struct Square {
 
 /// Scales below this are given up.
 const LEAST_SCALE: f64 = 1e-6;
-/// Scales that one order of pieces is tried at side by side.
+/// Scales at which one plan is tried side by side.
 const AT_ONCE: i32 = 4;
 /// From one scale to the next, as a share of it: where nothing is known yet, and from one grid to the next.
 const COARSE_STEP: f64 = 0.1;

@@ -11,6 +11,7 @@ use crate::pack::LEAST_EXTENT;
 use crate::pack::free_space::place;
 use crate::predicates::{orientation, triangles_overlap};
 use crate::{AtlasError, ChartScale, Layout, PackOptions, pack};
+use glam::DVec2;
 
 /// How much is taken apart, round by round: the triangles at fault, then the charts that
 /// hold them, at last everything.
@@ -90,7 +91,7 @@ fn set_apart(
     options: &PackOptions,
 ) -> Option<Corners> {
     cut_out(surface, &mut corners, packed, live, faults, Apart::Triangles);
-    let extent = |[a, b, c]: [glam::DVec2; 3]| (a.max(b).max(c) - a.min(b).min(c)).max_element();
+    let extent = |[a, b, c]: [DVec2; 3]| (a.max(b).max(c) - a.min(b).min(c)).max_element();
     let is_large = |&i: &u32| extent(corners.uv[live[i as usize] as usize]) >= LEAST_EXTENT;
     let mut labels: Vec<u32> = live.iter().map(|&t| corners.chart[t as usize]).collect();
     labels.sort_unstable();
