@@ -104,8 +104,8 @@ impl Bench {
     }
 }
 
-const COLOR_MEMBRANE: Membrane = Membrane { stiffness: 3e-3, tether: 1e-5 };
-const NORMAL_MEMBRANE: Membrane = Membrane { stiffness: 0.2, tether: 1e-3 };
+const COLOR_MEMBRANE: Membrane = Membrane { stiffness: 3e-3, least: 0.0, tether: 1e-5 };
+const NORMAL_MEMBRANE: Membrane = Membrane { stiffness: 0.2, least: 0.0, tether: 1e-3 };
 
 /// From rendered views to samples sorted by their place on the texture.
 #[divan::bench(sample_size = 1, sample_count = 15)]

@@ -17,6 +17,9 @@ use rayon::prelude::*;
 pub struct Membrane {
     /// λ: of differences between neighbours.
     pub stiffness: f32,
+    /// λ at least, as a share of what one sample in the middle of a texel pulls: where texels have few samples each,
+    /// one that shows something else is outvoted by the neighbours.
+    pub least: f32,
     /// μ: of the value itself.
     pub tether: f32,
 }
@@ -40,7 +43,8 @@ pub fn add_membrane<B: Block>(
     membrane: &Membrane,
 ) {
     let scale = mean_pull(rows);
-    let (stiffness, tether) = (membrane.stiffness * scale, membrane.tether * scale);
+    let stiffness = (membrane.stiffness * scale).max(membrane.least);
+    let tether = membrane.tether * scale;
     let size = atlas.size;
     rows.par_iter_mut().enumerate().for_each(|(i, row)| {
         let label = atlas.label[i];
@@ -91,7 +95,7 @@ mod tests {
             rows[end].centre = Diagonal::identity(1e4);
             rows[end].right = Vec4::new(1e4 * target, 1e4 * target, 1e4 * target, 0.0);
         }
-        add_membrane(&mut rows, &atlas, &x, &start, &Membrane { stiffness: 1e-3, tether: 0.0 });
+        add_membrane(&mut rows, &atlas, &x, &start, &Membrane { stiffness: 1e-3, least: 0.0, tether: 0.0 });
         let matrix = Stencil { size, rows };
         let (step, _) = solve(&matrix, None, &Effort { steps: 200, tolerance: 1e-9 });
         let value = |i: usize| start.texels[16 + i].x + step[16 + i].x;
@@ -109,7 +113,7 @@ mod tests {
         let atlas = Atlas { size: 4, label, covered: vec![true; 16] };
         let mut start = FloatImage::solid(4, Vec4::ZERO);
         start.texels.iter_mut().enumerate().for_each(|(i, texel)| *texel = Vec4::splat(i as f32));
-        let membrane = Membrane { stiffness: 0.5, tether: 0.25 };
+        let membrane = Membrane { stiffness: 0.5, least: 0.0, tether: 0.25 };
         let mut rows = vec![Row::<Diagonal>::default(); 16];
         add_membrane(&mut rows, &atlas, &start, &start, &membrane);
         assert!(rows.iter().all(|row| row.right == Vec4::ZERO));

@@ -63,8 +63,8 @@ impl Default for Schedule {
             final_steps: 2,
             effort: Effort { steps: 6, tolerance: 0.05 },
             final_effort: Effort { steps: 30, tolerance: 1e-3 },
-            color_membrane: Membrane { stiffness: 1e-2, tether: 1e-5 },
-            normal_membrane: Membrane { stiffness: 0.2, tether: 1e-3 },
+            color_membrane: Membrane { stiffness: 1e-2, least: 0.0, tether: 1e-5 },
+            normal_membrane: Membrane { stiffness: 0.2, least: 0.0, tether: 1e-3 },
             damping: 6.0,
             robust_scale: f32::INFINITY,
         }

@@ -127,7 +127,7 @@ mod tests {
 
     const SIZE: usize = 8;
     const OPTIONS: StepOptions = StepOptions {
-        membrane: Membrane { stiffness: 1e-6, tether: 1e-6 },
+        membrane: Membrane { stiffness: 1e-6, least: 0.0, tether: 1e-6 },
         effort: Effort { steps: 50, tolerance: 1e-6 },
         damping: 0.1,
     };

@@ -6,7 +6,8 @@
 //! the low-poly's tangent frame, `m = F⁻¹ N` with F as in `parbake_render::frame`. Nothing is shaded, so
 //! what is fitted to these samples is right under any light.
 //!
-//! A pixel whose low-poly is one side of a thin wall and whose high-poly is the other one is left out.
+//! A pixel is left out where its low-poly is one side of a thin wall and its high-poly the other one, and where its
+//! high-poly is a part far in front that the low-poly lacks (`sides.rs`).
 //!
 //! Contract: samples are sorted as in `samples.rs`; nothing depends on the number of threads.
 
@@ -345,6 +346,26 @@ mod tests {
             let color = wall.target(MapKind::BaseColor);
             assert!((color - Vec4::new(1.0, 0.0, 0.0, 1.0)).length() < 1e-3, "{color}");
             assert_eq!(wall.opacity_weight(), 0.0);
+        }
+    }
+
+    /// Protects walls behind wires that a low-poly has no triangles for: no texel of the wall takes the wire's colour where
+    /// the wire is farther away than a projection looks, while a thin layer right on the wall is what the wall shows.
+    #[test]
+    fn a_wall_does_not_take_what_is_far_in_front() {
+        let materials = [[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]]
+            .map(|base_color| Material { base_color, ..Material::default() })
+            .to_vec();
+        let mut wall = squares([0.0, 0.5], materials.clone());
+        wall.mesh.triangles.truncate(2);
+        wall.mesh.triangle_materials.truncate(2);
+        for (height, is_taken) in [(0.5, false), (0.05, true)] {
+            let mut high = squares([0.0, height], materials.clone());
+            high.mesh.positions[4..].iter_mut().for_each(|p| p.x *= 0.2);
+            let samples = sampled(&high, &wall);
+            let blue = samples.iter().filter(|s| s.target(MapKind::BaseColor).z > 0.5).count();
+            assert!(samples.len() > 300 && (blue > 20) == is_taken, "{height}: {blue} of {}", samples.len());
+            assert!(is_taken || blue == 0, "{height}: {blue}");
         }
     }
 

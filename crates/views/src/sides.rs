@@ -1,5 +1,6 @@
 //! Which side of the high-poly a pixel of the low-poly shows: its own, or another one, as where a coarse wall
-//! reaches over a fine one's rim and the inside looks out behind it.
+//! reaches over a fine one's rim and the inside looks out behind it, or where a wire in front of a wall has no triangle in
+//! the low-poly.
 //!
 //! Contract: all is in the common frame. Answers depend on the arguments alone.
 
@@ -8,9 +9,9 @@ use parbake_model::glam::Vec3;
 
 /// Whether a point of the low-poly (its position, and the normal of its triangle, of any length) stands for
 /// another side than that of the high-poly's triangle which is seen in its place, `behind` it (in the
-/// frame's unit). That is so where the two face away from each other, or where what is seen lies far behind,
-/// and the high-poly has, within reach, a surface that faces as the low-poly does; else what is seen is all
-/// there is.
+/// frame's unit, negative in front). That is so where the two face away from each other, or where what is seen lies far
+/// behind or far in front, and the high-poly has, within reach, a surface that faces as the low-poly does; else what is
+/// seen is all there is.
 pub fn is_of_another_side(
     high: &HighPoly,
     [position, face_normal]: [Vec3; 2],
@@ -19,6 +20,6 @@ pub fn is_of_another_side(
 ) -> bool {
     let reach = high.conventions.max_distance;
     let is_opposite = high.scene.mesh().area_normal(seen).dot(face_normal) < 0.0;
-    (is_opposite || behind.is_some_and(|behind| behind > reach))
+    (is_opposite || behind.is_some_and(|behind| behind.abs() > reach))
         && high.surface.closest_facing(position, face_normal, reach).is_some()
 }
