@@ -204,7 +204,7 @@ pub struct BakeOptions {
     pub views: Option<usize>,
 
     /// Side of a training view in pixels, 32 to 2048 [default: by preset 192, 192, 256, larger for textures
-    /// above 1024]
+    /// above 1024, with `fast` above 512]
     #[cfg_attr(feature = "clap", arg(long, value_name = "PIXELS", help_heading = heading::QUALITY))]
     pub view_size: Option<usize>,
 
