@@ -12,15 +12,16 @@ use parbake_solve::stencil::{Block, Row};
 use parbake_views::chart_labels::{Atlas, NO_CHART, neighbours};
 use rayon::prelude::*;
 
-/// Strengths, as shares of the samples' mean pull on a texel.
+/// Strengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Membrane {
-    /// λ: of differences between neighbours.
+    /// λ: of differences between neighbours, as a share of the samples' mean pull on a texel.
     pub stiffness: f32,
-    /// λ at least, as a share of what one sample in the middle of a texel pulls: where texels have few samples each,
-    /// one that shows something else is outvoted by the neighbours.
+    /// λ at least: where texels have few samples each, one that shows something else is outvoted by the neighbours. 1 is
+    /// what one sample in the middle of a texel pulls, of maps that are compared as they are; of colours, which are compared
+    /// as sRGB, a sample pulls from 0.2 (white) to 41 (black).
     pub least: f32,
-    /// μ: of the value itself.
+    /// μ: of the value itself, as a share of the samples' mean pull.
     pub tether: f32,
 }
 
@@ -34,7 +35,7 @@ pub fn mean_pull<B: Block>(rows: &[Row<B>]) -> f32 {
     if count == 0 { 1.0 } else { (sum / (3 * count) as f64) as f32 }
 }
 
-/// Adds the membrane's Hessian and its pull at the state `x` towards `start`.
+/// Adds the membrane's Hessian and its pull at the state `x` towards `start`. The fourth lane, opacity, is the samples' alone.
 pub fn add_membrane<B: Block>(
     rows: &mut [Row<B>],
     atlas: &Atlas,
@@ -69,7 +70,7 @@ pub fn add_membrane<B: Block>(
         }
         if label != NO_CHART || row.centre.trace() > 0.0 {
             row.centre.add(&B::identity(edges * stiffness + tether));
-            row.right -= pull;
+            row.right -= pull.with_w(0.0);
         }
     });
 }
@@ -95,13 +96,30 @@ mod tests {
             rows[end].centre = Diagonal::identity(1e4);
             rows[end].right = Vec4::new(1e4 * target, 1e4 * target, 1e4 * target, 0.0);
         }
-        add_membrane(&mut rows, &atlas, &x, &start, &Membrane { stiffness: 1e-3, least: 0.0, tether: 0.0 });
+        let membrane = Membrane { stiffness: 1e-3, least: 0.0, tether: 0.0 };
+        add_membrane(&mut rows, &atlas, &x, &start, &membrane);
         let matrix = Stencil { size, rows };
         let (step, _) = solve(&matrix, None, &Effort { steps: 200, tolerance: 1e-9 });
         let value = |i: usize| start.texels[16 + i].x + step[16 + i].x;
         for i in 0..7 {
             let level = 1.0 + i as f32 / 6.0 + if i == 3 { 0.5 } else { 0.0 };
             assert!((value(i) - level).abs() < 0.02, "{i} {} {level}", value(i));
+        }
+    }
+
+    /// Protects texels of few samples from being alone, and those of many from being smoothed: the larger of both
+    /// stiffnesses holds, and opacity is held by none.
+    #[test]
+    fn stiffness_has_a_floor() {
+        let atlas = Atlas { size: 4, label: vec![0; 16], covered: vec![true; 16] };
+        let start = FloatImage::solid(4, Vec4::ZERO);
+        let mut x = start.clone();
+        x.texels[0] = Vec4::ONE;
+        for (least, expected) in [(1.0, 1.0), (0.1, 0.25), (0.0, 0.25)] {
+            let mut rows = vec![Row { centre: Diagonal::identity(1.0), ..Row::default() }; 16];
+            add_membrane(&mut rows, &atlas, &x, &start, &Membrane { stiffness: 0.25, least, tether: 0.0 });
+            let pulled = Vec4::new(expected, expected, expected, 0.0);
+            assert_eq!((rows[0].east.trace() / -3.0, rows[1].right), (expected, pulled));
         }
     }
 

@@ -37,8 +37,9 @@ pub struct SeparateSchedule {
 }
 
 /// Of the membrane. With two samples a texel some show another part of the model, and each alone would decide what its texel
-/// is: bright specks on metal. Where texels have ten samples or more it hardly counts. Measured in three.js (`fast`):
-/// a fan of two samples a texel +0.25 dB, a cat of ten +0.1, others ±0.05; four times as much costs up to 0.15.
+/// is: bright specks on metal. Of ten samples or more a texel it counts little, but for white and for the metallic channel of
+/// black, whose samples pull less. As large a share of what a map's samples pull in the mean, whose colours' are mostly those of
+/// black, costs 0.2 to 0.3 dB; four times as much 0.15 (docs/figures.md).
 const LEAST_STIFFNESS: f32 = 0.5;
 
 impl Default for SeparateSchedule {
@@ -199,8 +200,8 @@ mod tests {
         assert_eq!(progress.last().map(|&last| share(last)), Some(1.0));
     }
 
-    /// Protects smooth metal from specks: where each texel has one sample, one that shows another part of the model hardly
-    /// turns its texel away from its neighbours'; where each has many, one that all of a texel's agree on is kept.
+    /// Protects smooth metal from specks: where each texel has one sample, one that shows another part of the model turns its
+    /// texel less than half as far; where each has many, and all of a texel say so, it does turn.
     #[test]
     fn a_stray_sample_is_outvoted_where_there_are_few() {
         for (count, is_kept) in [(1, false), (40, true)] {

@@ -261,8 +261,8 @@ impl BakeOptions {
             Preset::Balanced => (960, 192, 5, 2),
             Preset::Best => (1280, 256, 8, 3),
         };
-        // A texel that hardly a sample reads is noise: of larger textures than this views grow, though by less than the
-        // texture, or bakes would take for ever. `fast` with 1024 texels: +0.1 to 0.2 dB in three.js, a tenth of the time.
+        // A texel that hardly a sample reads is noise: views grow with textures larger than this, though by less than the
+        // texture, or bakes would take for ever. `fast` with 1024 texels: 0.1 to 0.2 dB more in three.js.
         let served = if self.preset == Preset::Fast { 512.0 } else { 1024.0 };
         let finer = (self.texture_size as f32 / served).max(1.0).sqrt();
         let view_size = self.view_size.unwrap_or((view_size as f32 * finer) as usize);

@@ -6,8 +6,8 @@
 //! the low-poly's tangent frame, `m = F⁻¹ N` with F as in `parbake_render::frame`. Nothing is shaded, so
 //! what is fitted to these samples is right under any light.
 //!
-//! A pixel is left out where its low-poly is one side of a thin wall and its high-poly the other one, and where its
-//! high-poly is a part far in front that the low-poly lacks (`sides.rs`).
+//! In layers without gaps a pixel is left out where its low-poly is one side of a thin wall and its high-poly the other
+//! one, and, without a parallax map, where its high-poly is a part far in front that the low-poly lacks (`sides.rs`).
 //!
 //! Contract: samples are sorted as in `samples.rs`; nothing depends on the number of threads.
 
@@ -367,6 +367,11 @@ mod tests {
             assert!(samples.len() > 300 && (blue > 20) == is_taken, "{height}: {blue} of {}", samples.len());
             assert!(is_taken || blue == 0, "{height}: {blue}");
         }
+        // Where the strip is all there is, it is what the low-poly shows.
+        let mut high = squares([0.0, 0.5], materials);
+        high.mesh.triangles.drain(..2);
+        high.mesh.triangle_materials.drain(..2);
+        assert!(sampled(&high, &wall).iter().filter(|s| s.target(MapKind::BaseColor).z > 0.5).count() > 100);
     }
 
     /// An open tube around the y axis, of two shells of one segment in height: white outside, black inside,

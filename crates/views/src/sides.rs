@@ -7,9 +7,12 @@
 use crate::high_poly::HighPoly;
 use parbake_model::glam::Vec3;
 
+/// What is nearer than this is not far, however short the reach: rounding, in the common frame.
+const LEAST_FAR: f32 = 1e-4;
+
 /// Whether a point of the low-poly (its position, and the normal of its triangle, of any length) stands for
 /// another side than that of the high-poly's triangle which is seen in its place, `behind` it (in the
-/// frame's unit, negative in front). That is so where the two face away from each other, or where what is seen lies far
+/// frame's unit along the line of sight, negative in front). That is so where the two face away from each other, or where what is seen lies far
 /// behind or far in front, and the high-poly has, within reach, a surface that faces as the low-poly does; else what is
 /// seen is all there is.
 pub fn is_of_another_side(
@@ -20,6 +23,6 @@ pub fn is_of_another_side(
 ) -> bool {
     let reach = high.conventions.max_distance;
     let is_opposite = high.scene.mesh().area_normal(seen).dot(face_normal) < 0.0;
-    (is_opposite || behind.is_some_and(|behind| behind.abs() > reach))
+    (is_opposite || behind.is_some_and(|behind| behind.abs() > reach.max(LEAST_FAR)))
         && high.surface.closest_facing(position, face_normal, reach).is_some()
 }
