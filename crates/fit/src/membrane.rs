@@ -17,9 +17,9 @@ use rayon::prelude::*;
 pub struct Membrane {
     /// λ: of differences between neighbours, as a share of the samples' mean pull on a texel.
     pub stiffness: f32,
-    /// λ at least: where texels have few samples each, one that shows something else is outvoted by the neighbours. 1 is
-    /// what one sample in the middle of a texel pulls, of maps that are compared as they are; of colours, which are compared
-    /// as sRGB, a sample pulls from 0.2 (white) to 41 (black).
+    /// λ at least, 0 or more: where texels have few samples each, the neighbours outvote one that shows something else. A
+    /// sample in the middle of a texel pulls 1 in maps that are compared as they are, and in colours, which are compared as
+    /// sRGB, from 0.2 (white) to 41 (black).
     pub least: f32,
     /// μ: of the value itself, as a share of the samples' mean pull.
     pub tether: f32,

@@ -36,10 +36,10 @@ pub struct SeparateSchedule {
     pub membrane: Membrane,
 }
 
-/// Of the membrane. With two samples a texel some show another part of the model, and each alone would decide what its texel
-/// is: bright specks on metal. Of ten samples or more a texel it counts little, but for white and for the metallic channel of
-/// black, whose samples pull less. As large a share of what a map's samples pull in the mean, whose colours' are mostly those of
-/// black, costs 0.2 to 0.3 dB; four times as much 0.15 (docs/figures.md).
+/// Least stiffness of the membrane. With two samples a texel some show another part of the model, and each alone would
+/// decide what its texel is: bright specks on metal. With ten samples a texel or more it counts little, except for white colours
+/// and for the metallic channel of black ones, whose samples pull less. Four times as much costs up to 0.15 dB; a stiffness in
+/// proportion to the mean pull of a map's samples costs 0.2 to 0.3 dB (docs/figures.md).
 const LEAST_STIFFNESS: f32 = 0.5;
 
 impl Default for SeparateSchedule {

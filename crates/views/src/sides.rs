@@ -7,14 +7,14 @@
 use crate::high_poly::HighPoly;
 use parbake_model::glam::Vec3;
 
-/// What is nearer than this is not far, however short the reach: rounding, in the common frame.
+/// Least distance that counts as far, in the common frame: less may be rounding, even if the reach is 0.
 const LEAST_FAR: f32 = 1e-4;
 
 /// Whether a point of the low-poly (its position, and the normal of its triangle, of any length) stands for
-/// another side than that of the high-poly's triangle which is seen in its place, `behind` it (in the
-/// frame's unit along the line of sight, negative in front). That is so where the two face away from each other, or where what is seen lies far
-/// behind or far in front, and the high-poly has, within reach, a surface that faces as the low-poly does; else what is
-/// seen is all there is.
+/// another side than that of the high-poly's triangle `seen` in its place, `behind` it (along the line of sight, in the
+/// frame's unit, negative in front; none where a parallax map fetches what lies there). That is so where the two face away
+/// from each other, or where what is seen lies farther behind or in front than a projection looks, and the high-poly has,
+/// within that reach, a surface that faces as the low-poly does; else what is seen is all there is.
 pub fn is_of_another_side(
     high: &HighPoly,
     [position, face_normal]: [Vec3; 2],
