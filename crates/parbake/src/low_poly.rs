@@ -77,8 +77,9 @@ fn attempts(
     });
     let mut options = choose_options(triangles, preset);
     if watcher.seconds_left().is_some() {
-        // A budget is for the bake as well.
+        // A budget is for the bake as well, and without polishing nothing ends early.
         options.attempts = 1;
+        options.room = if options.polish.rounds == 0 { 1 } else { options.room };
     }
     if !high.importances.is_empty() {
         // Quadrics do not know what counts: there must be something to choose from.
@@ -119,16 +120,25 @@ fn layer_only(material: &Material) -> Material {
     }
 }
 
+/// Side in pixels of the views that many triangles are chosen in, for each root of their number: some six pixels for a triangle
+/// that is seen.
+const VIEW_SIZE: f64 = 4.6;
+/// Views that show more take longer than they are worth.
+const LARGEST_VIEW: f64 = 512.0;
+
 /// Views follow the number of triangles: few large ones need many directions, many small ones need pixels. What one
-/// triangle is worth falls with their number, what it costs does not: many are chosen by quadrics alone.
+/// triangle is worth falls with their number, what it costs does not: many are not polished.
 fn choose_options(triangles: usize, preset: Preset) -> ChooseOptions {
     let own = PolishOptions::default();
     let (room, views, view_size, rounds, sweeps) = match triangles {
         0..=150 => (3, 64, 128, 2 * own.rounds, own.sweeps),
         151..=400 => (3, 48, 128, own.rounds, own.sweeps),
         401..=1000 => (3, 32, 160, own.rounds / 2, own.sweeps),
-        1001..=2500 => (2, 24, 192, own.rounds / 4, 1),
-        _ => (1, 16, 160, 0, 0),
+        1001..=2500 => (3, 24, 256, own.rounds / 4, 1),
+        _ => {
+            let size = (VIEW_SIZE * (triangles as f64).sqrt()).min(LARGEST_VIEW) as usize;
+            (if triangles <= 5000 { 3 } else { 2 }, 24, size, 0, 0)
+        }
     };
     let rounds = match preset {
         Preset::Fast => rounds / 2,

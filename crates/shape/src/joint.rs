@@ -23,13 +23,13 @@
 
 use crate::laplacian::Laplacian;
 use crate::moving_points::MovingPoints;
+use crate::outline::Outline;
 use crate::points::{Motion, Points};
 use crate::provisional::{MovingTexture, Provisional};
 use crate::seen::{Seen, ShapeViews};
-use crate::views::{Judgement, Outline, Views};
+use crate::views::{Judgement, Views};
 use crate::walls::crossings;
 use glam::{Vec3, Vec4};
-use parbake_image::FloatImage;
 use parbake_image::display::Display;
 use parbake_model::Mesh;
 use parbake_progress::{Message, Snapshot, Stage, Watcher};
@@ -178,18 +178,9 @@ const UNCROSSED: usize = 8;
 const WIDE_GAP: f64 = 1.0;
 /// The shortest distance that is told from rounding, in pixels.
 const LEAST_GAP: f64 = 0.02;
-/// Distance between outlines in pixels below which vertices stay: the samples of a pixel tell no more, and of models that
-/// were as close none came closer by a tenth.
-const CLOSE_ENOUGH: f64 = 0.1;
-
-/// How far the outlines of a mesh are apart from those of the high-poly in the mean, in the common frame.
-pub(crate) fn gap(mesh: &Mesh, seen: &Seen, display: Display) -> f32 {
-    let blank =
-        Provisional { color: FloatImage::solid(1, Vec4::ZERO), normal: FloatImage::solid(1, Vec4::Z) };
-    let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
-    let fit = Fit::new(mesh, &points, seen.views(display, 0.0, Background::Black));
-    fit.look(&points.rest, &blank, &seen.measured()).outline.gap() as f32 * seen.pixel_width()
-}
+/// Distance between outlines in pixels below which vertices stay: those of models that were as close showed no more than 0.2 dB
+/// for it, either way.
+const CLOSE_ENOUGH: f64 = 0.08;
 
 /// Fits the positions of a mesh to what was seen of the high-poly.
 pub fn fit_shape(
@@ -202,21 +193,21 @@ pub fn fit_shape(
 ) -> Shaped {
     let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
     let laplacian = Laplacian::new(points.rest.len(), &points.triangles);
-    let [fitted, checks] =
-        [&seen.fitted, &seen.checked].map(|seen| seen.views(display, options.coverage, options.background));
-    let mut fit = Fit::new(mesh, &points, fitted);
-    let Seen { references, size } = &seen.fitted;
+    let mut fit = Fit::new(mesh, &points, seen.fitted.views(display, options.coverage, options.background));
+    let Seen { references, size, .. } = &seen.fitted;
     let (measured, size) = (seen.fitted.measured(), *size);
-    let before = fit.look(&points.rest, &start, &measured);
+    let outline = |at: &[Vec3], seen: &Seen| Outline::of(at, &points.triangles, seen);
+    let before = outline(&points.rest, &seen.fitted);
+    let loss_before = fit.look(&points.rest, &start, &measured).loss.image;
     let pixel = seen.fitted.pixel_width();
     let least_gap = if pixel > 0.0 { f64::from(options.least_gap / pixel) } else { 0.0 };
-    let gap_in_pixels = before.outline.gap().max(LEAST_GAP).max(least_gap);
+    let gap_in_pixels = before.gap().max(LEAST_GAP).max(least_gap);
     let discount = options.overhang_discount * (gap_in_pixels / WIDE_GAP).min(1.0) as f32;
     fit.views.comparison.overhang_discount = discount;
     let gap = gap_in_pixels as f32 * pixel;
-    let held = before.loss.image as f32 / (options.reach * gap).powi(2).max(1e-12);
 
     let rate = options.rate.min(gap / options.steps_in_gap);
+    let held = loss_before as f32 / (options.reach * gap).powi(2).max(1e-12);
     let mut moving = MovingPoints::new(&points, options.motion, rate);
     let projected = options.keeps_sides.then(|| start.clone());
     let mut provisional = MovingTexture::new(start, options.texture_rate, |n| n.normalize_or(Vec3::Z));
@@ -263,20 +254,16 @@ pub fn fit_shape(
         keep_sides(&mut moving, &fit, projected, &measured);
     }
     let has_moved = !losses.is_empty();
-    let mut after = before.outline;
-    if has_moved {
-        after = fit.look(moving.at(), &provisional.texture, &measured).outline;
-    }
-    fit.views = checks;
+    let mut after = if has_moved { outline(moving.at(), &seen.fitted) } else { before };
     let cost = |at: &[Vec3]| {
-        let outline = fit.look(at, &provisional.texture, &seen.checked.measured()).outline;
+        let outline = outline(at, &seen.checked);
         f64::from(1.0 - discount) * outline.overhang + outline.underhang
     };
     if has_moved && cost(moving.at()) > options.worth_moving * cost(&points.rest) {
         moving.reset();
-        after = before.outline;
+        after = before;
     }
-    let outline = [before.outline, after];
+    let outline = [before, after];
     Shaped {
         positions: points.vertices(moving.at()),
         losses,

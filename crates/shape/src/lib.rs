@@ -20,6 +20,7 @@ pub mod joint;
 pub mod laplacian;
 pub mod moving_points;
 pub mod normals;
+pub mod outline;
 pub mod paper;
 pub mod paper_joint_fit;
 pub mod points;

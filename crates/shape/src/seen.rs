@@ -21,6 +21,8 @@ pub struct Seen {
     pub references: Arc<Vec<Reference>>,
     /// Side of a view in pixels.
     pub size: usize,
+    /// Samples along a side of a pixel.
+    pub samples: usize,
 }
 
 /// Two sets of views from different directions.

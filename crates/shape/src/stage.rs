@@ -10,11 +10,11 @@
 //! order, and so do their corners' texture coordinates. Vertices are split where a normal would end up on its
 //! face's back.
 
-use crate::joint::{ShapeOptions, Shaped, fit_shape, gap};
+use crate::joint::{ShapeOptions, Shaped, fit_shape};
 use crate::normals::turned_normals;
+use crate::outline::Outline;
 use crate::provisional::Provisional;
 use crate::seen::{Seen, ShapeViews, smooth_references};
-use crate::views::Outline;
 use glam::{Mat3, Vec3, Vec4};
 use parbake_image::{FloatImage, MapKind, MapSet};
 use parbake_mesh::{TexelMap, face_outwards};
@@ -95,11 +95,15 @@ pub fn shape(
 pub fn shape_views(placed: &Mesh, high: &HighPoly, plan: &ShapePlan, watcher: &dyn Watcher) -> ShapeViews {
     let look = |views, size, seed, share| {
         let watcher = Portion::new(watcher, share).of_stage(Stage::Reference, Stage::Shape);
-        Seen { references: smooth_references(high, views, size, plan.samples, seed, &watcher), size }
+        Seen {
+            references: smooth_references(high, views, size, plan.samples, seed, &watcher),
+            size,
+            samples: plan.samples,
+        }
     };
     let seed = plan.fit.seed;
     let checked = look(CHECKED.min(plan.views), plan.view_size, mixed(seed ^ OF_CHECKS), 0.0..0.2 * LOOKING);
-    let apart = gap(placed, &checked, high.conventions.display) / checked.pixel_width().max(1e-9);
+    let apart = Outline::of(&placed.positions, &placed.triangles, &checked).gap() as f32;
     let wanted = (plan.view_size as f32 * SHOWN / apart.max(1e-3)) as usize / 2 * 2;
     let size = wanted.clamp(plan.view_size, plan.view_size.max(plan.largest_size));
     ShapeViews { fitted: look(plan.views, size, seed, 0.2 * LOOKING..LOOKING), checked }

@@ -1,5 +1,4 @@
-//! What rendered views say of a surface: their loss, its gradients, and how far outlines are
-//! apart.
+//! What rendered views say of a surface: their loss and its gradients.
 //!
 //! Contract: references are of one size and were rendered without jitter. Views are summed in
 //! their order, so the results do not depend on the number of threads.
@@ -34,49 +33,6 @@ pub struct Judgement {
     pub loss: LossValue,
     /// Sum over the views.
     pub gradients: Gradients,
-    /// How the outlines differ.
-    pub outline: Outline,
-}
-
-/// How the outlines of two pictures differ: shares of the picture's area, means over views.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Outline {
-    /// Covered by the surface alone.
-    pub overhang: f64,
-    /// Covered by the reference alone.
-    pub underhang: f64,
-    /// Pixels that the reference covers in part: as many as its outline is long.
-    pub length: f64,
-}
-
-impl Outline {
-    /// Mean distance between the outlines, in widths of a pixel of size² in a picture.
-    pub fn gap(&self) -> f64 {
-        (self.overhang + self.underhang) / self.length.max(1e-9)
-    }
-
-    fn of(view: &[[f32; 4]], reference: &Reference) -> Self {
-        let mut sum = Self::default();
-        for (view, reference) in view.iter().zip(&reference.pixels) {
-            let difference = f64::from(view[3] - reference[3]);
-            sum.overhang += difference.max(0.0);
-            sum.underhang += (-difference).max(0.0);
-            sum.length += f64::from(u8::from(reference[3] > 0.0 && reference[3] < 1.0));
-        }
-        sum.scaled(1.0 / view.len().max(1) as f64)
-    }
-
-    fn scaled(self, by: f64) -> Self {
-        Self { overhang: self.overhang * by, underhang: self.underhang * by, length: self.length * by }
-    }
-
-    fn plus(self, more: Self) -> Self {
-        Self {
-            overhang: self.overhang + more.overhang,
-            underhang: self.underhang + more.underhang,
-            length: self.length + more.length,
-        }
-    }
 }
 
 impl Views<'_> {
@@ -84,16 +40,12 @@ impl Views<'_> {
     pub fn look(&self, surface: &Surface, textures: &Textures, views: &[(usize, u64)]) -> Judgement {
         let each: Vec<Judgement> =
             views.par_iter().map(|&(index, seed)| self.look_once(surface, textures, index, seed)).collect();
-        let mut sum = Judgement {
-            loss: LossValue::default(),
-            gradients: Gradients::zeros(surface, textures, true),
-            outline: Outline::default(),
-        };
+        let mut sum =
+            Judgement { loss: LossValue::default(), gradients: Gradients::zeros(surface, textures, true) };
         for one in each {
             sum.loss.image += one.loss.image / views.len() as f64;
             sum.loss.coverage += one.loss.coverage / views.len() as f64;
             sum.gradients.add(&one.gradients);
-            sum.outline = sum.outline.plus(one.outline.scaled(1.0 / views.len() as f64));
         }
         sum
     }
@@ -112,6 +64,6 @@ impl Views<'_> {
         let tape = forward(surface, textures, &HEADLIGHT_BRDF, &view);
         let mut gradients = Gradients::zeros(surface, textures, true);
         adjoint(surface, textures, &HEADLIGHT_BRDF, &view, &tape, &mut gradients);
-        Judgement { loss: tape.loss, gradients, outline: Outline::of(&tape.rgba, &reference) }
+        Judgement { loss: tape.loss, gradients }
     }
 }

@@ -13,6 +13,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Triangles that a part which was lost begins with, for each that it has to keep.
 const LOST_ROOM: usize = 4;
+/// Triangles of even shape, and the rims of thin walls, where the surface folds back, stay where they are: quadrics see two
+/// planes that are nearly one there, and without folds a wall's sides cross each other.
+const SHAPED: Flags = Flags::RegularizeLight.union(Flags::PreserveFolds);
 
 /// How a surface to begin with is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -46,7 +49,7 @@ impl CoarseSurfaces {
     /// Of a mesh. `parts` has the part of each material, or nothing where there is one.
     pub fn new(mesh: &Mesh, parts: &[u32]) -> Self {
         let surface = Surface::in_parts(mesh, parts).to_mesh();
-        Self { parts: parts.to_vec(), ..Self::of(&surface, Flags::Prune | Flags::RegularizeLight) }
+        Self { parts: parts.to_vec(), ..Self::of(&surface, Flags::Prune | SHAPED) }
     }
 
     fn of(surface: &Mesh, flags: Flags) -> Self {
@@ -130,7 +133,7 @@ pub fn with_lost_parts(start: Mesh, mesh: &Mesh, parts: &[u32], least: usize) ->
     for &(part, _) in &lost {
         let own = Surface::new(&only(mesh, |material| part_of(material) == part)).to_mesh();
         // Nothing of it is pruned.
-        let own = CoarseSurfaces::of(&own, Flags::RegularizeLight).collapsed_to(LOST_ROOM * least);
+        let own = CoarseSurfaces::of(&own, SHAPED).collapsed_to(LOST_ROOM * least);
         let first = out.positions.len() as u32;
         out.positions.extend(own.positions);
         out.triangles.extend(own.triangles.iter().map(|triangle| triangle.map(|vertex| vertex + first)));
@@ -257,5 +260,40 @@ mod tests {
             assert_eq!(all.collapsed_to(target), own, "{target}");
             assert!(own.triangles.len() <= target.max(2), "{}", own.triangles.len());
         }
+    }
+
+    /// Protects the rims of thin walls: their two sides are nearly one plane, in which a rim could go anywhere.
+    #[test]
+    fn a_thin_disc_keeps_its_outline() {
+        const SECTORS: u32 = 96;
+        const RINGS: u32 = 12;
+        let mut mesh = Mesh::default();
+        for side in [0.002, -0.002] {
+            for ring in 0..=RINGS {
+                for sector in 0..SECTORS {
+                    let radius = ring as f32 / RINGS as f32;
+                    let angle = std::f32::consts::TAU * sector as f32 / SECTORS as f32;
+                    let z = if ring == RINGS { 0.0 } else { side };
+                    mesh.positions.push(Vec3::new(radius * angle.cos(), radius * angle.sin(), z));
+                }
+            }
+        }
+        let lower = mesh.positions.len() as u32 / 2;
+        for (ring, sector) in (0..RINGS).flat_map(|ring| (0..SECTORS).map(move |sector| (ring, sector))) {
+            let at = |ring: u32, sector: u32| ring * SECTORS + sector % SECTORS;
+            let [a, b, c, d] =
+                [at(ring, sector), at(ring + 1, sector), at(ring + 1, sector + 1), at(ring, sector + 1)];
+            mesh.triangles.extend([[a, b, c], [a, c, d]]);
+            mesh.triangles.extend([[a, c, b], [a, d, c]].map(|triangle| triangle.map(|v| v + lower)));
+        }
+        mesh.triangle_materials = vec![0; mesh.triangles.len()];
+        let area = |mesh: &Mesh| -> f32 {
+            let upwards =
+                (0..mesh.triangles.len()).map(|triangle| 0.5 * mesh.area_normal(triangle).z.max(0.0));
+            upwards.sum()
+        };
+        let coarse = CoarseSurfaces::new(&mesh, &[]).collapsed_to(60);
+        let kept = area(&coarse) / area(&mesh);
+        assert!(kept > 0.97, "{kept}");
     }
 }

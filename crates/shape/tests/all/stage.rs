@@ -125,15 +125,18 @@ fn a_mesh_that_fits_stays() {
     assert_eq!(report.moved, [0.0; 2]);
 }
 
-/// Protects time: where finely sampled views show outlines in one place, no step is taken.
+/// Protects time and shape: where views show outlines in one place, also of triangles smaller than pixels, no step is taken.
 #[test]
 fn outlines_that_agree_take_no_steps() {
-    let model = ball("same", 3, 1.0);
-    let plan = ShapePlan { samples: 8, ..plan(Motion::Free) };
-    let mut mesh = model.mesh.clone();
-    let (report, _) = shape("low", &mut mesh, &prepared(&model), &plan, &()).expect("it has coordinates");
-    assert_eq!(report.steps, 0, "{:?}", report.gap);
-    assert_eq!((mesh.positions, report.gap[1]), (model.mesh.positions, report.gap[0]));
+    // Those of the second one are smaller than pixels: several edges cross each at the outline.
+    for (halvings, view_size) in [(3, 64), (5, 24)] {
+        let model = ball("same", halvings, 1.0);
+        let plan = ShapePlan { view_size, largest_size: view_size, ..plan(Motion::Free) };
+        let mut mesh = model.mesh.clone();
+        let (report, _) = shape("low", &mut mesh, &prepared(&model), &plan, &()).expect("it has coordinates");
+        assert_eq!((report.steps, report.gap), (0, [0.0; 2]), "{halvings}");
+        assert_eq!(mesh.positions, model.mesh.positions);
+    }
 }
 
 /// Protects outlines that are close from views whose pixels do not show how close, and time where they are far apart.
