@@ -75,12 +75,7 @@ fn attempts(
         high.frame.apply(&mut mesh);
         mesh
     });
-    let mut options = choose_options(triangles, preset);
-    if watcher.seconds_left().is_some() {
-        // A budget is for the bake as well, and without polishing nothing ends early.
-        options.attempts = 1;
-        options.room = if options.polish.rounds == 0 { 1 } else { options.room };
-    }
+    let mut options = choose_options(triangles, preset, watcher.seconds_left().is_some());
     if !high.importances.is_empty() {
         // Quadrics do not know what counts: there must be something to choose from.
         options.room = options.room.max(2);
@@ -120,25 +115,27 @@ fn layer_only(material: &Material) -> Material {
     }
 }
 
-/// Side in pixels of the views that many triangles are chosen in, for each root of their number: some six pixels for a triangle
-/// that is seen.
+/// Side in pixels of the views that many triangles are chosen in, for each root of their number: some six pixels for each
+/// triangle of a start that is seen.
 const VIEW_SIZE: f64 = 4.6;
-/// Views that show more take longer than they are worth.
-const LARGEST_VIEW: f64 = 512.0;
+/// Triangles from which on views would have to be larger than is worth the time.
+const TOO_MANY: usize = 12_000;
 
 /// Views follow the number of triangles: few large ones need many directions, many small ones need pixels. What one
-/// triangle is worth falls with their number, what it costs does not: many are not polished.
-fn choose_options(triangles: usize, preset: Preset) -> ChooseOptions {
+/// triangle is worth falls with their number, what it costs does not: many are not polished, and very many are chosen by
+/// quadrics alone. So are many where the time is limited, since collapses go on without a look at the clock.
+fn choose_options(triangles: usize, preset: Preset, is_time_limited: bool) -> ChooseOptions {
     let own = PolishOptions::default();
     let (room, views, view_size, rounds, sweeps) = match triangles {
         0..=150 => (3, 64, 128, 2 * own.rounds, own.sweeps),
         151..=400 => (3, 48, 128, own.rounds, own.sweeps),
         401..=1000 => (3, 32, 160, own.rounds / 2, own.sweeps),
+        1001..=2500 if is_time_limited => (2, 24, 192, own.rounds / 4, 1),
         1001..=2500 => (3, 24, 256, own.rounds / 4, 1),
-        _ => {
-            let size = (VIEW_SIZE * (triangles as f64).sqrt()).min(LARGEST_VIEW) as usize;
-            (if triangles <= 5000 { 3 } else { 2 }, 24, size, 0, 0)
+        2501..TOO_MANY if !is_time_limited => {
+            (2, 24, (VIEW_SIZE * (triangles as f64).sqrt()).max(256.0) as usize, 0, 0)
         }
+        _ => (1, 16, 160, 0, 0),
     };
     let rounds = match preset {
         Preset::Fast => rounds / 2,
@@ -147,7 +144,27 @@ fn choose_options(triangles: usize, preset: Preset) -> ChooseOptions {
     };
     // Many small triangles are no better for it.
     let sets = if triangles <= 400 { 4 } else { 1 };
-    let attempts = if preset == Preset::Fast { 1 } else { sets };
+    let attempts = if preset == Preset::Fast || is_time_limited { 1 } else { sets };
     let polish = PolishOptions { rounds, sweeps, ..own };
     ChooseOptions { triangles, least: 0, room, views, sets, attempts, view_size, polish, seed: 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects triangles that are small from views that do not show them, and time: very many are left to quadrics, and so are
+    /// many where the time is limited.
+    #[test]
+    fn more_triangles_have_larger_views() {
+        let of = |triangles, is_limited| {
+            let own = choose_options(triangles, Preset::Balanced, is_limited);
+            (own.view_size, own.room)
+        };
+        let sizes: Vec<usize> = [100, 1000, 2500, 2501, 5000, 11_999].map(|count| of(count, false).0).into();
+        assert!(sizes.is_sorted() && sizes[5] > 500, "{sizes:?}");
+        assert!([100, 2500, 11_999].iter().all(|&count| of(count, false).1 > 1));
+        assert_eq!([of(TOO_MANY, false), of(3000, true)], [(160, 1); 2]);
+        assert_eq!(choose_options(100, Preset::Balanced, true).attempts, 1);
+    }
 }

@@ -178,8 +178,8 @@ const UNCROSSED: usize = 8;
 const WIDE_GAP: f64 = 1.0;
 /// The shortest distance that is told from rounding, in pixels.
 const LEAST_GAP: f64 = 0.02;
-/// Distance between outlines in pixels below which vertices stay: those of models that were as close showed no more than 0.2 dB
-/// for it, either way.
+/// Distance between outlines in pixels below which vertices stay: models whose outlines were this close gained or lost at most
+/// 0.25 dB by moving.
 const CLOSE_ENOUGH: f64 = 0.08;
 
 /// Fits the positions of a mesh to what was seen of the high-poly.
@@ -198,7 +198,6 @@ pub fn fit_shape(
     let (measured, size) = (seen.fitted.measured(), *size);
     let outline = |at: &[Vec3], seen: &Seen| Outline::of(at, &points.triangles, seen);
     let before = outline(&points.rest, &seen.fitted);
-    let loss_before = fit.look(&points.rest, &start, &measured).loss.image;
     let pixel = seen.fitted.pixel_width();
     let least_gap = if pixel > 0.0 { f64::from(options.least_gap / pixel) } else { 0.0 };
     let gap_in_pixels = before.gap().max(LEAST_GAP).max(least_gap);
@@ -207,7 +206,9 @@ pub fn fit_shape(
     let gap = gap_in_pixels as f32 * pixel;
 
     let rate = options.rate.min(gap / options.steps_in_gap);
-    let held = loss_before as f32 / (options.reach * gap).powi(2).max(1e-12);
+    let steps = if gap_in_pixels < CLOSE_ENOUGH { 0 } else { needed_steps(gap_in_pixels, options) };
+    let loss = if steps == 0 { 0.0 } else { fit.look(&points.rest, &start, &measured).loss.image };
+    let held = loss as f32 / (options.reach * gap).powi(2).max(1e-12);
     let mut moving = MovingPoints::new(&points, options.motion, rate);
     let projected = options.keeps_sides.then(|| start.clone());
     let mut provisional = MovingTexture::new(start, options.texture_rate, |n| n.normalize_or(Vec3::Z));
@@ -219,7 +220,6 @@ pub fn fit_shape(
     };
     let fine = fit.views;
     let coarse = Views { references: &halved, size: size / 2, ..fine };
-    let steps = if gap_in_pixels < CLOSE_ENOUGH { 0 } else { needed_steps(gap_in_pixels, options) };
     for step in 0..steps {
         watcher.progress(Stage::Shape, step, steps);
         if references.is_empty() || watcher.stopped() {
@@ -231,7 +231,7 @@ pub fn fit_shape(
             .map(|i| (i % references.len(), mixed(options.seed ^ mixed(i as u64))))
             .collect();
         fit.views = if step < coarse_until { coarse } else { fine };
-        let Judgement { loss, gradients, .. } = fit.look(moving.at(), &provisional.texture, &views);
+        let Judgement { loss, gradients } = fit.look(moving.at(), &provisional.texture, &views);
         let is_first = step == 0 || step == coarse_until;
         watcher.message(Message::Loss { stage: Stage::Shape, value: loss.image, is_first });
         losses.push(loss);

@@ -1,19 +1,20 @@
 //! Vertices that move until silhouettes and pictures agree, on a mesh that stays sane.
 //!
 //! ```text
-//! points        vertices that share a position move as one; along the normal or freely
-//! guard         what keeps triangles from turning over, shrinking to nothing or spiking
-//! laplacian     the smoothness term of earlier work, for comparison
-//! normals       vertex normals that turn with the faces around them
-//! seen          what the high-poly looks like from the views that vertices follow, and from others
-//! views         what rendered views say: loss, gradients
-//! moving_points points that follow them by Adam, behind the guard
-//! walls         thin walls whose sides crossed
-//! provisional   a texture that follows them, and is thrown away
-//! joint         the fit: vertices and a provisional texture, against rendered views
-//! stage         the stage of a bake: small textures and views, the fit, what moved
-//! paper         the paper's optimiser: textures, parallax and displacement from nothing
-//! paper_stage   its stage of a bake
+//! points            vertices that share a position move as one; along the normal or freely
+//! triangle_quality  what keeps triangles from turning over, shrinking to nothing or spiking
+//! laplacian         the smoothness term of earlier work, for comparison
+//! normals           vertex normals that turn with the faces around them
+//! seen              what the high-poly looks like from the views that vertices follow, and from others
+//! outline           how far outlines are apart there
+//! views             what rendered views say: loss, gradients
+//! moving_points     points that follow them by Adam, while triangles keep their quality
+//! walls             thin walls whose sides crossed
+//! provisional       a texture that follows them, and is thrown away
+//! joint             the fit: vertices and a provisional texture, against rendered views
+//! stage             the stage of a bake: small textures and views, the fit, what moved
+//! paper             the paper's optimiser: textures, parallax and displacement from nothing
+//! paper_joint_fit   its stage of a bake
 //! ```
 
 pub mod joint;

@@ -173,7 +173,7 @@ pub fn paper_fit(
         };
         let [colors, normals] = provisional.texture.pyramids();
         let textures = Textures::new(&colors, Some(&normals)).with_parallax(map.as_ref().map(|m| &m.map));
-        let Judgement { loss, gradients, .. } = views.look(&surface, &textures, &chosen);
+        let Judgement { loss, gradients } = views.look(&surface, &textures, &chosen);
         losses.push(loss.image);
         let share = rate_at(
             step.saturating_sub(options.steps),

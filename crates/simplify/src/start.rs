@@ -13,8 +13,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Triangles that a part which was lost begins with, for each that it has to keep.
 const LOST_ROOM: usize = 4;
-/// Triangles of even shape, and the rims of thin walls, where the surface folds back, stay where they are: quadrics see two
-/// planes that are nearly one there, and without folds a wall's sides cross each other.
+/// Triangles keep an even shape, and the rims of thin walls, where the surface folds back, cost more to move: the planes around
+/// them are nearly one, so that quadrics alone would let them go anywhere in it, and the wall's sides cross.
 const SHAPED: Flags = Flags::RegularizeLight.union(Flags::PreserveFolds);
 
 /// How a surface to begin with is made.
@@ -294,6 +294,6 @@ mod tests {
         };
         let coarse = CoarseSurfaces::new(&mesh, &[]).collapsed_to(60);
         let kept = area(&coarse) / area(&mesh);
-        assert!(kept > 0.97, "{kept}");
+        assert!((0.97..=1.0).contains(&kept), "{kept}");
     }
 }

@@ -138,8 +138,12 @@ impl Watcher for LevelWatcher<'_> {
 
 /// What a bake of a level takes as a rule, triangles and figures included: seconds on two cores.
 fn weights(options: &LodOptions, triangles: usize, texture_size: usize) -> Vec<(Stage, f64)> {
-    // Few triangles are polished, many are hardly chosen.
-    let choosing = if triangles <= 2500 { 9.0 } else { 3.0 };
+    // Few triangles are polished, many have larger views, very many are hardly chosen.
+    let choosing = match triangles {
+        0..=2500 => 9.0,
+        2501..12_000 => 7.0,
+        _ => 3.0,
+    };
     let mut weights = vec![(Stage::Simplify, choosing)];
     weights.extend(stage_weights(&options.bake(texture_size)).into_iter().filter(|w| w.0 != Stage::Evaluate));
     weights.push((Stage::Evaluate, FIGURES));
