@@ -73,3 +73,59 @@ impl Outline {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use half::f16;
+    use parbake_render::camera::{Camera, Projection};
+    use parbake_views::pool::View;
+    use std::sync::Arc;
+
+    const SIZE: usize = 16;
+    /// The field of the camera is 2 wide.
+    const PIXEL: f32 = 2.0 / SIZE as f32;
+
+    /// A square of 8² pixels, half a pixel to the right of and above the middle, from one view.
+    fn square() -> Seen {
+        let camera = Camera::towards_origin(Vec3::Z, 3.5, Projection::Orthographic(1.0));
+        let along = |at: f32| (4.5 + 8.0 - at).clamp(0.0, 1.0).min((at + 1.0 - 4.5).clamp(0.0, 1.0));
+        let covered = |pixel: usize| {
+            let (column, row) = (pixel % SIZE, SIZE - 1 - pixel / SIZE);
+            let coverage = f16::from_f32(along(column as f32) * along(row as f32));
+            [f16::ZERO, f16::ZERO, f16::ZERO, coverage]
+        };
+        let pixels = (0..SIZE * SIZE).map(covered).collect();
+        let view = View { camera, jitter: [0.0; 2] };
+        Seen { references: Arc::new(vec![Reference { view, pixels }]), size: SIZE, samples: 4 }
+    }
+
+    /// The outline of a square with these corners, in pixels from where the other one has its own.
+    fn of(low: [f32; 2], high: [f32; 2], seen: &Seen) -> Outline {
+        let corner = |x: f32, y: f32| Vec3::new(PIXEL * (x + 0.5), PIXEL * (y + 0.5), 0.0);
+        let ([left, bottom], [right, top]) = (low.map(|shift| shift - 4.0), high.map(|shift| shift + 4.0));
+        let points = [corner(left, bottom), corner(right, bottom), corner(right, top), corner(left, top)];
+        Outline::of(&points, &[[0, 1, 2], [0, 2, 3]], seen)
+    }
+
+    /// Protects distances: nothing between squares in one place, a quarter of a pixel where an edge lies there, and what stands
+    /// out is told from what is missing.
+    #[test]
+    fn distances_are_those_of_edges() {
+        let seen = square();
+        let pixels = |share: f64| share * (SIZE * SIZE) as f64;
+        let same = of([0.0; 2], [0.0; 2], &seen);
+        assert_eq!((same.overhang, same.underhang, pixels(same.length)), (0.0, 0.0, 32.0));
+        let wider = of([0.0; 2], [0.25, 0.0], &seen);
+        assert_eq!((pixels(wider.overhang), wider.underhang, wider.gap()), (2.0, 0.0, 2.0 / 32.0));
+        let shifted = of([0.25, 0.0], [0.25, 0.0], &seen);
+        assert_eq!((pixels(shifted.overhang), pixels(shifted.underhang)), (2.0, 2.0));
+    }
+
+    /// Protects runs that were stopped before there was a view.
+    #[test]
+    fn nothing_is_apart_without_views() {
+        let seen = Seen { references: Arc::default(), size: SIZE, samples: 4 };
+        assert_eq!(of([0.0; 2], [1.0; 2], &seen).gap(), 0.0);
+    }
+}
