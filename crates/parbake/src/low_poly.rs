@@ -118,8 +118,10 @@ fn layer_only(material: &Material) -> Material {
 /// Side in pixels of the views that many triangles are chosen in, for each root of their number: some six pixels for each
 /// triangle of a start that is seen.
 const VIEW_SIZE: f64 = 4.6;
+/// Triangles up to which they are polished.
+pub(crate) const POLISHED: usize = 2500;
 /// Triangles from which on views would have to be larger than is worth the time.
-const TOO_MANY: usize = 12_000;
+pub(crate) const TOO_MANY: usize = 12_000;
 
 /// Views follow the number of triangles: few large ones need many directions, many small ones need pixels. What one
 /// triangle is worth falls with their number, what it costs does not: many are not polished, and very many are chosen by
@@ -130,9 +132,9 @@ fn choose_options(triangles: usize, preset: Preset, is_time_limited: bool) -> Ch
         0..=150 => (3, 64, 128, 2 * own.rounds, own.sweeps),
         151..=400 => (3, 48, 128, own.rounds, own.sweeps),
         401..=1000 => (3, 32, 160, own.rounds / 2, own.sweeps),
-        1001..=2500 if is_time_limited => (2, 24, 192, own.rounds / 4, 1),
-        1001..=2500 => (3, 24, 256, own.rounds / 4, 1),
-        2501..TOO_MANY if !is_time_limited => {
+        1001..=POLISHED if is_time_limited => (2, 24, 192, own.rounds / 4, 1),
+        1001..=POLISHED => (3, 24, 256, own.rounds / 4, 1),
+        _ if triangles < TOO_MANY && !is_time_limited => {
             (2, 24, (VIEW_SIZE * (triangles as f64).sqrt()).max(256.0) as usize, 0, 0)
         }
         _ => (1, 16, 160, 0, 0),

@@ -7,6 +7,7 @@
 
 use super::options::LodOptions;
 use crate::budget::{check_budget, stage_weights};
+use crate::low_poly::{POLISHED, TOO_MANY};
 use crate::options::BakeOptions;
 use parbake_levels::search::MOST_BAKES;
 use parbake_progress::{Message, Stage, Watcher};
@@ -140,8 +141,8 @@ impl Watcher for LevelWatcher<'_> {
 fn weights(options: &LodOptions, triangles: usize, texture_size: usize) -> Vec<(Stage, f64)> {
     // Few triangles are polished, many have larger views, very many are hardly chosen.
     let choosing = match triangles {
-        0..=2500 => 9.0,
-        2501..12_000 => 7.0,
+        0..=POLISHED => 9.0,
+        _ if triangles < TOO_MANY => 7.0,
         _ => 3.0,
     };
     let mut weights = vec![(Stage::Simplify, choosing)];
