@@ -10,8 +10,8 @@ pub use looking::{
     CheckCommand, EvalCommand, StatsCommand, ThumbnailCommand, TurntableCommand, VariantsCommand, ViewCommand,
 };
 pub use making::{
-    BakeCommand, CompressCommand, DemoCommand, DemoScene, ImageCommand, LodCommand, RaycastCommand,
-    SimplifyCommand,
+    BakeCommand, ClosestIn, CompressCommand, DemoCommand, DemoScene, ImageCommand, LodCommand,
+    RaycastCommand, SimplifyCommand,
 };
 pub use runs::{BatchCommand, ReproduceCommand};
 

@@ -1,12 +1,12 @@
 //! `parbake simplify`.
 
-use crate::arguments::SimplifyCommand;
+use crate::arguments::{ClosestIn, SimplifyCommand};
 use crate::bake::read;
 use crate::failure::{Ending, Failure};
 use crate::formats::{check_formats, write_model};
 use crate::outputs::{check_not_input, check_output};
 use crate::progress::Console;
-use parbake::{simplified, subdivided};
+use parbake::{simplified, simplified_by_pictures, subdivided};
 
 /// Runs the command.
 pub fn run(command: &SimplifyCommand) -> Result<Ending, Failure> {
@@ -21,7 +21,10 @@ pub fn run(command: &SimplifyCommand) -> Result<Ending, Failure> {
     let result = match command.subdivide {
         Some(times @ 1..=6) => (0..times).fold(model.clone(), |m, _| subdivided(&m)),
         Some(times) => return Err(Failure::Usage(format!("--subdivide {times}: 1 to 6"))),
-        None => simplified(&model, command.triangles),
+        None => match command.closest_in {
+            ClosestIn::Pictures => simplified_by_pictures(&model, command.triangles, &console),
+            ClosestIn::Shape => simplified(&model, command.triangles),
+        },
     };
     write_model(&command.output, &result, &command.formats, &console)?;
     console.finish();

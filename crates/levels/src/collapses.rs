@@ -14,8 +14,9 @@ use std::borrow::Cow;
 /// A model with more than so many triangles for each wanted one is first collapsed to a quarter of that number, once for all ways.
 /// This saves time. What it costs: from 16 for each wanted one up to half a decibel was lost, from 64 it was not measured.
 const MANY: usize = 256;
-/// Ways to collapse edges that are tried first.
-const COLLAPSES: [Collapses; 9] = [
+/// How many ways to collapse edges are tried first.
+pub const FIRST_WAYS: usize = 9;
+const COLLAPSES: [Collapses; FIRST_WAYS] = [
     Collapses { seams: Seams::Kept, normal_weight: 0.5, uv_weight: 0.5, moves: false },
     Collapses { seams: Seams::OfTextures, normal_weight: 0.1, uv_weight: 0.5, moves: false },
     Collapses { seams: Seams::OfTextures, normal_weight: 0.1, uv_weight: 0.5, moves: true },

@@ -13,7 +13,7 @@
 //! that no triangle uses are dropped.
 
 use crate::normals::corner_angle;
-use crate::vertices::drop_unused;
+use crate::vertices::{drop_unused, push_copy};
 use crate::weld::weld_by_position;
 use parbake_model::Mesh;
 use parbake_model::glam::{DVec3, Vec3};
@@ -47,7 +47,11 @@ pub fn face_outwards(mesh: &mut Mesh) -> usize {
             .normalize_or(faces[triangle])
             .as_vec3();
         let key = (vertex, normal.to_array().map(f32::to_bits));
-        let own = *split.entry(key).or_insert_with(|| copied(mesh, vertex, normal));
+        let own = *split.entry(key).or_insert_with(|| {
+            let copy = push_copy(mesh, vertex);
+            mesh.normals[copy as usize] = normal;
+            copy
+        });
         mesh.triangles[triangle][k] = own;
     }
     drop_unused(mesh);
@@ -70,22 +74,6 @@ pub fn area_facing_back(mesh: &Mesh) -> f64 {
 fn unit_normal(mesh: &Mesh, triangle: usize) -> DVec3 {
     let [a, b, c] = mesh.corners(triangle).map(Vec3::as_dvec3);
     (b - a).cross(c - a).normalize_or_zero()
-}
-
-/// Appends a copy of a vertex with another normal.
-fn copied(mesh: &mut Mesh, vertex: u32, normal: Vec3) -> u32 {
-    fn again<T: Copy>(values: &mut Vec<T>, vertex: u32) {
-        values.extend(values.get(vertex as usize).copied());
-    }
-    let new = mesh.positions.len() as u32;
-    again(&mut mesh.positions, vertex);
-    again(&mut mesh.tangents, vertex);
-    again(&mut mesh.uvs, vertex);
-    again(&mut mesh.uvs1, vertex);
-    again(&mut mesh.parallax_offsets, vertex);
-    again(&mut mesh.colors, vertex);
-    mesh.normals.push(normal);
-    new
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 //! simplify, subdivide, bisect   coarser and finer copies of a mesh
 //! simplify_in_layout            a coarser copy that keeps its layout and attributes
 //! corner_vertices               vertices as both tell them apart
+//! own_normals                   a coarser copy's normals where its vertices lost them
 //! deviation                     how far two surfaces are apart, for a choice between them
 //! distance                      the same in full: Chamfer, Hausdorff, root mean square
 //! topology                      pieces, holes, handles, and where a surface is none
@@ -34,6 +35,7 @@ pub mod facing;
 pub mod material_uvs;
 pub mod named_nodes;
 pub mod normals;
+mod own_normals;
 pub mod parts;
 pub mod projection;
 pub mod rig_parts;

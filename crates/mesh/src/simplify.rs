@@ -5,16 +5,18 @@
 //! from their vertices afterwards, and meshoptimizer keeps the two sides of a
 //! material's border together as it does those of a texture seam. Whatever is
 //! preserved holds the surface in its way, so several are tried (`Attempt`), and the
-//! deviation of what comes out decides (`deviation.rs`).
+//! deviation of what comes out decides (`deviation.rs`). Where seams of normals were not
+//! preserved, each corner takes the model's normal from there (`own_normals.rs`).
 //!
-//! Contract: the result's corners are the input's but for normals that would look to
-//! their face's back (`facing.rs`); it is not empty unless the input is, and has no
-//! tangents.
+//! Contract: the result's corners have positions and texture coordinates of the input's,
+//! and its normals but where what they belonged to has collapsed, or where they would
+//! look to their face's back (`facing.rs`); it is not empty unless the input is, and has
+//! no tangents.
 
 use crate::corner_vertices::{ToldApart, corner_vertices};
 use crate::deviation::deviation;
 use crate::facing::face_outwards;
-use crate::normals::smooth_normals;
+use crate::own_normals::take_normals;
 use crate::projection::HighSurface;
 use crate::vertices::drop_unused;
 use meshopt::SimplifyOptions as Flags;
@@ -48,8 +50,8 @@ impl Default for SimplifyOptions {
 enum Attempt {
     /// Seams of texture and normals alike.
     AllSeams,
-    /// Seams of texture; the result is shaded smooth. For models whose every
-    /// edge is sharp, which otherwise have no vertex that may move.
+    /// Seams of texture. For models whose every edge is sharp, which otherwise
+    /// have no vertex that may move.
     TextureSeams,
     /// As above, but texture seams may be collapsed where they are in the way.
     CrossingSeams,
@@ -68,7 +70,7 @@ pub fn simplify(mesh: &Mesh, options: SimplifyOptions) -> Mesh {
     if let Some(unit) = UnitBox::of(mesh).filter(|_| mesh.triangles.len() > target) {
         let original = unit.bare(mesh);
         let surface = HighSurface::new(&original);
-        let mut least = (true, f64::INFINITY);
+        let (mut least, mut by) = ((true, f64::INFINITY), None);
         for attempt in Attempt::ALL {
             let coarse = attempt.run(mesh, &unit, target, &options);
             let count = coarse.triangles.len();
@@ -83,8 +85,12 @@ pub fn simplify(mesh: &Mesh, options: SimplifyOptions) -> Mesh {
                 attempt.price() * deviation((&original, &surface), (&coarse, &HighSurface::new(&coarse)))
             };
             if (misses, cost) < least {
-                (least, best) = ((misses, cost), coarse);
+                (least, by, best) = ((misses, cost), Some(attempt), coarse);
             }
+        }
+        let lost_normals = by.is_some_and(|attempt| attempt != Attempt::AllSeams);
+        if lost_normals && !best.normals.is_empty() {
+            take_normals(&mut best, mesh, &surface, |p| unit.place(p));
         }
     }
     drop_unused(&mut best);
@@ -141,10 +147,6 @@ impl Attempt {
         };
         work.triangles = simplified.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
         work.triangle_materials = work.triangles.iter().map(|t| materials[t[0] as usize]).collect();
-        if self != Self::AllSeams && !work.normals.is_empty() {
-            drop_unused(&mut work);
-            work.normals = smooth_normals(&work);
-        }
         work
     }
 

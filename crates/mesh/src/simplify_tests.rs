@@ -1,6 +1,7 @@
 //! Tests of `simplify.rs`.
 
 use super::*;
+use crate::smooth_normals;
 use proptest::prelude::*;
 
 /// A gently curved grid of n × n squares with texture coordinates, left half

@@ -31,6 +31,7 @@ mod bake;
 mod bake_to_triangles;
 mod baseline;
 mod budget;
+mod coarse_copy;
 mod comparison;
 mod comparison_figures;
 mod compress;
@@ -63,6 +64,7 @@ mod work;
 pub use bake::{Baked, bake, bake_prepared, prepare_high_poly};
 pub use bake_to_triangles::bake_to_triangles;
 pub use budget::check_budget;
+pub use coarse_copy::{simplified, simplified_by_pictures};
 pub use comparison::{
     BACKGROUNDS, BeforeAndAfter, COMPARED_VIEWS, Comparison, Detail, OnBackground, OnChannel, compare_bake,
     compared_as,
@@ -77,7 +79,7 @@ pub use lod::target::{TargetReport, Trial, TrialMap};
 pub use lod::{Candidate, Level, LevelReport, Way, make_levels};
 pub use low_poly::low_poly;
 pub use memory::peak_memory;
-pub use models::{demo_pair, laid_out, simplified, subdivided, wall_pair, with_tangents};
+pub use models::{demo_pair, laid_out, subdivided, wall_pair, with_tangents};
 #[cfg(feature = "clap")]
 pub use options::heading;
 pub use options::{

@@ -4,28 +4,10 @@ use crate::error::BakeError;
 use crate::options::{BakeOptions, UvMode};
 use parbake_mesh::compute_tangents;
 use parbake_mesh::demo::{demo_low, demo_model, wall_low, wall_model};
-use parbake_mesh::parts::{parts_of_materials, with_parted_materials};
 use parbake_mesh::rigs::{carried, transferred};
-use parbake_mesh::simplify::{SimplifyOptions, simplify};
 use parbake_mesh::subdivide::subdivide;
 use parbake_model::{Material, Mesh, Model};
 use parbake_uv::surface::{RepairedLowPoly, repair_uvs};
-
-/// A coarser copy of about this many triangles, with the same materials; see [`with_tangents`].
-pub fn simplified(model: &Model, triangles: usize) -> Model {
-    let options = SimplifyOptions { target_triangles: triangles, ..SimplifyOptions::default() };
-    let parted = with_parted_materials(model);
-    let mut mesh = simplify(&parted.mesh, options);
-    let rig = transferred(&parted, &mesh, &parts_of_materials(&parted));
-    if parted.materials.len() > model.materials.len() {
-        let mut original = vec![0; parted.materials.len()];
-        for (&own, &before) in parted.mesh.triangle_materials.iter().zip(&model.mesh.triangle_materials) {
-            original[own as usize] = before;
-        }
-        mesh.triangle_materials.iter_mut().for_each(|material| *material = original[*material as usize]);
-    }
-    with_tangents(Model { mesh, rig, nodes: None, painted: Vec::new(), parts: None, ..model.clone() })
-}
 
 /// The model with MikkTSpace tangents, where its materials need some and it has none, so that viewers need
 /// not each make up their own (glTF 2.0, 3.7.2.1).
@@ -91,21 +73,7 @@ fn plain(name: &str, mesh: Mesh) -> Model {
 mod tests {
     use super::*;
     use parbake_model::glam::{Vec2, Vec3};
-    use parbake_model::{MaterialExtensions, TextureSlot, Transmission};
-
-    /// Protects materials from simplification: all that they say is kept, and what has a normal map has
-    /// tangents.
-    #[test]
-    fn simplified_models_keep_their_materials() {
-        let mut glass = Material { normal_texture: Some(TextureSlot::default()), ..Material::default() };
-        let transmission = Some(Transmission { factor: 0.5, texture: None });
-        glass.extensions = MaterialExtensions { transmission, ..MaterialExtensions::default() };
-        let mut model = demo_pair().0;
-        model.materials = vec![glass; model.materials.len()];
-        let coarse = simplified(&model, 500);
-        assert_eq!(coarse.materials, model.materials);
-        assert_eq!(coarse.mesh.tangents.len(), coarse.mesh.positions.len());
-    }
+    use parbake_model::TextureSlot;
 
     /// Protects normal maps on the second set of coordinates.
     #[test]

@@ -243,6 +243,16 @@ pub enum DemoScene {
     Wall,
 }
 
+/// What a coarser copy is chosen by.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClosestIn {
+    /// Its pictures with the model's own textures: for use as it is, and for most bakes
+    Pictures,
+    /// Its surface alone, whatever becomes of hard edges and UVs: quicker, and better to bake onto where textures have
+    /// many seams
+    Shape,
+}
+
 /// Arguments of `simplify`.
 #[derive(Args, Debug)]
 pub struct SimplifyCommand {
@@ -258,8 +268,12 @@ pub struct SimplifyCommand {
     pub triangles: usize,
 
     /// Subdivide instead: split each triangle into four, 1 to 6 times
-    #[arg(long, value_name = "TIMES", conflicts_with = "triangles")]
+    #[arg(long, value_name = "TIMES", conflicts_with_all = ["triangles", "closest_in"])]
     pub subdivide: Option<u32>,
+
+    /// In what the copy comes closest to the model
+    #[arg(long, value_enum, default_value_t = ClosestIn::Pictures)]
+    pub closest_in: ClosestIn,
 
     /// What to read
     #[command(flatten, next_help_heading = IO)]

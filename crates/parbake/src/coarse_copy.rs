@@ -1,0 +1,176 @@
+//! Coarser copies of a model with its own materials: chosen by their pictures, for use as they are, or by their surface
+//! alone.
+//!
+//! ```text
+//! model ─┬ edges collapse in several ways, attributes follow (levels/collapses.rs) ─┬ the one with the closest pictures
+//!        └ the copy whose surface is closest (mesh/simplify.rs) ────────────────────┘
+//! ```
+//!
+//! A surface that is close can look far off: hard edges that are rounded, and charts that slip, do not move it.
+//!
+//! Contract: materials stay as they are, and a rig comes along. Deterministic.
+
+use crate::models::with_tangents;
+use parbake_evaluate::EvaluateError;
+use parbake_evaluate::screen_size::ScreenComparison;
+use parbake_levels::collapses::{FIRST_WAYS, best_collapsed};
+use parbake_levels::face_frames::with_face_tangents;
+use parbake_levels::maps::with_maps_at_most;
+use parbake_mesh::parts::{parts_of_materials, with_parted_materials};
+use parbake_mesh::rigs::transferred;
+use parbake_mesh::simplify::{SimplifyOptions, simplify};
+use parbake_model::{Mesh, Model};
+use parbake_progress::{Message, Stage, Watcher};
+use std::cell::Cell;
+
+/// Pixels that a model spans in the pictures by which copies are compared.
+const PIXELS: f64 = 200.0;
+/// Texels along a side of the maps that these pictures show, at most: about four for each pixel.
+const TEXELS: usize = 1024;
+
+/// A coarser copy of about this many triangles whose surface is as close as can be, whatever it looks like; see
+/// [`with_tangents`].
+pub fn simplified(model: &Model, triangles: usize) -> Model {
+    let parted = with_parted_materials(model);
+    with_tangents(copied(model, &parted, by_shape(&parted.mesh, triangles)))
+}
+
+/// A coarser copy whose pictures are as close as can be with the model's own maps, to be used as it is: at most so many triangles,
+/// or about as many where seams leave no other way. It has tangents if the model has, for viewers make up the same ones for
+/// both. A watcher that says stop is heeded between pictures; what was tried by then counts.
+pub fn simplified_by_pictures(model: &Model, triangles: usize, watcher: &dyn Watcher) -> Model {
+    let parted = with_parted_materials(model);
+    // Without an extent there are no pictures, and nothing to choose from.
+    let mesh = closest_in_pictures(model, &parted, triangles, watcher)
+        .unwrap_or_else(|_| by_shape(&parted.mesh, triangles));
+    let copy = copied(model, &parted, mesh);
+    if model.mesh.tangents.is_empty() { copy } else { with_tangents(copy) }
+}
+
+/// Of all copies the one whose pictures are closest to the model's.
+fn closest_in_pictures(
+    model: &Model,
+    parted: &Model,
+    triangles: usize,
+    watcher: &dyn Watcher,
+) -> Result<Mesh, EvaluateError> {
+    let screens = ScreenComparison::new(model);
+    let pictures = screens.pictures(&screens.place(&with_face_tangents(model))?, PIXELS)?;
+    let look = with_maps_at_most(parted, TEXELS);
+    let tried = Cell::new(0);
+    let judged = |mesh: Mesh| -> Result<(Mesh, f64), EvaluateError> {
+        tried.set(tried.get() + 1);
+        watcher.message(Message::Progress {
+            stage: Stage::Simplify,
+            done: tried.get(),
+            total: FIRST_WAYS + 1,
+        });
+        let coarse = Model { mesh, ..look.clone() };
+        let psnr = screens.psnr(&pictures, &screens.place(&with_face_tangents(&coarse))?);
+        Ok((coarse.mesh, psnr))
+    };
+    let best = best_collapsed(&parted.mesh, triangles, false, &|| watcher.stopped(), judged)?;
+    let other = by_shape(&parted.mesh, triangles);
+    match best {
+        None => Ok(other),
+        Some((mesh, _)) if other.triangles.len() > triangles => Ok(mesh),
+        Some((mesh, most)) => {
+            let (other, psnr) = judged(other)?;
+            Ok(if psnr > most { other } else { mesh })
+        }
+    }
+}
+
+fn by_shape(mesh: &Mesh, triangles: usize) -> Mesh {
+    simplify(mesh, SimplifyOptions { target_triangles: triangles, ..SimplifyOptions::default() })
+}
+
+/// The model with a coarser mesh of `parted`, which is the model with materials that tell its parts apart.
+fn copied(model: &Model, parted: &Model, mut mesh: Mesh) -> Model {
+    let rig = transferred(parted, &mesh, &parts_of_materials(parted));
+    if parted.materials.len() > model.materials.len() {
+        let mut original = vec![0; parted.materials.len()];
+        for (&own, &before) in parted.mesh.triangle_materials.iter().zip(&model.mesh.triangle_materials) {
+            original[own as usize] = before;
+        }
+        mesh.triangle_materials.iter_mut().for_each(|material| *material = original[*material as usize]);
+    }
+    Model { mesh, rig, nodes: None, painted: Vec::new(), parts: None, ..model.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::demo_pair;
+    use parbake_model::glam::{Vec3, vec2};
+    use parbake_model::{Material, MaterialExtensions, TextureSlot, Transmission};
+
+    /// Protects materials and what viewers need to show them.
+    #[test]
+    fn simplified_models_keep_their_materials() {
+        let mut glass = Material { normal_texture: Some(TextureSlot::default()), ..Material::default() };
+        let transmission = Some(Transmission { factor: 0.5, texture: None });
+        glass.extensions = MaterialExtensions { transmission, ..MaterialExtensions::default() };
+        let mut model = demo_pair().0;
+        model.materials = vec![glass; model.materials.len()];
+        let coarse = simplified(&model, 500);
+        assert_eq!(coarse.materials, model.materials);
+        assert_eq!(coarse.mesh.tangents.len(), coarse.mesh.positions.len());
+    }
+
+    const CELLS: u32 = 10;
+
+    /// A box with hard edges whose sides are grids of `CELLS`² squares, a chart each.
+    fn crate_of_planks() -> Model {
+        let mut mesh = Mesh::default();
+        for side in 0..6u32 {
+            let sign = if side % 2 == 0 { 1.0 } else { -1.0 };
+            let axis = |k: u32| Vec3::AXES[((side / 2 + k) % 3) as usize];
+            let (normal, u, v) = (axis(0) * sign, axis(1) * sign, axis(2));
+            let first = mesh.positions.len() as u32;
+            for (row, column) in (0..=CELLS).flat_map(|row| (0..=CELLS).map(move |column| (row, column))) {
+                let at = vec2(column as f32, row as f32) / CELLS as f32;
+                mesh.positions.push(normal + u * (2.0 * at.x - 1.0) + v * (2.0 * at.y - 1.0));
+                mesh.normals.push(normal);
+                mesh.uvs.push((at * 0.9 + vec2((side % 3) as f32, (side / 3) as f32)) / 3.0);
+            }
+            for (row, column) in (0..CELLS).flat_map(|row| (0..CELLS).map(move |column| (row, column))) {
+                let a = first + row * (CELLS + 1) + column;
+                mesh.triangles.extend([[a, a + 1, a + CELLS + 2], [a, a + CELLS + 2, a + CELLS + 1]]);
+            }
+        }
+        mesh.triangle_materials = vec![0; mesh.triangles.len()];
+        Model { name: "crate".into(), mesh, materials: vec![Material::default()], ..Model::default() }
+    }
+
+    /// Protects what a copy looks like: hard edges stay hard and charts stay where they are; there are no more triangles than were
+    /// asked for; tangents are not made up.
+    #[test]
+    fn copies_by_pictures_look_like_their_model() {
+        let model = crate_of_planks();
+        let coarse = simplified_by_pictures(&model, 60, &());
+        let mesh = &coarse.mesh;
+        assert!((12..=60).contains(&mesh.triangles.len()), "{}", mesh.triangles.len());
+        assert!(mesh.tangents.is_empty());
+        for triangle in 0..mesh.triangles.len() {
+            let face = mesh.area_normal(triangle).normalize();
+            for vertex in mesh.triangles[triangle].map(|v| v as usize) {
+                assert!((mesh.normals[vertex] - face).length() < 1e-3, "{face}");
+                let own = (model.mesh.positions.iter().zip(&model.mesh.uvs)).any(|(p, uv)| {
+                    (*p - mesh.positions[vertex]).length() < 1e-3 && (*uv - mesh.uvs[vertex]).length() < 1e-3
+                });
+                assert!(own, "a chart slipped");
+            }
+        }
+    }
+
+    /// Protects models of which there is no picture: nothing at all, and a surface without extent.
+    #[test]
+    fn models_without_extent_are_copied() {
+        assert!(simplified_by_pictures(&Model::default(), 10, &()).mesh.triangles.is_empty());
+        let mut point = crate_of_planks();
+        point.mesh.positions.fill(Vec3::ONE);
+        let coarse = simplified_by_pictures(&point, 10, &());
+        assert_eq!(coarse.mesh.triangles.len(), point.mesh.triangles.len());
+    }
+}
