@@ -127,7 +127,7 @@ pub enum Command {
     Reproduce(ReproduceCommand),
     /// Prove that UVs neither flip nor overlap, or say what is wrong
     Check(CheckCommand),
-    /// Write a coarser copy of a model, which keeps its UVs
+    /// Write a coarser copy of a model, which uses the model's own textures
     Simplify(SimplifyCommand),
     /// Print a model's figures: topology, UVs, textures, draw calls; and its distance to another model
     Stats(StatsCommand),

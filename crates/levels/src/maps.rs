@@ -178,7 +178,8 @@ fn mean_on_surface(model: &Model, kind: MapKind, image: &Image) -> Vec4 {
     if weight > 0.0 { sum / weight } else { kind.spec().neutral }
 }
 
-/// A model's name, materials and maps without its surface; no map has more than `side` texels along a side.
+/// A model's name, materials and maps without its surface; no map of the
+/// metallic-roughness material has more than `side` texels along a side.
 pub fn with_maps_at_most(model: &Model, side: usize) -> Model {
     let mut images = model.images.clone();
     for (index, kind) in kinds_of_images(&model.materials) {

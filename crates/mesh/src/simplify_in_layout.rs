@@ -41,13 +41,16 @@ pub struct Collapses {
     pub normal_weight: f32,
     /// How bad a texture is that slips along the surface, compared with a surface that moves by as much.
     pub uv_weight: f32,
-    /// Whether vertices move to where the quadrics want them; else each is one of the mesh's own.
+    /// Whether vertices move to where the quadrics want them; else, and where there is a second set of coordinates, each is
+    /// one of the mesh's own.
     pub moves: bool,
 }
 
 /// A coarser mesh of about `triangles` triangles, at least 1; the mesh itself where it has no more than that.
 pub fn simplify_in_layout(mesh: &Mesh, triangles: usize, collapses: Collapses) -> Mesh {
-    let Collapses { seams, normal_weight, uv_weight, moves } = collapses;
+    let Collapses { seams, normal_weight, uv_weight, .. } = collapses;
+    // The second set of coordinates does not count among the attributes that follow vertices.
+    let moves = collapses.moves && mesh.uvs1.is_empty();
     let Some(unit) = UnitBox::of(mesh).filter(|_| mesh.triangles.len() > triangles) else {
         return mesh.clone();
     };
@@ -140,11 +143,11 @@ fn locks(mesh: &Mesh, materials: &[u32], seams: Seams) -> Vec<SimplifyVertex> {
     if seams == Seams::Kept {
         return locks;
     }
-    let has_uvs = seams == Seams::OfTextures && !mesh.uvs.is_empty();
     for (vertex, &first) in weld_by_position(&mesh.positions).iter().enumerate() {
         let first = first as usize;
-        let differs =
-            materials[vertex] != materials[first] || (has_uvs && mesh.uvs[vertex] != mesh.uvs[first]);
+        let is_seam =
+            |uvs: &[Vec2]| seams == Seams::OfTextures && !uvs.is_empty() && uvs[vertex] != uvs[first];
+        let differs = materials[vertex] != materials[first] || is_seam(&mesh.uvs) || is_seam(&mesh.uvs1);
         if differs {
             locks[vertex] = SimplifyVertex::Protect;
             locks[first] = SimplifyVertex::Protect;
@@ -222,6 +225,25 @@ mod tests {
             let coarse = simplify_in_layout(&mesh, 120, way);
             let is_own = |p: &Vec3| mesh.positions.contains(p);
             assert_eq!(coarse.positions.iter().all(is_own), !way.moves, "{way:?}");
+        }
+    }
+
+    /// Protects light maps, of which pictures show nothing: each vertex keeps the coordinates that it has there, and seams of theirs
+    /// stay.
+    #[test]
+    fn the_second_set_of_coordinates_stays_in_place() {
+        let mut mesh = sheet();
+        // A seam that only they have, across the first half.
+        let row = |v: usize| v as u32 / (CELLS + 1) % (CELLS + 1);
+        mesh.uvs1 = (mesh.positions.iter().enumerate())
+            .map(|(v, p)| vec2(p.x, if row(v) < CELLS / 2 { p.y } else { p.y + 3.0 }))
+            .collect();
+        for way in ways() {
+            let coarse = simplify_in_layout(&mesh, 120, way);
+            for (position, uv) in coarse.positions.iter().zip(&coarse.uvs1) {
+                let own = mesh.positions.iter().zip(&mesh.uvs1).any(|own| own == (position, uv));
+                assert!(own, "{way:?} at {position}");
+            }
         }
     }
 

@@ -68,6 +68,11 @@ fn faceted_models_are_simplified_too() {
     let coarse = simplify(&faceted, SimplifyOptions { target_triangles: 60, ..Default::default() });
     assert!(coarse.triangles.len() <= 90, "{}", coarse.triangles.len());
     assert!(coarse.normals.iter().all(|n| n.z > 0.5));
+    // Facets stay facets: each normal is one that the model has at that place.
+    for (position, normal) in coarse.positions.iter().zip(&coarse.normals) {
+        let mut own = faceted.positions.iter().zip(&faceted.normals).filter(|(p, _)| *p == position);
+        assert!(own.any(|(_, own)| (*own - *normal).length() < 1e-4), "{normal} at {position}");
+    }
 }
 
 /// Protects topology-bound models: loose triangles cannot be collapsed, only

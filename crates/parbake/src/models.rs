@@ -72,8 +72,8 @@ fn plain(name: &str, mesh: Mesh) -> Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use parbake_model::glam::{Vec2, Vec3};
     use parbake_model::TextureSlot;
+    use parbake_model::glam::{Vec2, Vec3};
 
     /// Protects normal maps on the second set of coordinates.
     #[test]

@@ -34,10 +34,11 @@ export function bakeOurs(model, folder, { parbake, triangles, textureSize, bakeO
   const low = path.join(folder, 'low.glb');
   const output = path.join(folder, 'ours.glb');
   const bake = ['bake', model, low, '-o', output, '--texture-size', String(textureSize), ...bakeOptions];
-  const recipe = { model, triangles, bake };
+  const simplify = ['simplify', model, '-o', low, '--triangles', String(triangles)];
+  const recipe = { model, simplify, bake };
   return made(output, recipe, reuse, async () => {
     await mkdir(folder, { recursive: true });
-    const cut = await run(parbake, ['simplify', model, '-o', low, '--triangles', String(triangles)], { seconds });
+    const cut = await run(parbake, simplify, { seconds });
     if (cut.code !== 0) return { refused: `simplify: ${reason(cut)}` };
     const baked = await run(parbake, bake, { seconds });
     if (baked.code !== 0) return { refused: `bake: ${reason(baked)}` };

@@ -246,10 +246,9 @@ pub enum DemoScene {
 /// What a coarser copy is chosen by.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClosestIn {
-    /// Its pictures with the model's own textures: for use as it is, and for most bakes
+    /// Pictures with the model's own textures: for use as it is, and for most bakes
     Pictures,
-    /// Its surface alone, whatever becomes of hard edges and UVs: quicker, and better to bake onto where textures have
-    /// many seams
+    /// The surface alone: quicker, but textures may stretch or shift. To bake onto, where UVs have many seams
     Shape,
 }
 
@@ -263,7 +262,8 @@ pub struct SimplifyCommand {
     #[arg(short, long, value_name = "FILE", help_heading = IO)]
     pub output: PathBuf,
 
-    /// Number of triangles to aim at, 4 or more
+    /// Number of triangles, 4 or more: at most so many; about so many with --closest-in shape, or where seams are in
+    /// the way
     #[arg(short, long, value_name = "COUNT", default_value_t = 500)]
     pub triangles: usize,
 
@@ -271,8 +271,8 @@ pub struct SimplifyCommand {
     #[arg(long, value_name = "TIMES", conflicts_with_all = ["triangles", "closest_in"])]
     pub subdivide: Option<u32>,
 
-    /// In what the copy comes closest to the model
-    #[arg(long, value_enum, default_value_t = ClosestIn::Pictures)]
+    /// In what the copy is closest to the model
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t = ClosestIn::Pictures)]
     pub closest_in: ClosestIn,
 
     /// What to read

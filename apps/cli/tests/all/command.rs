@@ -100,6 +100,11 @@ fn mistakes_are_named() {
         (vec!["bake", "demo_high.glb", "demo_low.glb", "-o", "nowhere/never.glb"], 2, "nowhere"),
         (vec!["bake", "demo_high.glb", "demo_low.glb", "-o", "demo_low.glb"], 2, "overwrite"),
         (vec!["simplify", "bad.obj", "-o", "./bad.obj"], 2, "overwrite"),
+        (
+            vec!["simplify", "demo_high.glb", "-o", "never.glb", "--subdivide", "1", "--closest-in", "shape"],
+            2,
+            "--closest-in",
+        ),
         (with(&["--json", "nowhere/never.json"]), 2, "nowhere"),
         (with(&["--json", "never.glb"]), 2, "two outputs"),
         (with(&["--no-comparison", "--report", "never.html"]), 2, "--report"),

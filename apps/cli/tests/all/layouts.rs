@@ -103,7 +103,8 @@ fn pictures_become_planes() {
     let folder = folder.path();
     demo_pair(folder);
     // A picture from an OBJ's material: the textures of the demo.
-    run(folder, &["simplify", "demo_high.glb", "-o", "demo.obj", "--triangles", "100", "-q"]);
+    let simplify = ["simplify", "demo_high.glb", "-o", "demo.obj", "--triangles", "100"];
+    run(folder, &[&simplify[..], &["--closest-in", "shape", "-q"]].concat());
     let mut pictures: Vec<_> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
     pictures.retain(|path| path.extension().is_some_and(|e| e == "png"));
     pictures.sort();
