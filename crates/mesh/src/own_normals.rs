@@ -1,13 +1,14 @@
 //! Normals of a coarse copy: those that its model has at the same places.
 //!
-//! Where edges collapse across seams of normals, a vertex keeps one position and loses track of its normals: smooth ones
-//! would round off every hard edge of the model, and normal maps would be read in frames that they were not made for. So
-//! each corner of a triangle looks at the model a little way into the triangle, and takes that normal of the model's
-//! vertices at its position which is nearest to what it sees there. Where all of them look elsewhere, since what was
-//! between has collapsed, it takes what it sees.
+//! A vertex on a hard edge has several normals, one for each side. Where collapses merge them, the copy would be smooth there,
+//! and its normal map would be read in tangent frames that it was not made for. So each corner of a triangle is projected
+//! onto the model, from a point a little way into the triangle. Of the normals that the model has at the corner's position,
+//! the corner takes the one that is nearest to the model's interpolated normal at that point. Where all of them are more
+//! than 60° away, since what they belonged to has collapsed, it takes the interpolated normal.
 //!
 //! Contract: vertices of the copy are the model's own, and are split where their corners take several normals; positions,
-//! texture coordinates and the order of triangles stay. Corners that see nothing keep their normals.
+//! texture coordinates and the order of triangles stay. Corners of triangles without area keep their normals. Normals that are
+//! taken have unit length.
 
 use crate::projection::HighSurface;
 use crate::vertices::{drop_unused, push_copy};
@@ -17,10 +18,10 @@ use parbake_model::glam::Vec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// How far into the triangle a corner looks: share of the way to its middle.
+/// Where a corner is projected from: share of the way to the triangle's centroid.
 const INWARDS: f32 = 0.3;
-/// Cosine of the angle at which a vertex's normal looks elsewhere: 60°.
-const ELSEWHERE: f32 = 0.5;
+/// Cosine of the angle beyond which a normal of the vertex is not taken: 60°.
+const NEAR: f32 = 0.5;
 
 /// Gives each corner of `coarse` a normal of `model`. `surface` is the model's, and both lie in `place`'s frame, in which
 /// the model's longest side is 1.
@@ -41,12 +42,12 @@ pub(crate) fn take_normals(
         .into_par_iter()
         .map(|triangle| {
             let corners = coarse.corners(triangle);
-            let seen = seen_from(corners.map(&place), model, surface);
+            let beside = normals_beside(corners.map(&place), model, surface);
             std::array::from_fn(|k| {
-                let seen = seen[k]?;
+                let beside = beside[k]?;
                 let own = at.get(&bits(corners[k])).into_iter().flatten();
-                let nearest = own.copied().max_by(|a, b| a.dot(seen).total_cmp(&b.dot(seen)));
-                nearest.filter(|normal| normal.dot(seen) > ELSEWHERE).or(Some(seen))
+                let nearest = own.copied().max_by(|a, b| a.dot(beside).total_cmp(&b.dot(beside)));
+                nearest.filter(|normal| normal.dot(beside) > NEAR).or(Some(beside))
             })
         })
         .collect();
@@ -66,9 +67,9 @@ pub(crate) fn take_normals(
     drop_unused(coarse);
 }
 
-/// The model's unit normals as the corners of a triangle see them.
-fn seen_from(corners: [Vec3; 3], model: &Mesh, surface: &HighSurface) -> [Option<Vec3>; 3] {
-    /// How far outside its triangles the model is looked for, in lengths of its longest side.
+/// The model's interpolated unit normals beside the corners of a triangle, whose corners lie in the frame of `surface`.
+fn normals_beside(corners: [Vec3; 3], model: &Mesh, surface: &HighSurface) -> [Option<Vec3>; 3] {
+    /// How far along the triangle's normal the model is looked for, in lengths of its longest side.
     const REACH: f32 = 0.05;
     let middle = corners.into_iter().sum::<Vec3>() / 3.0;
     let face = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
@@ -151,7 +152,7 @@ mod tests {
 
     /// Protects copies of parts that are gone: without a surface nothing is taken.
     #[test]
-    fn nothing_is_taken_where_nothing_is_seen() {
+    fn nothing_is_taken_without_a_surface() {
         let mut coarse = roof(true);
         let before = coarse.clone();
         let empty = Mesh::default();

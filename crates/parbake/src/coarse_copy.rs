@@ -6,7 +6,7 @@
 //!        └ the copy whose surface is closest (mesh/simplify.rs) ────────────────────┘
 //! ```
 //!
-//! A surface that is close can look far off: hard edges that are rounded, and charts that slip, do not move it.
+//! A close surface may still look wrong: rounded edges and stretched textures do not change it.
 //!
 //! Contract: materials stay as they are, and a rig comes along. Deterministic.
 
@@ -28,8 +28,8 @@ const PIXELS: f64 = 256.0;
 /// Texels along a side of the maps that these pictures show, at most: four for each pixel.
 const TEXELS: usize = 1024;
 
-/// A coarser copy of about this many triangles whose surface is as close as can be, whatever it looks like; see
-/// [`with_tangents`].
+/// A coarser copy of about this many triangles (at least 1) with the closest surface, whatever it looks like; with tangents
+/// as [`with_tangents`] makes them.
 pub fn simplified(model: &Model, triangles: usize) -> Model {
     let parted = with_parted_materials(model);
     with_tangents(copied(model, &parted, by_shape(&parted.mesh, triangles)))
@@ -37,7 +37,7 @@ pub fn simplified(model: &Model, triangles: usize) -> Model {
 
 /// A coarser copy whose pictures are as close as can be with the model's own maps, to be used as it is: at most so many triangles,
 /// or about as many where seams leave no other way. It has tangents if the model has; else viewers make tangents up for both,
-/// in the same way. A model with parallax maps gets the copy of [`simplified`], for they know nothing of vertices that move.
+/// in the same way. A model with parallax maps gets the copy of [`simplified`], since such maps hold for vertices that stay in place.
 /// A watcher that says stop is heeded between pictures; what was tried by then counts.
 pub fn simplified_by_pictures(model: &Model, triangles: usize, watcher: &dyn Watcher) -> Model {
     let parted = with_parted_materials(model);

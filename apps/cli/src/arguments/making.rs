@@ -271,7 +271,7 @@ pub struct SimplifyCommand {
     #[arg(long, value_name = "TIMES", conflicts_with_all = ["triangles", "closest_in"])]
     pub subdivide: Option<u32>,
 
-    /// In what the copy is closest to the model
+    /// Whether pictures of the copy or its shape come closest to the model
     #[arg(long, value_name = "WHAT", value_enum, default_value_t = ClosestIn::Pictures)]
     pub closest_in: ClosestIn,
 
