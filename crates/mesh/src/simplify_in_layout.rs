@@ -27,7 +27,7 @@ pub enum Seams {
     Kept,
     /// Those of textures and materials stay; edges collapse across those of normals.
     OfTextures,
-    /// Edges collapse across all but those of materials and of the second set of texture coordinates.
+    /// Edges collapse across all but those of materials.
     Crossed,
 }
 
@@ -41,16 +41,13 @@ pub struct Collapses {
     pub normal_weight: f32,
     /// How bad a texture is that slips along the surface, compared with a surface that moves by as much.
     pub uv_weight: f32,
-    /// Whether vertices move to where the quadrics want them; else, and where there is a second set of coordinates, each is
-    /// one of the mesh's own.
+    /// Whether vertices move to where the quadrics want them; else each is one of the mesh's own.
     pub moves: bool,
 }
 
 /// A coarser mesh of about `triangles` triangles, at least 1; the mesh itself where it has no more than that.
 pub fn simplify_in_layout(mesh: &Mesh, triangles: usize, collapses: Collapses) -> Mesh {
-    let Collapses { seams, normal_weight, uv_weight, .. } = collapses;
-    // The second set of coordinates does not count among the attributes that follow vertices.
-    let moves = collapses.moves && mesh.uvs1.is_empty();
+    let Collapses { seams, normal_weight, uv_weight, moves } = collapses;
     let Some(unit) = UnitBox::of(mesh).filter(|_| mesh.triangles.len() > triangles) else {
         return mesh.clone();
     };
@@ -143,13 +140,11 @@ fn locks(mesh: &Mesh, materials: &[u32], seams: Seams) -> Vec<SimplifyVertex> {
     if seams == Seams::Kept {
         return locks;
     }
+    let has_uvs = seams == Seams::OfTextures && !mesh.uvs.is_empty();
     for (vertex, &first) in weld_by_position(&mesh.positions).iter().enumerate() {
         let first = first as usize;
-        let is_seam = |uvs: &[Vec2]| !uvs.is_empty() && uvs[vertex] != uvs[first];
-        // A light map may be read by an engine alone, so no picture shows what crossing its seams costs.
-        let differs = materials[vertex] != materials[first]
-            || seams == Seams::OfTextures && is_seam(&mesh.uvs)
-            || is_seam(&mesh.uvs1);
+        let differs =
+            materials[vertex] != materials[first] || (has_uvs && mesh.uvs[vertex] != mesh.uvs[first]);
         if differs {
             locks[vertex] = SimplifyVertex::Protect;
             locks[first] = SimplifyVertex::Protect;
@@ -161,7 +156,6 @@ fn locks(mesh: &Mesh, materials: &[u32], seams: Seams) -> Vec<SimplifyVertex> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vertices::push_copy;
     use parbake_model::glam::vec2;
 
     const CELLS: u32 = 12;
@@ -228,38 +222,6 @@ mod tests {
             let coarse = simplify_in_layout(&mesh, 120, way);
             let is_own = |p: &Vec3| mesh.positions.contains(p);
             assert_eq!(coarse.positions.iter().all(is_own), !way.moves, "{way:?}");
-        }
-    }
-
-    /// Protects light maps, of which pictures show nothing: vertices keep the coordinates that they have there, and no triangle
-    /// reaches over a seam of theirs.
-    #[test]
-    fn the_second_set_of_coordinates_stays_in_place() {
-        let mut mesh = sheet();
-        mesh.uvs1 = mesh.positions.iter().map(|p| vec2(p.x, p.y)).collect();
-        // Triangles of the upper half get vertices of their own, with coordinates of another chart.
-        let upper: Vec<usize> =
-            (0..mesh.triangles.len()).filter(|&t| mesh.corners(t).iter().all(|p| p.y > 0.499)).collect();
-        for triangle in upper {
-            for k in 0..3 {
-                let vertex = mesh.triangles[triangle][k];
-                let copy = push_copy(&mut mesh, vertex);
-                mesh.uvs1[copy as usize].y += 3.0;
-                mesh.triangles[triangle][k] = copy;
-            }
-        }
-        for way in ways() {
-            let coarse = simplify_in_layout(&mesh, 120, way);
-            assert!((40..=160).contains(&coarse.triangles.len()), "{way:?}: {}", coarse.triangles.len());
-            for triangle in &coarse.triangles {
-                let chart = triangle.map(|v| coarse.uvs1[v as usize].y > 2.0);
-                assert!(chart[0] == chart[1] && chart[1] == chart[2], "{way:?}");
-                for v in triangle.map(|v| v as usize) {
-                    let (p, uv) = (coarse.positions[v], coarse.uvs1[v]);
-                    let above = if chart[0] { 3.0 } else { 0.0 };
-                    assert!((uv - vec2(p.x, p.y + above)).length() < 1e-4, "{way:?} at {p}");
-                }
-            }
         }
     }
 
