@@ -44,15 +44,20 @@ pub struct Solve {
     pub smoothness: f32,
     /// Also stops once a step takes less than this from the error, as samples weigh it.
     pub least_gain: f64,
+    /// How often texels that leave the box are held at its border and the rest is solved again, at most.
+    pub box_passes: usize,
 }
 
 impl Solve {
-    /// To see what a layout is about.
-    pub const ROUGH: Self = Self { tolerance: 1e-3, steps: 30, smoothness: 1e-5, least_gain: 0.0 };
+    /// To see what a layout is about. Two passes tell layouts apart as six do.
+    pub const ROUGH: Self =
+        Self { tolerance: 1e-3, steps: 30, smoothness: 1e-5, least_gain: 0.0, box_passes: 2 };
     /// While texture coordinates move: until an objective's own `least_gain`.
-    pub const MOVING: Self = Self { tolerance: 1e-6, steps: 300, smoothness: 1e-5, least_gain: 0.0 };
+    pub const MOVING: Self =
+        Self { tolerance: 1e-6, steps: 300, smoothness: 1e-5, least_gain: 0.0, box_passes: 6 };
     /// For the texture that is written.
-    pub const FINAL: Self = Self { tolerance: 1e-6, steps: 100, smoothness: 1e-6, least_gain: 0.0 };
+    pub const FINAL: Self =
+        Self { tolerance: 1e-6, steps: 100, smoothness: 1e-6, least_gain: 0.0, box_passes: 6 };
 }
 
 /// The best texture; begins at `start`.
@@ -67,7 +72,7 @@ pub fn least_squares_texture(
 /// The best texture whose values lie in [0, 1]; begins at `start`.
 ///
 /// Texels that leave the box are held at its border and the rest is solved again
-/// (active set), at most a few times.
+/// (active set), as often as `solve` says.
 pub fn least_squares_texture_in_box(
     mapped: &ParameterizedSignal,
     start: FloatImage<Vec4>,
@@ -99,9 +104,8 @@ pub fn least_squares_texture_in_bytes(
 
 impl NormalEquations {
     fn solve_in_box(&self, start: FloatImage<Vec4>, solve: &Solve) -> FloatImage<Vec4> {
-        const PASSES: usize = 6;
         let mut texture = self.solve(start, solve, None);
-        for _ in 0..PASSES {
+        for _ in 0..solve.box_passes {
             let outside = |v: f32| !(0.0..=1.0).contains(&v);
             if !texture.texels.par_iter().any(|t| t.to_array().into_iter().any(outside)) {
                 break;

@@ -27,7 +27,8 @@ pub enum UvMode {
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
-    /// A parameterisation specialised to the signal, then variable projection.
+    /// Parbake's: triangles with more detail get more texels (signal-specialised parameterisation), then texture and UVs
+    /// are fitted together (variable projection).
     #[default]
     Fit,
     /// The paper's alternation of Adam on the texture and L-BFGS on the UVs.

@@ -47,9 +47,4 @@ impl<'a> LayoutScore<'a> {
         let errors = errors(problem, layout, self.own);
         errors.iter().zip(&self.kept).map(|(a, b)| a / b.max(1e-12)).collect()
     }
-
-    /// The error that counts is that of all sizes.
-    pub fn total(&self, layout: &Layout) -> f64 {
-        self.relative(self.problem, layout).iter().sum()
-    }
 }

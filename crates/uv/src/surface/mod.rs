@@ -84,7 +84,7 @@ pub struct UvStageReport {
     /// delivered may have less where nobody asked.
     #[serde(default)]
     pub gutter: f64,
-    /// Steps that texture coordinates took.
+    /// Steps of the refinement, or rounds of the paper's method.
     pub steps: usize,
     /// Estimated squared error of the surface's colours relative to that with the
     /// coordinates before, full size and half; 1 where nothing moved.

@@ -8,7 +8,7 @@
 //! Contract: a moved layout is as sound as the one before, and shows the surface better.
 
 use super::layout_score::LayoutScore;
-use super::refined::refined;
+use super::refined::{Begun, refined};
 use super::steps::Steps;
 use super::surface_samples::Source;
 use super::{Moved, UvStageOptions, UvStageReport, as_f32, contact, packing, signal};
@@ -44,6 +44,9 @@ pub fn moved(
     report: &mut UvStageReport,
     watcher: &dyn Watcher,
 ) -> Option<Moved> {
+    if watcher.stopped() {
+        return None;
+    }
     let start = &Layout::new(mesh);
     let signal_scales = signal(mesh, start, source, asked.texture_size)?;
     let contact = contact(asked, ACTIVATION_TEXELS);
@@ -60,20 +63,25 @@ pub fn moved(
     let options = &UvOptions { refine_steps: asked.steps, shape_steps, refine_by, ..UvOptions::default() };
     let score = &LayoutScore::new(mesh, start, problem, own, asked.gutter_required.then_some(asked.gutter));
     let tensors = &tensors(problem, start);
-    let unmoved = score.kept.len() as f64;
+    let unmoved = vec![1.0; score.kept.len()];
+    if watcher.stopped() {
+        return None;
+    }
     let packed = packed(problem, start, &packing(asked), tensors)
-        .map(|packed| (score.total(&packed), packed))
-        .filter(|(left, _)| *left < unmoved);
+        .map(|packed| (score.relative(problem, &packed), packed))
+        .filter(|(errors, _)| total(errors) < total(&unmoved));
     let is_packed = packed.is_some();
-    let (left, mut layout) = packed.unwrap_or_else(|| (unmoved, start.clone()));
+    let (mut errors, mut layout) = packed.unwrap_or_else(|| (unmoved, start.clone()));
     let mut frames = vec![as_f32(&start.points), as_f32(&layout.points)];
     let most = options.refine_steps + FLAT.len() * options.shape_steps;
     let steps = &mut Steps::new(most, mesh, start, watcher);
-    frames.extend(shaped(score, &mut layout, left, tensors, options, steps));
+    frames.extend(shaped(score, &mut layout, &mut errors, tensors, options, steps));
+    let before_refining = frames.len();
     let more_triangles = if own { asked.more_triangles } else { 0 };
-    let (moved, relative) = refined(score, layout, options, more_triangles, frames, steps)?;
+    let begun = Begun { layout, errors, way: frames };
+    let (moved, relative) = refined(score, begun, options, more_triangles, steps)?;
     report.packed |= is_packed;
-    report.steps = moved.frames.len() - 2;
+    report.steps = moved.frames.len().saturating_sub(before_refining);
     report.relative_error = relative;
     Some(moved)
 }
@@ -88,13 +96,18 @@ fn told_apart(texture_size: usize, samples: usize) -> usize {
     size
 }
 
-/// Moves the layout, which leaves this error in total, to the better one of the signal-specialised
+/// The error that counts is that of all sizes.
+fn total(errors: &[f64]) -> f64 {
+    errors.iter().sum()
+}
+
+/// Moves the layout, which leaves these errors, to the better one of the signal-specialised
 /// starts, and returns the way there. The start is a guess: how plain the plain is depends on the
 /// texture's size, and where both guesses are bad, none is better.
 fn shaped(
     score: &LayoutScore,
     layout: &mut Layout,
-    mut least: f64,
+    least: &mut Vec<f64>,
     tensors: &[DMat2],
     options: &UvOptions,
     steps: &mut Steps,
@@ -105,9 +118,9 @@ fn shaped(
         let own = UvOptions { flat, ..*options };
         steps.begin();
         shape(score.problem, &mut guess, tensors, &own, |points, loss| steps.step(&mut way, points, loss));
-        let left = score.total(&guess);
-        if left < least && score.is_sound(&guess) {
-            (*layout, least, shaped) = (guess, left, way);
+        let errors = score.relative(score.problem, &guess);
+        if total(&errors) < total(least) && score.is_sound(&guess) {
+            (*layout, *least, shaped) = (guess, errors, way);
         }
         if steps.watcher.stopped() {
             break;
