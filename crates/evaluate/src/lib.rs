@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! options, conventions ─ renderer ─┬─ figures ── what is seen: PSNR, MS-SSIM, FLIP ─┬─ evaluate
+//!                                  ├─ few_views ─ one figure, to choose between models
 //!                                  ├─ channels ─ the same for each map ─────────────┘
 //!                                  └─ screen_size ── up to which size two models look the same
 //! ```
@@ -12,6 +13,7 @@ pub mod channels;
 pub mod conventions;
 mod error;
 pub mod evaluate;
+pub mod few_views;
 pub mod figures;
 pub mod options;
 pub mod renderer;

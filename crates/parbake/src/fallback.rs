@@ -19,6 +19,7 @@ use parbake_fit::baked_materials::add_fallback;
 use parbake_image::MapKind;
 use parbake_image::display::Display;
 use parbake_image::reduced::reduced;
+use parbake_metric::psnr_from_mse;
 use parbake_model::{Image, Model};
 use parbake_progress::{Clock, Portion, ProgressScope, Stage, Watcher};
 use parbake_render::interpretation::Interpretation;
@@ -182,7 +183,7 @@ fn psnr(
     let display = &high.conventions.display;
     let squares: f64 = judged.iter().zip(&shown).map(|(wanted, shown)| square(wanted, shown, display)).sum();
     let values: usize = judged.iter().map(|reference| 3 * reference.pixels.len()).sum();
-    -10.0 * (squares / values.max(1) as f64).max(1e-12).log10()
+    psnr_from_mse(squares / values.max(1) as f64)
 }
 
 /// The sum of squared differences of two pictures, as displayed on black.

@@ -13,13 +13,11 @@ use parbake_atlas::sharing;
 use parbake_evaluate::evaluate::evaluate_each;
 use parbake_evaluate::options::EvaluateOptions;
 use parbake_model::Model;
-use parbake_progress::{Message, Watcher};
+use parbake_progress::{Message, Watcher, WithoutWarnings};
 use parbake_views::PrepareError;
 
 /// Decibels that coordinates which are sound may cost.
 const MOST_LOST: f64 = 0.05;
-/// Beyond this views are equal.
-const MOST_DECIBELS: f64 = 120.0;
 /// Views that are compared, the worse of two sets, since one texture may be luckier in one of them: those of the
 /// summary, and others.
 const VIEWS: [usize; 2] = [COMPARED_VIEWS, 12];
@@ -51,7 +49,7 @@ pub(crate) fn lost(
         let compared = evaluate_each(model, &[kept, found], &options, &[&options.background], false, &())?;
         // Views that are equal in every pixel have no finite figure.
         let mean = |which: usize| {
-            let psnr = compared.views.iter().map(|view| view.seen[which][0].psnr.min(MOST_DECIBELS));
+            let psnr = compared.views.iter().map(|view| view.seen[which][0].psnr);
             psnr.sum::<f64>() / views as f64
         };
         lost = lost.max(mean(0) - mean(1));
@@ -84,7 +82,7 @@ pub(crate) fn weighed(
         return bake(options, watcher);
     }
     let begin = std::time::Instant::now();
-    let quiet = Quiet(watcher);
+    let quiet = WithoutWarnings(watcher);
     // Of a budget the bake with the coordinates as they are needs the smaller part.
     let first = BakeOptions { time_budget: options.time_budget.map(|s| FIRST_SHARE * s), ..options.clone() };
     if check_budget(&first).is_err() {
@@ -120,29 +118,6 @@ pub(crate) fn weighed(
 
 /// Share of a time budget that the first of two bakes has.
 const FIRST_SHARE: f64 = 0.6;
-
-/// A watcher that is told no warnings: those of the bake that is written follow.
-struct Quiet<'a>(&'a dyn Watcher);
-
-impl Watcher for Quiet<'_> {
-    fn message(&self, message: Message) {
-        if !matches!(message, Message::Warning(_)) {
-            self.0.message(message);
-        }
-    }
-
-    fn wants_snapshot(&self) -> bool {
-        self.0.wants_snapshot()
-    }
-
-    fn stopped(&self) -> bool {
-        self.0.stopped()
-    }
-
-    fn seconds_left(&self) -> Option<f64> {
-        self.0.seconds_left()
-    }
-}
 
 #[cfg(test)]
 mod tests {

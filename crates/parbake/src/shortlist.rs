@@ -9,16 +9,12 @@ use crate::bake::bake_as;
 use crate::error::BakeError;
 use crate::options::{BakeOptions, GREY, Parallax, Preset};
 use crate::work::Work;
+use parbake_evaluate::few_views::FewViews;
 use parbake_evaluate::options::EvaluateOptions;
-use parbake_evaluate::renderer::{PlacedModel, Renderer};
-use parbake_metric::{mean_squared_error, psnr_from_mse};
 use parbake_model::Model;
-use parbake_model::glam::Vec3;
-use parbake_progress::{Message, Portion, Stage, Watcher};
-use parbake_render::camera::fibonacci_sphere;
+use parbake_progress::{Muted, Portion, Stage, Watcher};
 use parbake_simplify::LayerReport;
 use parbake_views::high_poly::HighPoly;
-use rayon::prelude::*;
 
 /// Texels along a side of a brief bake, at most, and its training views. They order low-polys as whole bakes do.
 const TEXELS: usize = 128;
@@ -51,13 +47,20 @@ pub(crate) fn best_baked(
     let mut best = 0;
     if low_polys.len() > 1 && high.importances.is_empty() {
         let brief = brief(options);
-        let score = BriefScore::new(model, options)?;
+        let pictures = EvaluateOptions {
+            views: VIEWS,
+            resolution: RESOLUTION,
+            convention: options.convention,
+            shading: options.shading,
+            ..EvaluateOptions::default()
+        };
+        let score = FewViews::new(model, &pictures, &BACKGROUNDS)?;
         let mut most = f64::NEG_INFINITY;
         let rest = Portion::new(watcher, ATTEMPTS..1.0);
         for (k, (low, _)) in low_polys.iter().enumerate() {
             rest.progress(Stage::Simplify, k, low_polys.len());
             // Charts that have no room in fewer texels may have it in all.
-            let Ok(baked) = bake_as(Work::Level, high, low, &brief, &Silent(watcher)) else { continue };
+            let Ok(baked) = bake_as(Work::Level, high, low, &brief, &Muted(watcher)) else { continue };
             if watcher.stopped() {
                 break;
             }
@@ -86,59 +89,13 @@ fn brief(options: &BakeOptions) -> BakeOptions {
     }
 }
 
-/// Compares baked models with the original in pictures.
-struct BriefScore {
-    renderer: Renderer,
-    directions: Vec<Vec3>,
-    original: PlacedModel,
-}
-
-impl BriefScore {
-    fn new(model: &Model, options: &BakeOptions) -> Result<Self, BakeError> {
-        let options = EvaluateOptions {
-            resolution: RESOLUTION,
-            convention: options.convention,
-            shading: options.shading,
-            ..EvaluateOptions::default()
-        };
-        let renderer = Renderer::new(model, &options)?;
-        let original = renderer.place(model);
-        Ok(Self { renderer, directions: fibonacci_sphere(VIEWS, 0.0), original })
-    }
-
-    /// PSNR in dB, the mean over views and backgrounds.
-    fn psnr(&self, model: &Model) -> f64 {
-        let Self { renderer, directions, original } = self;
-        let placed = renderer.place(model);
-        let of_view = |&direction: &Vec3| {
-            let views = [original, &placed].map(|model| renderer.render(model, direction));
-            BACKGROUNDS.map(|behind| {
-                let [a, b] = [0, 1].map(|k: usize| renderer.tonemap(&views[k], behind));
-                psnr_from_mse(mean_squared_error(&a, &b).unwrap_or(f64::NAN))
-            })
-        };
-        let figures: Vec<[f64; 3]> = directions.par_iter().map(of_view).collect();
-        figures.iter().flatten().sum::<f64>() / (3 * figures.len()) as f64
-    }
-}
-
-/// Hides the messages of a brief bake, and passes on whether to stop.
-struct Silent<'a>(&'a dyn Watcher);
-
-impl Watcher for Silent<'_> {
-    fn message(&self, _: Message) {}
-
-    fn stopped(&self) -> bool {
-        self.0.stopped()
-    }
-}
-
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use crate::bake::prepare_high_poly;
     use crate::options::{ShapeMode, UvMode};
+    use parbake_model::glam::Vec3;
     use parbake_model::{Material, Mesh};
 
     /// A sphere of 8 · 4^`times` triangles.

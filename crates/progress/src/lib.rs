@@ -11,6 +11,7 @@
 mod clock;
 mod estimate;
 mod message;
+mod muted;
 mod portion;
 mod scope;
 mod showing;
@@ -20,6 +21,7 @@ mod stage;
 pub use clock::{Clock, StageTime};
 pub use estimate::Estimate;
 pub use message::{Message, Watcher};
+pub use muted::{Muted, WithoutWarnings};
 pub use portion::Portion;
 pub use scope::ProgressScope;
 pub use showing::Showing;

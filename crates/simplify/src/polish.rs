@@ -16,7 +16,7 @@ use crate::pictures::Pictures;
 use crate::surface::Surface;
 use crate::target::Target;
 use glam::Vec3;
-use parbake_progress::{Message, Snapshot, Stage, Watcher};
+use parbake_progress::{Muted, Snapshot, Stage, Watcher};
 use parbake_render::interpolate::interpolate;
 use parbake_views::high_poly::HighPoly;
 use rayon::prelude::*;
@@ -68,7 +68,7 @@ pub fn polish<'a>(
         let (mut trial, mut own) = (pictures.clone(), steps.clone());
         split_worst(&mut trial, high, count);
         settle(&mut trial, &mut sets, &mut own, 1, watcher);
-        collapse_to(&mut trial, target, &Quietly(watcher));
+        collapse_to(&mut trial, target, &Muted(watcher));
         settle(&mut trial, &mut sets, &mut own, options.sweeps, watcher);
         // Judged from where neither was fitted to last.
         let views = sets.next();
@@ -106,21 +106,6 @@ impl<'a> Sets<'a> {
 /// Whether to go no further: what there is may be kept at any time, so an end of time that is known ends it too.
 pub(crate) fn is_over(watcher: &dyn Watcher) -> bool {
     watcher.stopped() || watcher.seconds_left().is_some_and(|left| left <= 0.0)
-}
-
-/// Passes on that a run should stop, and no progress: a round is a part of the whole.
-struct Quietly<'a>(&'a dyn Watcher);
-
-impl Watcher for Quietly<'_> {
-    fn message(&self, _: Message) {}
-
-    fn stopped(&self) -> bool {
-        self.0.stopped()
-    }
-
-    fn seconds_left(&self) -> Option<f64> {
-        self.0.seconds_left()
-    }
 }
 
 /// How far each point goes at a time (a pattern search with a step of its own for each point): farther after a

@@ -3,6 +3,7 @@
 use crate::page::Axes;
 use crate::page::text::{decimal, duration};
 use parbake::LossStep;
+use parbake_metric::psnr_from_mse;
 use std::fmt::Write;
 
 /// What can move in a step: its name in the report, its name for people.
@@ -21,7 +22,7 @@ pub fn loss_curve(losses: &[LossStep]) -> String {
         .iter()
         .filter(|l| l.mean_square.is_finite() && l.mean_square >= 0.0)
         .enumerate()
-        .map(|(i, l)| (i, -10.0 * l.mean_square.max(1e-10).log10(), l))
+        .map(|(i, l)| (i, psnr_from_mse(l.mean_square), l))
         .collect();
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
         return r#"<p class="note">The run ended before the first step was measured.</p>"#.into();

@@ -7,6 +7,7 @@ use crate::html::textures::textures;
 use crate::page::text::{NOTHING, count, decimal, duration, escape};
 use parbake::lod::document::{LodDocument, LodEntry};
 use parbake::{BakeError, LayerReport, LevelReport, Start, StartReport, Way};
+use parbake_metric::psnr_from_mse;
 use parbake_model::Model;
 use std::fmt::Write;
 
@@ -133,7 +134,7 @@ fn triangles(report: &LevelReport) -> String {
 }
 
 fn decibels(error: f64) -> String {
-    format!("{}\u{202f}dB", decimal(-10.0 * error.max(1e-10).log10(), 1))
+    format!("{}\u{202f}dB", decimal(psnr_from_mse(error), 1))
 }
 
 fn name(start: Start) -> &'static str {
