@@ -4,7 +4,7 @@ mod looking;
 mod making;
 mod runs;
 
-use crate::rules::{NOT_IN_COMPRESS, WITH_MORE_THAN_COLOUR};
+use crate::rules::{IDLE_IN_DEMO, WITH_MORE_THAN_COLOUR};
 use clap::{Args, Command as Clap, CommandFactory, Parser, Subcommand};
 pub use looking::{
     CheckCommand, EvalCommand, StatsCommand, ThumbnailCommand, TurntableCommand, VariantsCommand, ViewCommand,
@@ -13,6 +13,7 @@ pub use making::{
     BakeCommand, ClosestIn, CompressCommand, DemoCommand, DemoScene, ImageCommand, LodCommand,
     RaycastCommand, SimplifyCommand,
 };
+use parbake::IDLE_IN_COMPRESS;
 pub use runs::{BatchCommand, ReproduceCommand};
 
 /// Heading of files and messages in `--help`.
@@ -28,7 +29,7 @@ const HELP_IN_COMPRESS: [(&str, &str); 7] = [
         "Seconds after which the best texture so far is written, 0 to 1e9, reading of files included. \
 Below 8 (34 at 2048², 135 at 4096²) UVs are only repaired [default: no limit]",
     ),
-    ("shading", "What of the materials is fitted; pbr is the whole metallic-roughness material"),
+    ("shading", OWN_SHADING),
     ("uv", "UV mode: how the model's texture coordinates are treated"),
     ("method", "UV optimiser; textures are solved the same way"),
     (
@@ -46,6 +47,16 @@ Below 8 (34 at 2048², 135 at 4096²) UVs are only repaired [default: no limit]"
     ),
 ];
 
+/// Help of `--shading` where there is one model.
+const OWN_SHADING: &str = "What of the materials is fitted: auto fits whole materials where one has more than colour, normals and \
+emission; lambert colours, normals and emission; pbr the whole metallic-roughness material";
+
+/// Options of a bake whose help is another one in `bake` and `demo`.
+const HELP_IN_BAKE: [(&str, &str); 1] = [(
+    "uv_steps",
+    "Steps of the UV optimiser, 0 to 10000 [default: by preset 10, 30, 60; with --method paper 800]",
+)];
+
 /// Options of files whose help speaks of parallax maps, for commands that write none.
 const HELP_WITHOUT_PARALLAX: [(&str, &str); 2] = [
     ("texture_format", "Image format of the textures in a GLB file"),
@@ -57,7 +68,7 @@ have about the same size at any quality; from 96 on it is encoded with more care
 ];
 
 /// Commands that write models without parallax maps.
-const WITHOUT_PARALLAX: [&str; 3] = ["compress", "lod", "raycast"];
+const WITHOUT_PARALLAX: [&str; 4] = ["compress", "lod", "raycast", "simplify"];
 
 /// A command whose options have other help texts where `texts` has some.
 fn with_help(command: Clap, texts: &'static [(&'static str, &'static str)]) -> Clap {
@@ -73,10 +84,26 @@ pub fn command() -> Clap {
     let whole = WITHOUT_PARALLAX.into_iter().fold(Arguments::command(), |whole, name| {
         whole.mut_subcommand(name, |own| with_help(own, &HELP_WITHOUT_PARALLAX))
     });
+    let whole = ["bake", "demo"]
+        .into_iter()
+        .fold(whole, |whole, name| whole.mut_subcommand(name, |own| with_help(own, &HELP_IN_BAKE)));
+    let whole = whole.mut_subcommands(|own| {
+        own.mut_args(|argument| match argument.get_action().takes_values() {
+            // Of a number below what may be its own check says more than the parser could.
+            true => argument.allow_negative_numbers(true),
+            false => argument,
+        })
+    });
+    let whole = whole.mut_subcommand("demo", |demo| {
+        demo.mut_args(|argument| match IDLE_IN_DEMO.contains(&argument.get_id().as_str()) {
+            true => argument.hide(true),
+            false => argument,
+        })
+    });
     whole.mut_subcommand("compress", |compress| {
         with_help(compress, &HELP_IN_COMPRESS).mut_args(|argument| {
             let name = argument.get_id().to_string();
-            if NOT_IN_COMPRESS.contains(&name.as_str()) {
+            if IDLE_IN_COMPRESS.contains(&name.as_str()) {
                 argument.hide(true)
             } else if name == "more_triangles" {
                 argument.hide(false)
@@ -93,7 +120,7 @@ pub fn command() -> Clap {
 #[derive(Parser, Debug)]
 #[command(name = "parbake", version, propagate_version = true)]
 #[command(after_help = "Exit codes: 0 done, 1 bad input or failed output, 2 wrong usage, \
-3 check found problems, 4 reproduce found gains that fell, 130 interrupted (the best state so far was written).")]
+3 check found problems, 4 reproduce found gains that fell or lod cannot reach its --target-psnr, 130 interrupted (the best state so far was written).")]
 pub struct Arguments {
     /// What to do
     #[command(subcommand)]

@@ -14,7 +14,7 @@ use clap::ArgMatches;
 use parbake::{
     BakeOptions, BakeReport, Baked, Comparison, Convention, Detail, Loaded, Message, Model, NormalY, Shading,
     Stage, StageTime, Warning, WarningKind, Watcher, Work, bake, bake_to_triangles, check_budget,
-    compare_bake, read_model, read_painted_model, with_normal_y, with_threads, write_file,
+    compare_bake, psnr_from_mse, read_model, read_painted_model, with_normal_y, with_threads, write_file,
 };
 use parbake_report::html_report;
 use std::path::Path;
@@ -23,6 +23,12 @@ use std::path::Path;
 pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure> {
     let file = command.options.as_deref();
     let options = merged(&command.bake, given, file)?;
+    if command.low.is_none() && command.triangles.is_none() {
+        return Err(Failure::Usage(
+            "there is no low-poly to bake onto: give LOW, or --triangles COUNT, which makes one of HIGH"
+                .into(),
+        ));
+    }
     rules::check(Work::Bake, &options, given, file)?;
     options.check()?;
     check_budget(&options)?;
@@ -64,7 +70,8 @@ fn bake_files(
             }
         };
         let figures = figures_read(command.talk, command.json.is_some(), command.report.is_some());
-        if let Some(detail) = figures.filter(|_| !command.no_comparison) {
+        if let Some(detail) = figures.filter(|_| !command.no_comparison && has_time(command.report.is_some()))
+        {
             compare(&pair.high, &mut baked, detail, console)?;
         }
         if let Some(path) = &command.json {
@@ -223,6 +230,11 @@ pub fn figures_read(talk: Talk, json: bool, report: bool) -> Option<Detail> {
     (!talk.quiet || json || report).then_some(Detail { flip: report, channels: report || json })
 }
 
+/// Whether there is time for a comparison: who interrupts a bake wants its end, unless the report shows the figures.
+pub fn has_time(is_reported: bool) -> bool {
+    is_reported || !interrupted()
+}
+
 /// Compares the result with a ray-cast bake, for the last line, the report and JSON.
 pub fn compare(high: &Model, baked: &mut Baked, detail: Detail, console: &Console) -> Result<(), Failure> {
     baked.report.comparison = Some(compare_bake(high, baked, detail, console)?);
@@ -238,7 +250,6 @@ pub fn write_report(path: &Path, high: &Model, baked: &Baked, console: &Console)
 
 /// The last lines: what came of it.
 pub fn tell(console: &Console, talk: Talk, report: &BakeReport, output: &Path) {
-    let decibels = |mean_square: f64| -10.0 * mean_square.max(1e-10).log10();
     let compared = report.comparison.as_ref().map(|made| gains(made, "ray-cast", "baked") + "; ");
     let compared = compared.unwrap_or_default();
     console.say(&format!("{}: {compared}{:.1} s", output.display(), console.seconds()));
@@ -260,7 +271,7 @@ pub fn tell(console: &Console, talk: Talk, report: &BakeReport, output: &Path) {
                 "  {:8.3} s  {:8}  {:.3} dB",
                 step.seconds,
                 step.moved,
-                decibels(step.mean_square)
+                psnr_from_mse(step.mean_square)
             ));
         }
         if let Some(bytes) = report.peak_memory {

@@ -14,10 +14,10 @@ use std::fmt::Write;
 pub fn run(command: &CheckCommand) -> Result<Ending, Failure> {
     let (size, gutter) = (command.texture_size, command.gutter);
     if let Some(size) = size.filter(|size| !(1..=65536).contains(size)) {
-        return Err(Failure::Usage(format!("--texture-size {size} is out of range: it may be 1 to 65536")));
+        return Err(Failure::Usage(format!("--texture-size cannot be {size}: it may be 1 to 65536")));
     }
     if !(gutter >= 0.0 && gutter.is_finite()) {
-        return Err(Failure::Usage(format!("--gutter {gutter} is out of range: it may be 0 or more")));
+        return Err(Failure::Usage(format!("--gutter cannot be {gutter}: it may be 0 or more")));
     }
     check_json(command.json.as_ref(), &[&command.model])?;
     let to_stdout = command.json.as_ref().is_some_and(|path| is_stdout(path));

@@ -1,7 +1,7 @@
 //! `parbake compress`.
 
 use crate::arguments::CompressCommand;
-use crate::bake::{check_textures, compare, ending, figures_read, gains, read, write_report};
+use crate::bake::{check_textures, compare, ending, figures_read, gains, has_time, read, write_report};
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
 use crate::formats::{check_formats, write_model};
@@ -56,7 +56,8 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
         baked.report.warnings.splice(0..0, loaded.warnings.iter().map(|warning| warning.text.clone()));
         baked.report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
         let figures = figures_read(command.talk, command.json.is_some(), command.report.is_some());
-        if let Some(detail) = figures.filter(|_| !command.no_comparison) {
+        if let Some(detail) = figures.filter(|_| !command.no_comparison && has_time(command.report.is_some()))
+        {
             compare(&loaded.model, &mut baked, detail, &console)?;
         }
         if let Some(path) = &command.json {

@@ -9,14 +9,14 @@ use crate::pictures::write_pictures;
 use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;
-use parbake::{Detail, Work, check_budget, demo_pair, wall_pair, with_threads, write_glb};
+use parbake::{Detail, check_budget, demo_pair, wall_pair, with_threads, write_glb};
 
 /// File of the pictures.
 const PICTURE: &str = "demo.webp";
 
 /// Runs the command.
 pub fn run(command: &DemoCommand, given: &ArgMatches) -> Result<Ending, Failure> {
-    rules::check(Work::Bake, &command.bake, given, None)?;
+    rules::check_demo(&command.bake, given)?;
     command.bake.check()?;
     check_budget(&command.bake)?;
     let folder = &command.output;

@@ -21,7 +21,7 @@ const DOCUMENT: &str = "lods.json";
 /// Runs the command.
 pub fn run(command: &LodCommand, given: &ArgMatches) -> Result<Ending, Failure> {
     let options = &command.lod;
-    rules::check_lod(options, given)?;
+    rules::check_quality(&options.write, given)?;
     options.check()?;
     check_folder(&command.output)?;
     let name =

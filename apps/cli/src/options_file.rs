@@ -13,6 +13,9 @@ use parbake::BakeOptions;
 use serde_json::{Map, Value};
 use std::path::Path;
 
+/// What a file may hold.
+const EXAMPLE: &str = r#"expected a JSON object of options such as {"texture_size": 1024, "preset": "fast"}"#;
+
 /// The typed options, with the file's in the place of those that were not typed.
 pub fn merged(typed: &BakeOptions, given: &ArgMatches, file: Option<&Path>) -> Result<BakeOptions, Failure> {
     let Some(path) = file else { return Ok(typed.clone()) };
@@ -22,7 +25,8 @@ pub fn merged(typed: &BakeOptions, given: &ArgMatches, file: Option<&Path>) -> R
             "--options: reading from standard input is not supported; give a file".into(),
         ));
     }
-    let text = std::fs::read_to_string(path).map_err(|e| wrong(format!("cannot be read: {e}")))?;
+    let bytes = std::fs::read(path).map_err(|e| wrong(format!("cannot be read: {e}")))?;
+    let text = String::from_utf8(bytes).map_err(|_| wrong(format!("this is no text; {EXAMPLE}")))?;
     let mut all = options_in(&text).map_err(wrong)?;
     for (name, value) in as_map(typed) {
         // Field names are clap's argument names: both come from the struct.
@@ -42,8 +46,9 @@ fn as_map(options: &BakeOptions) -> Map<String, Value> {
 
 /// All options as the file has them, the rest by default; else a sentence.
 fn options_in(text: &str) -> Result<Map<String, Value>, String> {
-    const EXAMPLE: &str =
-        r#"expected a JSON object of options such as {"texture_size": 1024, "preset": "fast"}"#;
+    if text.trim().is_empty() {
+        return Err(format!("the file is empty; {EXAMPLE}"));
+    }
     let mut json: Value = serde_json::from_str(text)
         .map_err(|e| format!("line {}, column {}: this is not JSON; {EXAMPLE}", e.line(), e.column()))?;
     if let Some(options) = json.get_mut("options") {
@@ -117,6 +122,7 @@ mod tests {
     fn mistakes_have_a_place() {
         for (text, words) in [
             ("texture_size = 4", "line 1, column 2: this is not JSON"),
+            (" \n", "the file is empty; expected a JSON object"),
             ("[1]", "no object"),
             ("{\n  \"texture_sise\": 64}", "line 2, column 3: there is no option \"texture_sise\""),
             ("{\"preset\": \"quick\"}", "expected one of \"fast\", \"balanced\", \"best\""),

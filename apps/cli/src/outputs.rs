@@ -4,7 +4,7 @@
 //! stands there is touched.
 
 use crate::failure::Failure;
-use parbake::{BakeOptions, Parallax};
+use parbake::{BakeOptions, Parallax, named_files, replaced_files};
 use std::fs::OpenOptions;
 use std::path::{Path, PathBuf};
 
@@ -34,7 +34,15 @@ pub fn make_folder(path: &Path) -> Result<(), Failure> {
 /// Refuses a model that cannot be written.
 pub fn check_output(path: &Path) -> Result<(), Failure> {
     check_extension(path, &["glb", "obj"], "the output")?;
-    check_place(path)
+    check_place(path)?;
+    match replaced_files(path).iter().find(|beside| beside.is_dir()) {
+        None => Ok(()),
+        Some(folder) => Err(Failure::Usage(format!(
+            "{}: the folder {} has the name of a file that is written with it; choose another name",
+            path.display(),
+            folder.display()
+        ))),
+    }
 }
 
 /// Refuses a film of moving UVs that is no GIF.
@@ -100,25 +108,36 @@ fn check_writable(path: &Path, folder: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Refuses to write over an input: artists keep their only copy in such files.
+/// Refuses to write over an input, or over a file that an input names: artists keep their only copy in such files.
 pub fn check_not_input(output: &Path, inputs: &[&Path]) -> Result<(), Failure> {
     let whole = |path: &Path| path.canonicalize().ok();
-    // An OBJ takes its material file with it.
-    let written = [output.to_path_buf(), output.with_extension("mtl")];
+    let written = replaced_files(output);
+    let hits = |read: &Path| {
+        whole(read).is_some_and(|read| written.iter().any(|w| whole(w).as_ref() == Some(&read)))
+    };
+    let refuse = |what: String| {
+        Err(Failure::Usage(format!("{}: this would overwrite {what}; choose another name", output.display())))
+    };
+    if let Some(input) = inputs.iter().find(|input| hits(input)) {
+        return refuse(format!("the input {}", input.display()));
+    }
+    if written.iter().all(|path| is_named_by_no_model(path)) {
+        return Ok(());
+    }
     for input in inputs {
-        let read = [input.to_path_buf(), input.with_extension("mtl")];
-        let hit = written
-            .iter()
-            .any(|w| whole(w).is_some_and(|w| read.iter().any(|r| whole(r).as_ref() == Some(&w))));
-        if hit {
-            return Err(Failure::Usage(format!(
-                "{}: this would overwrite the input {}; choose another name",
-                output.display(),
-                input.display()
-            )));
+        // An input that cannot be read has an error of its own.
+        let named = named_files(input).unwrap_or_default();
+        if let Some(file) = named.iter().find(|file| hits(file)) {
+            return refuse(format!("{}, which {} names", file.display(), input.display()));
         }
     }
     Ok(())
+}
+
+/// Whether a file is of a kind that is part of no other model, so that inputs need not be searched for its name.
+fn is_named_by_no_model(path: &Path) -> bool {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+    ["glb", "obj", "json", "html", "htm"].contains(&extension.as_str())
 }
 
 /// Checks the JSON file of a command that writes nothing else.

@@ -8,30 +8,11 @@ use crate::failure::Failure;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
 use parbake::{
-    BakeOptions, EvaluateOptions, GeometryMap, ImageOptions, LodOptions, Match, Method, Parallax, PictureUv,
-    RaycastOptions, TextureFormat, UvMode, Work,
+    BakeOptions, EvaluateOptions, GeometryMap, ImageOptions, Match, Method, PictureUv, QUALITY_OF_LOSSLESS,
+    RaycastOptions, RaycastUv, Work, WriteOptions, idle_options, is_lossless,
 };
 use serde_json::Value;
 use std::path::Path;
-
-/// Options of a bake that do nothing where a model's own texture is replaced: the surface stays.
-pub const NOT_IN_COMPRESS: [&str; 15] = [
-    "shape",
-    "silhouette_background",
-    "silhouette",
-    "parallax",
-    "parallax_order",
-    "parallax_size",
-    "no_cutout",
-    "cutout_order",
-    "cutout_size",
-    "fallback_size",
-    "max_distance",
-    "keep_sides",
-    "importance",
-    "importance_attribute",
-    "keep_parts",
-];
 
 /// Options that act in `compress` only on models with more to their materials than colour, which are baked as a pair
 /// is; colour alone is fitted without views.
@@ -48,14 +29,15 @@ fn typed_name(name: &str) -> String {
     format!("--{}", name.replace('_', "-"))
 }
 
-/// Those of [`WITH_MORE_THAN_COLOUR`] that were typed, as they were typed.
+/// The options that were typed which need views of the model, as they were typed.
 pub fn typed_of_views(given: &ArgMatches) -> impl Iterator<Item = String> + '_ {
-    // The convention says how colours are compared, whatever else there is.
-    let of_views = WITH_MORE_THAN_COLOUR.iter().filter(|name| **name != "convention");
+    // The convention says how colours are compared, whatever else there is. The robust loss stands with research.
+    let of_views =
+        WITH_MORE_THAN_COLOUR.iter().filter(|name| **name != "convention").chain(&["robust_scale"]);
     of_views.filter(|name| is_typed(given, name)).map(|name| typed_name(name))
 }
 
-/// Checks the options of `bake`, `demo` or `compress`; `file` is the options file, if there was one.
+/// Checks the options of `bake` or `compress`; `file` is the options file, if there was one.
 pub fn check(
     work: Work,
     options: &BakeOptions,
@@ -65,75 +47,35 @@ pub fn check(
     let fields = |options: &BakeOptions| serde_json::to_value(options).unwrap_or(Value::Null);
     let (own, default) = (fields(options), fields(&BakeOptions::default()));
     let is_asked = |name: &str| is_typed(given, name) || (file.is_some() && own[name] != default[name]);
-    let refuse = |names: &[&str], why: &str| match names.iter().find(|name| is_asked(name)) {
-        None => Ok(()),
-        Some(name) => {
-            let source = match file {
-                Some(file) if !is_typed(given, name) => format!("{}: ", file.display()),
-                _ => String::new(),
-            };
-            Err(Failure::Usage(format!("{source}{} {why}", typed_name(name))))
-        }
+    let refuse = |name: &str, why: &str| {
+        let source = match file {
+            Some(file) if !is_typed(given, name) => format!("{}: ", file.display()),
+            _ => String::new(),
+        };
+        Err(Failure::Usage(format!("{source}{} {why}", typed_name(name))))
     };
-    if work == Work::Compress {
-        refuse(&NOT_IN_COMPRESS, "does nothing in compress, which keeps the surface; leave it out")?;
-        if options.uv != UvMode::Optimize && options.method != Method::Paper {
-            refuse(&["more_triangles"], "does nothing without --uv optimize; choose that or leave it out")?;
-        }
-    } else {
-        refuse(&["more_triangles"], "acts in compress only; leave it out")?;
+    if let Some((name, why)) = idle_options(options, work).into_iter().find(|(name, _)| is_asked(name)) {
+        return refuse(name, why);
     }
-    if work == Work::Bake && !is_typed(given, "triangles") {
-        let why = "acts where the low-poly is made of the high-poly's nodes; give --triangles instead of LOW, or leave \
-                   it out";
-        refuse(&["keep_parts"], why)?;
+    let makes_low_poly = is_typed(given, "triangles");
+    match work == Work::Bake && !makes_low_poly && is_asked("keep_parts") {
+        false => Ok(()),
+        true => refuse(
+            "keep_parts",
+            "acts where the low-poly is made of the high-poly's nodes; give --triangles instead of LOW, or leave it out",
+        ),
     }
-    if options.parallax == Parallax::None {
-        let of_map = ["parallax_order", "parallax_size", "fallback_size"];
-        let maps = [&of_map[..], &["no_cutout", "cutout_order", "cutout_size"]].concat();
-        refuse(&maps, "does nothing without --parallax; add --parallax tangent or leave it out")?;
-    }
-    if options.parallax == Parallax::Tangent {
-        let why = "is of spherical harmonics, and does nothing with --parallax tangent; leave it out";
-        refuse(&["parallax_order", "cutout_order"], why)?;
-    }
-    let of_cutout = ["cutout_order", "cutout_size"];
-    if options.no_cutout {
-        refuse(&of_cutout, "does nothing with --no-cutout; leave one of the two out")?;
-    }
-    if options.method == Method::Paper {
-        refuse(&of_cutout, "does nothing with --method paper, which fits no cutout; leave it out")?;
-        let why = "does nothing with --method paper, whose textures serve all viewers; leave it out";
-        refuse(&["fallback_size"], why)?;
-    } else {
-        refuse(&["no_content_aware"], "does nothing without --method paper; add that or leave it out")?;
-        if options.uv != UvMode::Optimize {
-            refuse(&["uv_steps"], "does nothing without --uv optimize; choose that or leave it out")?;
-        }
-    }
-    if options.rounds == Some(0) {
-        let of_fit = ["keep_normals", "robust_scale"];
-        refuse(&of_fit, "does nothing with --rounds 0, which fits no textures; leave one of the two out")?;
-    }
-    let is_lossless = is_lossless(options.write.texture_format);
-    // Textures for viewers without parallax maps are JPEG in either case.
-    if is_lossless && !options.has_fallback() {
-        refuse(&["texture_quality"], QUALITY_OF_LOSSLESS)?;
-    }
-    if options.silhouette_weight() == 0.0 {
-        refuse(
-            &["silhouette_background"],
-            "does nothing where --silhouette is 0, its default with a cutout; give --silhouette as well",
-        )?;
-    }
-    Ok(())
 }
 
-const QUALITY_OF_LOSSLESS: &str =
-    "does nothing with a lossless --texture-format; choose another or leave it out";
+/// Options of a bake that do nothing in `demo`, whose models have no nodes and no colours of vertices.
+pub const IDLE_IN_DEMO: [&str; 2] = ["keep_parts", "importance_attribute"];
 
-fn is_lossless(format: TextureFormat) -> bool {
-    matches!(format, TextureFormat::Png | TextureFormat::WebpLossless)
+/// Checks the options of `demo`.
+pub fn check_demo(options: &BakeOptions, given: &ArgMatches) -> Result<(), Failure> {
+    for name in IDLE_IN_DEMO {
+        refuse_typed(given, name, "does nothing in demo; leave it out")?;
+    }
+    check(Work::Bake, options, given, None)
 }
 
 /// Refuses an option that was typed.
@@ -141,14 +83,6 @@ fn refuse_typed(given: &ArgMatches, name: &str, why: &str) -> Result<(), Failure
     match is_typed(given, name) {
         false => Ok(()),
         true => Err(Failure::Usage(format!("{} {why}", typed_name(name)))),
-    }
-}
-
-/// Checks the options of `lod`.
-pub fn check_lod(options: &LodOptions, given: &ArgMatches) -> Result<(), Failure> {
-    match is_lossless(options.write.texture_format) {
-        true => refuse_typed(given, "texture_quality", QUALITY_OF_LOSSLESS),
-        false => Ok(()),
     }
 }
 
@@ -179,12 +113,29 @@ pub fn check_raycast(options: &RaycastOptions, given: &ArgMatches) -> Result<(),
         refuse("curvature_radius", "does nothing without --maps curvature; add that or leave it out")?;
     }
     if options.r#match == Match::ClosestPoint {
-        refuse("ray_normals", "does nothing with --match closest-point, which casts no rays; leave it out")?;
+        let why = "does nothing with --match closest-point, which casts no rays; leave it out";
+        ["ray_normals", "max_distance"].iter().try_for_each(|name| refuse(name, why))?;
     }
-    if is_lossless(options.write.texture_format) {
-        refuse("texture_quality", QUALITY_OF_LOSSLESS)?;
+    if options.uv == RaycastUv::Keep {
+        refuse("gutter", "does nothing with --uv keep, which leaves charts where they are; leave it out")?;
     }
-    Ok(())
+    check_quality(&options.write, given)
+}
+
+/// Refuses a quality of textures that lose nothing.
+pub fn check_quality(formats: &WriteOptions, given: &ArgMatches) -> Result<(), Failure> {
+    match is_lossless(formats.texture_format) {
+        true => refuse_typed(given, "texture_quality", QUALITY_OF_LOSSLESS),
+        false => Ok(()),
+    }
+}
+
+/// Checks the options of `stats`.
+pub fn check_stats(has_other: bool, given: &ArgMatches) -> Result<(), Failure> {
+    match has_other {
+        true => Ok(()),
+        false => refuse_typed(given, "samples", "does nothing without --against; add that or leave it out"),
+    }
 }
 
 /// Checks the options of `image`.

@@ -6,10 +6,13 @@ use crate::failure::{Ending, Failure};
 use crate::formats::{check_formats, write_model};
 use crate::outputs::{check_not_input, check_output};
 use crate::progress::Console;
+use crate::rules;
+use clap::ArgMatches;
 use parbake::{simplified, simplified_by_pictures, subdivided};
 
 /// Runs the command.
-pub fn run(command: &SimplifyCommand) -> Result<Ending, Failure> {
+pub fn run(command: &SimplifyCommand, given: &ArgMatches) -> Result<Ending, Failure> {
+    rules::check_quality(&command.formats, given)?;
     check_output(&command.output)?;
     check_formats(&command.output, &command.formats)?;
     check_not_input(&command.output, &[&command.model])?;

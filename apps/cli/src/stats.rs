@@ -7,6 +7,8 @@ use crate::failure::{Ending, Failure};
 use crate::outputs::{check_json, is_stdout};
 use crate::printed::print;
 use crate::progress::Console;
+use crate::rules;
+use clap::ArgMatches;
 use parbake::{LayoutStats, ModelStats, SurfaceDistance, model_distance, model_stats, with_threads};
 use parbake_report::page::text::figures;
 use serde::Serialize;
@@ -21,7 +23,8 @@ struct Stats {
 }
 
 /// Runs the command.
-pub fn run(command: &StatsCommand) -> Result<Ending, Failure> {
+pub fn run(command: &StatsCommand, given: &ArgMatches) -> Result<Ending, Failure> {
+    rules::check_stats(command.against.is_some(), given)?;
     command.stats.check()?;
     let mut files = vec![("model", command.model.as_path())];
     files.extend(command.against.as_deref().map(|path| ("against", path)));

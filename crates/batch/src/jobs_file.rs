@@ -59,9 +59,11 @@ struct Entry {
 /// # Errors
 /// When it cannot be read, is no TOML, names what is unknown, or a job cannot be run.
 pub fn read_jobs(path: &Path, commands: &dyn Commands) -> Result<JobsFile, BatchError> {
-    let text = std::fs::read_to_string(path).map_err(BatchError::disk(path))?;
+    let bytes = std::fs::read(path).map_err(BatchError::disk(path))?;
     let format = |reason: String| BatchError::Format { path: path.into(), reason };
-    let file: Toml = toml::from_str(&text).map_err(|error| format(error.to_string().trim().into()))?;
+    let text =
+        String::from_utf8(bytes).map_err(|_| format("this is no text; give a jobs file in TOML".into()))?;
+    let file: Toml = toml::from_str(&text).map_err(|error| format(sentence(&error, &text)))?;
     if file.defaults.name.is_some() || file.defaults.output.is_some() || !file.defaults.inputs.is_empty() {
         return Err(format("[defaults] may have command, options and arguments only".into()));
     }
@@ -79,6 +81,14 @@ pub fn read_jobs(path: &Path, commands: &dyn Commands) -> Result<JobsFile, Batch
     }
     check_names(&jobs)?;
     Ok(JobsFile { jobs, output: file.output.map(|output| folder.join(output)) })
+}
+
+/// What is wrong with a file, in one line with its place.
+fn sentence(error: &toml::de::Error, text: &str) -> String {
+    let reason = error.message().trim().replace('\n', ", ");
+    let Some(before) = error.span().and_then(|span| text.get(..span.start)) else { return reason };
+    let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
+    format!("line {}, column {column}: {reason}", before.matches('\n').count() + 1)
 }
 
 fn job(entry: Entry, defaults: &Entry, index: usize) -> Result<Job, BatchError> {

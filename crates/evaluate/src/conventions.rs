@@ -54,7 +54,7 @@ pub enum Shading {
     Auto,
     /// Colours, normals and emission, as a headlight shows them on a matte surface (the paper's shading).
     Lambert,
-    /// The whole metallic-roughness material; needs --convention gltf.
+    /// The whole metallic-roughness material.
     Pbr,
 }
 

@@ -7,7 +7,7 @@ use parbake_views::PrepareError;
 #[non_exhaustive]
 pub enum EvaluateError {
     /// An option is out of range.
-    #[error("--{option} {value} is out of range: it may be {range}")]
+    #[error("--{option} cannot be {value}: it may be {range}")]
     Option {
         /// Its name on the command line.
         option: &'static str,

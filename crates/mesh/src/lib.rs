@@ -11,7 +11,7 @@
 //! deviation                     how far two surfaces are apart, for a choice between them
 //! distance                      the same in full: Chamfer, Hausdorff, root mean square
 //! topology                      pieces, holes, handles, and where a surface is none
-//! exposure                      how much of a surface is seen from outside
+//! visibility                    how much of a surface is seen from outside
 //! material_uvs                  texture coordinates as materials read them
 //! rig_parts, rig_transfer, rigs what moves by itself, and how a rig comes along
 //! named_nodes, parts            nodes that a user names, parts that stay apart

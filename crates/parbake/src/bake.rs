@@ -19,7 +19,7 @@ use crate::order::{BakeBackend, Order};
 use crate::report::{BakeReport, layout_warning};
 use crate::snapshots::show;
 use crate::textures::{FittedTextures, Subject, fit_views, training_views};
-use crate::warnings::{Warnings, swapped, unseen};
+use crate::warnings::{Warnings, for_plain_materials, swapped, unseen};
 use crate::work::Work;
 use parbake_atlas::check_mesh;
 use parbake_fit::baked_materials::{Look, add_fallback};
@@ -198,6 +198,8 @@ pub(crate) fn run(
     let mut warnings = Warnings::new(watcher);
     warnings.tell((work == Work::Bake).then(|| swapped(high, low)).flatten());
     warnings.tell((work == Work::Bake).then(|| left_out(options, work, high.is_whole_material)).flatten());
+    let is_asked = high.is_whole_material && work != Work::Level;
+    warnings.tell(is_asked.then(|| for_plain_materials(&high.name, options)).flatten());
     let given = low;
     // One model twice keeps its vertices, whatever their normals are like.
     let turned = (!same).then(|| lit(low));

@@ -16,7 +16,7 @@ pub enum BakeError {
     #[error(transparent)]
     Atlas(#[from] parbake_atlas::AtlasError),
     /// An option is out of range.
-    #[error("--{option} {value} is out of range: it may be {range}")]
+    #[error("--{option} cannot be {value}: it may be {range}")]
     Option {
         /// Its name on the command line.
         option: &'static str,

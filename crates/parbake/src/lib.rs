@@ -38,6 +38,7 @@ mod compress;
 mod error;
 mod fallback;
 mod geometry;
+mod idle_options;
 mod image;
 mod image_options;
 mod kept;
@@ -72,6 +73,7 @@ pub use comparison::{
 pub use compress::{compress, has_colour_alone};
 pub use error::BakeError;
 pub use fallback::FallbackReport;
+pub use idle_options::{IDLE_IN_COMPRESS, QUALITY_OF_LOSSLESS, idle_options, is_lossless};
 pub use image::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
 pub use lod::options::LodOptions;
 pub use lod::search::Verdict;
@@ -96,14 +98,15 @@ pub use parbake_evaluate::screen_size::AtSize;
 pub use parbake_files::{
     Contents, DEFAULT_TEXTURE_QUALITY, FileError, Limits, Loaded, MeshCompression, NormalY, PictureFormat,
     StoredPicture, TextureFormat, Warning, WarningKind, WriteOptions, Written, WrittenMesh, WrittenTexture,
-    encode_png, read_image, read_model, read_painted_model, with_normal_y, write_atomically as write_file,
-    write_glb, write_glb_with, write_lod_glb, write_obj,
+    encode_png, named_files, read_image, read_model, read_painted_model, replaced_files, with_normal_y,
+    write_atomically as write_file, write_glb, write_glb_with, write_lod_glb, write_obj,
 };
 pub use parbake_fit::parallax_maps::ParallaxReport;
 pub use parbake_mesh::distance::{OneWay, SurfaceDistance};
 pub use parbake_mesh::named_nodes::NodeError;
 pub use parbake_mesh::parts::{PartReport, PartsError};
 pub use parbake_mesh::topology::{Component, Topology};
+pub use parbake_metric::psnr_from_mse;
 pub use parbake_model::{Image as Picture, Model};
 pub use parbake_progress::{Estimate, Message, ProgressScope, Snapshot, Stage, StageTime, Watcher};
 pub use parbake_raycast::{Encoded, GeometryMap};

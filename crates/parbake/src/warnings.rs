@@ -1,5 +1,6 @@
 //! What the user is told of a pair of models, as it is found and again in the report.
 
+use crate::options::{BakeOptions, Parallax};
 use parbake_image::MapKind;
 use parbake_model::Model;
 use parbake_progress::{Message, Watcher};
@@ -44,6 +45,27 @@ pub(crate) fn swapped(high: &HighPoly, low: &Model) -> Option<String> {
     })
 }
 
+/// A word about options that act on plain materials alone, where whole ones are fitted.
+pub(crate) fn for_plain_materials(model: &str, options: &BakeOptions) -> Option<String> {
+    let own = BakeOptions::default();
+    let has_silhouette = options.silhouette.is_some();
+    let has_background = options.silhouette_background != own.silhouette_background;
+    let is_flat = options.parallax == Parallax::None;
+    let idle = [
+        (options.robust_scale.is_some(), "--robust-scale"),
+        (has_silhouette && is_flat, "--silhouette"),
+        (has_background && is_flat, "--silhouette-background"),
+    ];
+    let idle: Vec<&str> = idle.into_iter().filter(|(is_idle, _)| *is_idle).map(|(_, name)| name).collect();
+    (!idle.is_empty()).then(|| {
+        format!(
+            "{model}: {} acts on plain materials alone, and whole materials are fitted here; leave it out, or give \
+             --shading lambert",
+            idle.join(", ")
+        )
+    })
+}
+
 /// Share of the texels on the surface that no view saw from which on it is worth a word.
 const UNSEEN_WORTH_A_WORD: f64 = 0.05;
 
@@ -58,4 +80,22 @@ pub(crate) fn unseen(model: &str, unseen: usize, covered: usize) -> Option<Strin
             100.0 * share
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects time spent on options that do nothing: those that whole materials do not follow are named, and those of
+    /// the outline act on parallax maps.
+    #[test]
+    fn idle_options_are_named() {
+        let own = BakeOptions::default;
+        let told = |options: BakeOptions| for_plain_materials("m", &options);
+        assert_eq!(told(own()), None);
+        let both = told(BakeOptions { robust_scale: Some(0.5), silhouette: Some(1.0), ..own() });
+        assert!(both.is_some_and(|text| text.contains("--robust-scale, --silhouette acts")));
+        let parallax = BakeOptions { silhouette: Some(1.0), parallax: Parallax::Tangent, ..own() };
+        assert_eq!(told(parallax), None);
+    }
 }

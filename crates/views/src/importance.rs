@@ -34,7 +34,7 @@ pub enum ImportanceError {
     #[error(transparent)]
     Node(#[from] NodeError),
     /// A name that fits no material.
-    #[error("--importance {name} is out of range: it may be {range}")]
+    #[error("--importance cannot be {name}: it may be {range}")]
     NoMaterial {
         /// What was asked for.
         name: String,

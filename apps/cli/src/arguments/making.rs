@@ -13,7 +13,6 @@ pub struct BakeCommand {
     pub high: PathBuf,
 
     /// The low-poly: .obj, .gltf or .glb; missing UVs are made. Left out with --triangles
-    #[arg(required_unless_present = "triangles")]
     pub low: Option<PathBuf>,
 
     /// Make the low-poly, of at most so many triangles, 4 or more
@@ -185,7 +184,7 @@ pub struct CompressCommand {
 /// Arguments of `image`.
 #[derive(Args, Debug)]
 pub struct ImageCommand {
-    /// The picture: .png, .jpg or .webp
+    /// The picture: .png, .jpg, .webp or .ktx2
     pub picture: PathBuf,
 
     /// File to write: .glb, or .obj with .mtl and .png beside it

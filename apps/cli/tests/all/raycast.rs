@@ -98,7 +98,7 @@ fn options_without_effect_are_refused() {
     refused(&["--occlusion-distance", "0.1", "--maps", "height"], "--occlusion-distance does nothing");
     refused(&["--curvature-radius", "0.1"], "--curvature-radius does nothing without --maps curvature");
     refused(&["--match", "closest-point", "--ray-normals", "own"], "--ray-normals does nothing");
-    refused(&["--samples", "0"], "--samples 0 is out of range: it may be 1 to 64");
+    refused(&["--samples", "0"], "--samples cannot be 0: it may be 1 to 64");
     refused(&["-o", "x.png"], "must end in .glb or .obj");
     assert!(!Path::new("baked.glb").exists());
 }

@@ -117,7 +117,29 @@ fn options_without_effect_are_refused() {
     let image = ["image", "picture.png", "-o", "never.glb"];
     let lod = ["lod", "model.glb", "-o", "never"];
     let eval = ["eval", "high.glb", "low.glb"];
-    let cases: [(&[&str], &[&str], &str); 25] = [
+    let raycast = ["raycast", "high.glb", "low.glb", "-o", "never.glb"];
+    let cases: [(&[&str], &[&str], &str); 34] = [
+        (&bake, &["--uv", "keep", "--gutter", "2"], "--gutter does nothing with --uv keep"),
+        (
+            &bake,
+            &["--shading", "pbr", "--robust-scale", "1"],
+            "--robust-scale does nothing with --shading pbr",
+        ),
+        (&bake, &["--shading", "pbr", "--silhouette", "1"], "--silhouette does nothing with --shading pbr"),
+        (&raycast, &["--uv", "keep", "--gutter", "2"], "--gutter does nothing with --uv keep"),
+        (
+            &raycast,
+            &["--match", "closest-point", "--max-distance", "0.3"],
+            "--max-distance does nothing with --match closest-point",
+        ),
+        (&["stats", "model.glb"], &["--samples", "100"], "--samples does nothing without --against"),
+        (
+            &["simplify", "model.glb", "-o", "never.glb"],
+            &["--texture-quality", "20"],
+            "--texture-quality does nothing with a lossless",
+        ),
+        (&["demo"], &["--keep-parts", "x"], "--keep-parts does nothing in demo"),
+        (&bake, &["--keep-parts", "x"], "give --triangles instead of LOW"),
         (
             &compress,
             &["--uv", "repair", "--more-triangles", "3"],
@@ -140,7 +162,7 @@ fn options_without_effect_are_refused() {
         (
             &bake,
             &["--silhouette", "0", "--silhouette-background", "white"],
-            "--silhouette-background does nothing",
+            "--silhouette-background does nothing with --silhouette 0; leave one of the two out",
         ),
         (&bake, &["--more-triangles", "3"], "acts in compress only"),
         (&compress, &["--shape", "free"], "--shape does nothing in compress"),
@@ -166,6 +188,8 @@ fn wrong_values_get_sentences() {
     let folder = folder.path();
     demo_pair(folder);
     fs::write(folder.join("text.json"), "texture_size = 64").unwrap();
+    fs::write(folder.join("empty.json"), "").unwrap();
+    fs::write(folder.join("run.sh"), "echo a\necho b\n").unwrap();
     let bake = |more: &[&'static str]| {
         [&["bake", "demo_high.glb", "demo_low.glb", "-o", "never.glb"][..], more].concat()
     };
@@ -181,6 +205,12 @@ fn wrong_values_get_sentences() {
         (bake(&["--texture-size", "huge"]), "such as 512, or 1k"),
         (bake(&["--texture-size", "16k"]), "16 to 8192"),
         (bake(&["--options", "text.json"]), "text.json: line 1, column 2: this is not JSON"),
+        (bake(&["--options", "empty.json"]), "empty.json: the file is empty; expected a JSON object"),
+        (bake(&["--options", "demo_high.glb"]), "demo_high.glb: this is no text; expected a JSON object"),
+        (vec!["bake", "demo_high.glb"], "give LOW, or --triangles COUNT, which makes one of HIGH"),
+        (vec!["check", "demo_low.glb", "--gutter", "-1"], "--gutter cannot be -1: it may be 0 or more"),
+        (bake(&["--importance", "foo=2", "--texture-size", "16"]), "--importance cannot be foo: it may be"),
+        (vec!["batch", "run.sh"], "line 1, column 6: "),
     ] {
         let (code, said) = refusal(folder, &arguments);
         assert_eq!(code, Some(2), "{arguments:?}: {said}");
@@ -196,6 +226,7 @@ fn outputs_are_checked_first() {
     let folder = folder.path();
     fs::create_dir(folder.join("taken.glb")).unwrap();
     fs::create_dir(folder.join("taken.html")).unwrap();
+    fs::create_dir(folder.join("beside_base_color.png")).unwrap();
     let bake = |output: &'static str, more: &[&'static str]| {
         [&["bake", "missing.glb", "missing.glb", "-o", output][..], more].concat()
     };
@@ -203,6 +234,7 @@ fn outputs_are_checked_first() {
         (bake("taken.glb", &[]), "this is a folder"),
         (bake("nowhere/a.glb", &[]), "there is no folder nowhere"),
         (bake("a.fbx", &[]), ".glb or .obj"),
+        (bake("beside.obj", &[]), "the folder beside_base_color.png has the name of a file that is written"),
         (bake("a.glb", &["--report", "taken.html"]), "this is a folder"),
         (bake("a.glb", &["--report", "a.pdf"]), ".html or .htm"),
         (bake("a.glb", &["--report", "nowhere/a.html"]), "there is no folder nowhere"),
@@ -223,7 +255,32 @@ fn outputs_are_checked_first() {
         assert_eq!(code, Some(1), "{said}");
         assert!(said.contains("nothing can be written to this folder"), "{said}");
     }
-    assert_eq!(fs::read_dir(folder).unwrap().count(), 2, "nothing is left behind");
+    assert_eq!(fs::read_dir(folder).unwrap().count(), 3, "nothing is left behind");
+}
+
+/// Protects artists' only copies: what an input names is not written over, neither a material file nor a picture.
+#[test]
+fn files_of_inputs_are_not_overwritten() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let square = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3 4/4\n";
+    fs::write(folder.join("look.mtl"), "newmtl m\nmap_Kd w_base_color.png\nmap_Ke v_occlusion.png\n")
+        .unwrap();
+    fs::write(folder.join("high.obj"), format!("mtllib look.mtl\n{square}")).unwrap();
+    for name in ["w_base_color.png", "v_occlusion.png"] {
+        fs::write(folder.join(name), name).unwrap();
+    }
+    let pair = ["high.obj", "high.obj", "-o"];
+    for (command, output, more, file) in [
+        ("bake", "look.obj", &[][..], "look.mtl"),
+        ("bake", "w.obj", &[], "w_base_color.png"),
+        ("raycast", "v.glb", &["--maps", "occlusion"], "v_occlusion.png"),
+    ] {
+        let (code, said) = refusal(folder, &[&[command][..], &pair, &[output], more].concat());
+        let wanted = format!("this would overwrite {file}, which high.obj names; choose another name");
+        assert!(code == Some(2) && said.contains(&wanted), "{command} {output}: {said}");
+    }
+    assert_eq!(fs::read(folder.join("w_base_color.png")).unwrap(), b"w_base_color.png");
 }
 
 /// Protects pipelines from grey models: with `--strict` a missing texture is an error, else a warning.

@@ -16,6 +16,7 @@ mod write;
 mod write_mtl;
 
 pub(crate) use names::{named_libraries, named_pictures};
+pub(crate) use write::replaced;
 pub use write::write_obj;
 
 use crate::context::{Context, Textures};

@@ -5,7 +5,7 @@
 //! vertex colours are left out; readers can compute the former.
 
 use super::srgb;
-use super::write_mtl::{library, material_names, name_pictures};
+use super::write_mtl::{is_picture_of, library, material_names, name_pictures};
 use crate::FileError;
 use crate::atomic::write_together;
 use crate::image_out::pack_png;
@@ -14,7 +14,7 @@ use parbake_model::glam::Vec3;
 use parbake_model::{Mesh, Model};
 use rayon::prelude::*;
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Writes `model` to `path`, with `<stem>.mtl` and `<stem>_<use>.png` beside it.
 /// All are written before any takes its place, the OBJ file last, so that it never
@@ -38,6 +38,17 @@ pub fn write_obj(path: &Path, model: &Model) -> Result<u64, FileError> {
     files.push((path.to_path_buf(), text.as_bytes()));
     write_together(&files)?;
     Ok(files.iter().map(|(_, bytes)| bytes.len() as u64).sum())
+}
+
+/// The paths that [`write_obj`] may replace, of those that exist: its own, its material file's and its pictures'.
+pub(crate) fn replaced(path: &Path) -> Vec<PathBuf> {
+    let stem = plain_stem(path);
+    let is_ours = |name: &str| name == format!("{stem}.mtl") || is_picture_of(&stem, name);
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = folder.read_dir().into_iter().flatten().flatten();
+    let beside = entries.map(|entry| entry.file_name()).filter(|name| name.to_str().is_some_and(is_ours));
+    let own = path.exists().then(|| path.to_path_buf());
+    own.into_iter().chain(beside.map(|name| path.with_file_name(name))).collect()
 }
 
 /// The stem without what other programs stumble over in OBJ and MTL files: blanks,

@@ -18,7 +18,7 @@ pub(super) fn name_pictures<'a>(stem: &str, model: &'a Model) -> Vec<Option<Name
     let mut names: Vec<Option<NamedImage>> = vec![None; model.images.len()];
     let mut counts = [0; 4];
     for material in &model.materials {
-        for ((slot, what), count) in textures(material).into_iter().zip(&mut counts) {
+        for ((slot, what), count) in textures(material).into_iter().zip(WHAT).zip(&mut counts) {
             let Some(image) = slot.map(|s| s.image).filter(|&i| names[i].is_none()) else { continue };
             *count += 1;
             let number = if *count == 1 { String::new() } else { format!("_{count}") };
@@ -28,13 +28,25 @@ pub(super) fn name_pictures<'a>(stem: &str, model: &'a Model) -> Vec<Option<Name
     names
 }
 
-/// The textures that are written, and what files of them are called after.
-fn textures(material: &Material) -> [(Option<TextureSlot>, &'static str); 4] {
+/// Whether a picture of a model with this stem may have this file name.
+pub(super) fn is_picture_of(stem: &str, name: &str) -> bool {
+    let middle = name.strip_prefix(stem).and_then(|rest| rest.strip_prefix('_')?.strip_suffix(".png"));
+    let is_number = |end: &str| {
+        end.is_empty() || end.strip_prefix('_').is_some_and(|number| number.parse::<usize>().is_ok())
+    };
+    middle.is_some_and(|middle| WHAT.iter().any(|what| middle.strip_prefix(what).is_some_and(is_number)))
+}
+
+/// What files of pictures are called after.
+const WHAT: [&str; 4] = ["base_color", "normal", "metallic_roughness", "emissive"];
+
+/// The textures that are written, in the order of [`WHAT`].
+fn textures(material: &Material) -> [Option<TextureSlot>; 4] {
     [
-        (material.base_color_texture, "base_color"),
-        (material.normal_texture, "normal"),
-        (material.metallic_roughness_texture, "metallic_roughness"),
-        (material.emissive_texture.filter(|_| emission(material) != [0.0; 3]), "emissive"),
+        material.base_color_texture,
+        material.normal_texture,
+        material.metallic_roughness_texture,
+        material.emissive_texture.filter(|_| emission(material) != [0.0; 3]),
     ]
 }
 

@@ -2,8 +2,7 @@
 //! option can be forgotten.
 
 use crate::page::text::escape;
-use parbake::Work;
-use parbake::{BakeOptions, BakeReport, UvMode};
+use parbake::{BakeOptions, BakeReport, UvMode, Work, idle_options};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -51,6 +50,8 @@ pub struct Used {
     gutter: Option<f64>,
     uv_steps: Option<usize>,
     more_triangles: Option<usize>,
+    /// The side of the textures of viewers without parallax maps; 0 where the maps' own serve all.
+    fallback_size: Option<usize>,
 }
 
 impl Used {
@@ -62,11 +63,8 @@ impl Used {
             views: Some(report.views),
             gutter: uv_stage.map(|uv_stage| uv_stage.gutter),
             uv_steps: uv_stage.map(|uv_stage| uv_stage.steps).or(Some(0)),
-            more_triangles: Some(if own {
-                report.low_triangles.saturating_sub(report.high_triangles)
-            } else {
-                0
-            }),
+            more_triangles: own.then(|| report.low_triangles.saturating_sub(report.high_triangles)),
+            fallback_size: report.fallback.as_ref().map(|fallback| fallback.side.unwrap_or(0)),
         }
     }
 }
@@ -79,11 +77,16 @@ fn of_at_most(used: Option<usize>, most: usize) -> String {
     }
 }
 
-/// The table of all options with the values that were used, and the command that takes them.
+/// The table of the options that act, with the values that were used, and the command that takes them.
 pub fn settings(options: &BakeOptions, work: Work, used: Used) -> String {
     let (plan, default) = (options.plan(), fields(&BakeOptions::default()));
     let mut out = String::from(r#"<table class="settings"><tbody>"#);
-    for (name, value) in fields(options) {
+    let idle = idle_options(options, work);
+    let acts = |name: &str, value: &Value| {
+        let is_empty = value.as_array().is_some_and(Vec::is_empty);
+        !is_empty && !idle.iter().any(|(own, _)| *own == name)
+    };
+    for (name, value) in fields(options).into_iter().filter(|(name, value)| acts(name, value)) {
         let settled = match name.as_str() {
             "views" => Some(of_at_most(used.views, plan.views)),
             "view_size" => Some(plan.reference.size.to_string()),
@@ -97,6 +100,10 @@ pub fn settings(options: &BakeOptions, work: Work, used: Used) -> String {
             "robust_scale" => Some(plan.schedule.robust_scale.to_string()),
             "more_triangles" => Some(of_at_most(used.more_triangles, options.more_triangles())),
             "uv_steps" => Some(of_at_most(used.uv_steps, options.settled_uv_steps(work))),
+            "fallback_size" => match used.fallback_size {
+                Some(0) => Some("none: the maps' own textures serve all viewers".into()),
+                side => side.map(|side| format!("{side} texels")),
+            },
             "threads" if options.threads == 0 => Some("one a core".into()),
             _ => None,
         };
@@ -130,7 +137,7 @@ pub fn settings(options: &BakeOptions, work: Work, used: Used) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use parbake::Preset;
+    use parbake::{Parallax, Preset};
 
     /// Protects the command line that the page offers.
     #[test]
@@ -150,13 +157,27 @@ mod tests {
         assert_eq!(flags(&default, &default), "");
     }
 
-    /// Protects the promise that every option is on the page.
+    /// Protects the promise that every option that acts is on the page, and no other one.
     #[test]
     fn no_option_is_missing() {
-        let html = settings(&BakeOptions::default(), Work::Bake, Used::default());
-        let views = BakeOptions::default().plan().views;
-        assert!(fields(&BakeOptions::default()).len() > 10);
-        assert_eq!(html.matches("<tr").count(), fields(&BakeOptions::default()).len());
+        let options = BakeOptions {
+            parallax: Parallax::Sh,
+            keep_parts: vec!["wheel".into()],
+            ..BakeOptions::default()
+        };
+        let html = settings(&options, Work::Bake, Used::default());
+        let views = options.plan().views;
+        let idle = ["more_triangles", "no_content_aware", "importance", "silhouette_background"];
+        let acting = fields(&options).into_keys().filter(|name| !idle.contains(&name.as_str()));
+        for name in acting {
+            assert!(
+                html.contains(&format!("<th scope=\"row\">{}</th>", name.replace('_', " "))),
+                "{name}: {html}"
+            );
+        }
+        assert_eq!(html.matches("<tr").count(), fields(&options).len() - idle.len());
+        let plain = settings(&BakeOptions::default(), Work::Compress, Used::default());
+        assert!(!plain.contains("cutout") && !plain.contains(">shape<") && plain.contains("more triangles"));
         assert!(
             html.contains(&format!("{views} <small>by default")) && html.contains("<td>0.05</td>"),
             "{html}"
@@ -166,10 +187,19 @@ mod tests {
     /// Protects readers from values that were only allowed: what a run used is on the page.
     #[test]
     fn values_are_those_that_were_used() {
-        let used = Used { views: Some(284), gutter: Some(16.0), uv_steps: Some(24), more_triangles: Some(0) };
-        let html = settings(&BakeOptions::default(), Work::Bake, used);
-        for text in ["284 of at most 960", "16 texels", "24 of at most 30", "0 of at most 2000"] {
-            assert!(html.contains(text), "{text}: {html}");
+        let used = Used {
+            views: Some(284),
+            gutter: Some(16.0),
+            uv_steps: Some(24),
+            more_triangles: Some(0),
+            fallback_size: Some(64),
+        };
+        let deep = BakeOptions { parallax: Parallax::Tangent, ..BakeOptions::default() };
+        let (baked, compressed) =
+            (settings(&deep, Work::Bake, used), settings(&BakeOptions::default(), Work::Compress, used));
+        for text in ["284 of at most 960", "16 texels", "24 of at most 30", "64 texels"] {
+            assert!(baked.contains(text), "{text}: {baked}");
         }
+        assert!(compressed.contains("0 of at most 2000"), "{compressed}");
     }
 }
