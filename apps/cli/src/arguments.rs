@@ -89,7 +89,7 @@ pub fn command() -> Clap {
         .fold(whole, |whole, name| whole.mut_subcommand(name, |own| with_help(own, &HELP_IN_BAKE)));
     let whole = whole.mut_subcommands(|own| {
         own.mut_args(|argument| match argument.get_action().takes_values() {
-            // Of a number below what may be its own check says more than the parser could.
+            // The option's own check says more about a negative number than the parser could.
             true => argument.allow_negative_numbers(true),
             false => argument,
         })

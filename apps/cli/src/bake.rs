@@ -23,12 +23,6 @@ use std::path::Path;
 pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure> {
     let file = command.options.as_deref();
     let options = merged(&command.bake, given, file)?;
-    if command.low.is_none() && command.triangles.is_none() {
-        return Err(Failure::Usage(
-            "there is no low-poly to bake onto: give LOW, or --triangles COUNT, which makes one of HIGH"
-                .into(),
-        ));
-    }
     rules::check(Work::Bake, &options, given, file)?;
     options.check()?;
     check_budget(&options)?;
@@ -70,8 +64,9 @@ fn bake_files(
             }
         };
         let figures = figures_read(command.talk, command.json.is_some(), command.report.is_some());
-        if let Some(detail) = figures.filter(|_| !command.no_comparison && has_time(command.report.is_some()))
-        {
+        let is_shown = command.report.is_some();
+        let is_compared = !command.no_comparison && has_time(&baked.report, is_shown);
+        if let Some(detail) = figures.filter(|_| is_compared) {
             compare(&pair.high, &mut baked, detail, console)?;
         }
         if let Some(path) = &command.json {
@@ -231,8 +226,8 @@ pub fn figures_read(talk: Talk, json: bool, report: bool) -> Option<Detail> {
 }
 
 /// Whether there is time for a comparison: who interrupts a bake wants its end, unless the report shows the figures.
-pub fn has_time(is_reported: bool) -> bool {
-    is_reported || !interrupted()
+pub fn has_time(report: &BakeReport, is_shown: bool) -> bool {
+    is_shown || ending(report) == Ending::Finished
 }
 
 /// Compares the result with a ray-cast bake, for the last line, the report and JSON.

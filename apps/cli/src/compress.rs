@@ -56,8 +56,9 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
         baked.report.warnings.splice(0..0, loaded.warnings.iter().map(|warning| warning.text.clone()));
         baked.report.stages.push(StageTime { stage: Stage::Write, seconds: console.seconds() - begin });
         let figures = figures_read(command.talk, command.json.is_some(), command.report.is_some());
-        if let Some(detail) = figures.filter(|_| !command.no_comparison && has_time(command.report.is_some()))
-        {
+        let is_shown = command.report.is_some();
+        let is_compared = !command.no_comparison && has_time(&baked.report, is_shown);
+        if let Some(detail) = figures.filter(|_| is_compared) {
             compare(&loaded.model, &mut baked, detail, &console)?;
         }
         if let Some(path) = &command.json {

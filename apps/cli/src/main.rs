@@ -34,6 +34,7 @@ mod watch;
 
 use arguments::{Arguments, Command};
 use clap::FromArgMatches;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::error::Error;
 use std::num::{ParseFloatError, ParseIntError};
 use std::process::ExitCode;
@@ -74,19 +75,34 @@ fn main() -> ExitCode {
 /// Says what is wrong with what was typed, and ends. Of what is no number the standard library says how its parser
 /// failed; people are told what to type.
 fn typing_error(error: &clap::Error) -> ! {
-    let Some((source, wanted)) = error.source().and_then(|source| Some((source, number_wanted(source)?)))
-    else {
-        error.exit()
-    };
+    if lacks_low_poly(error) {
+        eprintln!(
+            "error: there is no low-poly to bake onto: give LOW, or --triangles COUNT, which makes one of HIGH"
+        );
+        std::process::exit(2)
+    }
+    let is_negative = matches!(
+        error.get(ContextKind::InvalidValue),
+        Some(ContextValue::String(value)) if value.starts_with('-')
+    );
+    let wanted = |source| Some((source, number_wanted(source, is_negative)?));
+    let Some((source, wanted)) = error.source().and_then(wanted) else { error.exit() };
     eprint!("{}", error.render().to_string().replace(&source.to_string(), wanted));
     std::process::exit(2)
 }
 
-fn number_wanted(source: &(dyn Error + 'static)) -> Option<&'static str> {
+/// Whether `bake` was given a high-poly alone.
+fn lacks_low_poly(error: &clap::Error) -> bool {
+    let lacks = |name: &str| matches!(error.get(ContextKind::InvalidArg), Some(ContextValue::Strings(names)) if *names == [name]);
+    let is_bake = || error.render().to_string().contains("parbake bake ");
+    error.kind() == ErrorKind::MissingRequiredArgument && lacks("<LOW>") && is_bake()
+}
+
+fn number_wanted(source: &(dyn Error + 'static), is_negative: bool) -> Option<&'static str> {
     if source.is::<ParseFloatError>() {
         Some("give a number, such as 0.5")
     } else if source.is::<ParseIntError>() {
-        Some("give a whole number, such as 8")
+        Some(if is_negative { "give 0 or more" } else { "give a whole number, such as 8" })
     } else {
         None
     }

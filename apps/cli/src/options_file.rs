@@ -26,7 +26,7 @@ pub fn merged(typed: &BakeOptions, given: &ArgMatches, file: Option<&Path>) -> R
         ));
     }
     let bytes = std::fs::read(path).map_err(|e| wrong(format!("cannot be read: {e}")))?;
-    let text = String::from_utf8(bytes).map_err(|_| wrong(format!("this is no text; {EXAMPLE}")))?;
+    let text = String::from_utf8(bytes).map_err(|_| wrong(format!("this is not a text file; {EXAMPLE}")))?;
     let mut all = options_in(&text).map_err(wrong)?;
     for (name, value) in as_map(typed) {
         // Field names are clap's argument names: both come from the struct.

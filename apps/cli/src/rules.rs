@@ -62,7 +62,7 @@ pub fn check(
         false => Ok(()),
         true => refuse(
             "keep_parts",
-            "acts where the low-poly is made of the high-poly's nodes; give --triangles instead of LOW, or leave it out",
+            "acts where the low-poly is made from the high-poly; give --triangles instead of LOW, or leave it out",
         ),
     }
 }
@@ -114,7 +114,7 @@ pub fn check_raycast(options: &RaycastOptions, given: &ArgMatches) -> Result<(),
     }
     if options.r#match == Match::ClosestPoint {
         let why = "does nothing with --match closest-point, which casts no rays; leave it out";
-        ["ray_normals", "max_distance"].iter().try_for_each(|name| refuse(name, why))?;
+        refuse("ray_normals", why)?;
     }
     if options.uv == RaycastUv::Keep {
         refuse("gutter", "does nothing with --uv keep, which leaves charts where they are; leave it out")?;

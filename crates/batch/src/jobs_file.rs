@@ -61,8 +61,8 @@ struct Entry {
 pub fn read_jobs(path: &Path, commands: &dyn Commands) -> Result<JobsFile, BatchError> {
     let bytes = std::fs::read(path).map_err(BatchError::disk(path))?;
     let format = |reason: String| BatchError::Format { path: path.into(), reason };
-    let text =
-        String::from_utf8(bytes).map_err(|_| format("this is no text; give a jobs file in TOML".into()))?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| format("this is not a text file; give a jobs file in TOML".into()))?;
     let file: Toml = toml::from_str(&text).map_err(|error| format(sentence(&error, &text)))?;
     if file.defaults.name.is_some() || file.defaults.output.is_some() || !file.defaults.inputs.is_empty() {
         return Err(format("[defaults] may have command, options and arguments only".into()));

@@ -35,13 +35,13 @@ impl BatchOptions {
     /// Names the option and what it may be.
     pub fn check(&self) -> Result<(), BatchError> {
         if !(1..=256).contains(&self.workers) {
-            let text = format!("--workers {} is out of range: it may be 1 to 256", self.workers);
+            let text = format!("--workers cannot be {}: it may be 1 to 256", self.workers);
             return Err(BatchError::Option(text));
         }
         match self.memory {
-            Some(memory) if !(memory > 0.0 && memory <= 1e6) => Err(BatchError::Option(format!(
-                "--memory {memory} is out of range: it may be above 0 to 1000000"
-            ))),
+            Some(memory) if !(memory > 0.0 && memory <= 1e6) => {
+                Err(BatchError::Option(format!("--memory cannot be {memory}: it may be above 0 to 1000000")))
+            }
             _ => Ok(()),
         }
     }

@@ -1,10 +1,11 @@
-//! Which other files a model names: what has to be looked at to know whether a model is still the same.
+//! Which other files a model names: what has to be looked at to know whether a model is still the same, and what no output may
+//! replace.
 //!
 //! glTF's buffers and images are in its JSON. An OBJ names libraries by `mtllib`, and these name pictures by lines that
 //! end in a file's name after options; each end of such a line that is a file counts, since names may hold blanks.
 //! What is not at its place is looked for where readers look for it ([`crate::search`]).
 //!
-//! Contract: files that exist, each once, sorted. A file more than the reader opens does no harm; names in what
+//! Contract: files that exist, each once, sorted. A file more than the reader opens is better than one less; names in what
 //! cannot be understood are left out, as the reader will say so.
 
 use crate::gltf;

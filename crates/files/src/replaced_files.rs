@@ -6,7 +6,7 @@ use crate::obj;
 use std::path::{Path, PathBuf};
 
 /// The existing paths that writing a model to `output` may replace: the file itself; beside an OBJ also its material
-/// file and its pictures, whatever their number.
+/// file and its pictures, whatever their number, and files whose names differ from these in their case alone.
 pub fn replaced_files(output: &Path) -> Vec<PathBuf> {
     match output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj")) {
         true => obj::replaced(output),
@@ -27,7 +27,7 @@ mod tests {
         let at = |name: &str| folder.path().join(name);
         let ours = ["m.mtl", "m.obj", "m_base_color.png", "m_base_color_2.png", "m_emissive.png"];
         let others =
-            ["m.glb", "m.png", "m_base_color.jpg", "m_base_color_x.png", "m_occlusion.png", "mm_normal.png"];
+            ["m.glb", "m.png", "m_base_color.jpg", "m_base_color_1.png", "m_occlusion.png", "mm_normal.png"];
         assert!(replaced_files(&at("m.obj")).is_empty());
         ours.iter().chain(&others).for_each(|name| write(at(name), "").unwrap());
         let mut found = replaced_files(&at("m.obj"));

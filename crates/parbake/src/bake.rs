@@ -159,12 +159,12 @@ pub(crate) fn prepare(high: &Model, options: &BakeOptions) -> Result<HighPoly, B
     Ok(prepared)
 }
 
-/// A run whose user is told something before it begins, and reads it again in the report.
+/// A run whose user is told this before it begins, and reads it again in the report.
 ///
 /// # Errors
 /// Those of the run.
 pub(crate) fn told_before(
-    told: Option<String>,
+    told: Vec<String>,
     watcher: &dyn Watcher,
     run: impl FnOnce() -> Result<Baked, BakeError>,
 ) -> Result<Baked, BakeError> {

@@ -5,6 +5,7 @@ use crate::budget::left_out;
 use crate::error::BakeError;
 use crate::low_poly::{check_triangles, coarse_surfaces, low_poly};
 use crate::options::BakeOptions;
+use crate::warnings::for_plain_materials;
 use crate::work::Work;
 use parbake_mesh::parts::{with_kept_parts, with_parted_materials};
 use parbake_model::Model;
@@ -30,7 +31,9 @@ pub fn bake_to_triangles(
     let prepared = prepare(high, options)?;
     check_triangles(&prepared, high, triangles)?;
     let start = coarse_surfaces(&prepared, high);
-    let told = left_out(options, Work::Bake, prepared.is_whole_material);
+    let is_whole = prepared.is_whole_material;
+    let idle = is_whole.then(|| for_plain_materials(&prepared.name, options)).flatten();
+    let told = left_out(options, Work::Bake, is_whole).into_iter().chain(idle).collect();
     told_before(told, watcher, || {
         let (low, _) = low_poly(&prepared, high, &start, None, triangles, options, watcher)?;
         run(&prepared, &low, Work::Level, options, watcher, begin)

@@ -63,7 +63,7 @@ pub fn compress(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> 
     }
     options.check()?;
     check_budget(options)?;
-    let told = left_out(options, Work::Compress, false);
+    let told = left_out(options, Work::Compress, false).into_iter().collect();
     told_before(told, watcher, || compressed(model, options, watcher))
 }
 

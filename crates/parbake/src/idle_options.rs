@@ -45,6 +45,8 @@ pub fn idle_options(options: &BakeOptions, work: Work) -> Vec<(&'static str, &'s
     let is_compress = work == Work::Compress;
     let is_paper = options.method == Method::Paper;
     let is_flat = options.parallax == Parallax::None;
+    // The paper's method fits parallax maps of its own, to plain materials' pictures.
+    let has_parallax = options.parallax_plan().is_some();
 
     let why = "does nothing in compress, which keeps the surface; leave it out";
     add(is_compress, &IDLE_IN_COMPRESS, why);
@@ -56,9 +58,9 @@ pub fn idle_options(options: &BakeOptions, work: Work) -> Vec<(&'static str, &'s
     add(options.uv == UvMode::Keep, &["gutter"], why);
 
     let why = "does nothing with --shading pbr; choose --shading lambert or leave it out";
-    let is_whole = options.shading == Shading::Pbr && !is_paper;
+    let is_whole = options.shading == Shading::Pbr;
     add(is_whole, &["robust_scale"], why);
-    add(is_whole && is_flat, &["silhouette", "silhouette_background"], why);
+    add(is_whole && !has_parallax, &["silhouette", "silhouette_background"], why);
 
     let of_map = ["parallax_order", "parallax_size", "fallback_size", "no_cutout"];
     let of_cutout = ["cutout_order", "cutout_size"];
@@ -84,7 +86,9 @@ pub fn idle_options(options: &BakeOptions, work: Work) -> Vec<(&'static str, &'s
         Some(_) => "does nothing with --silhouette 0; leave one of the two out",
         None => "does nothing with a cutout, unless --silhouette is given as well",
     };
-    add(options.silhouette_weight() == 0.0, &["silhouette_background"], why);
+    // The textures of viewers without parallax maps are those of a bake without a cutout.
+    let has_outline = options.silhouette.is_none() && options.has_fallback() && !is_whole;
+    add(options.silhouette_weight() == 0.0 && !has_outline, &["silhouette_background"], why);
     idle
 }
 
@@ -136,5 +140,8 @@ mod tests {
         assert!(is_idle(&whole, "silhouette") && is_idle(&whole, "robust_scale"));
         assert!(!is_idle(&deep, "silhouette") && !is_idle(&deep, "silhouette_background"));
         assert!(is_idle(&plain, "cutout_size") && !is_idle(&deep, "cutout_size"));
+        let fallback = BakeOptions { parallax: Parallax::Tangent, ..plain.clone() };
+        let own = BakeOptions { fallback_size: Some(0), ..fallback.clone() };
+        assert!(!is_idle(&fallback, "silhouette_background") && is_idle(&own, "silhouette_background"));
     }
 }

@@ -47,7 +47,6 @@ pub(crate) fn lost(
     for views in VIEWS {
         let options = EvaluateOptions { views, resolution, no_flip: true, ..as_summary.clone() };
         let compared = evaluate_each(model, &[kept, found], &options, &[&options.background], false, &())?;
-        // Views that are equal in every pixel have no finite figure.
         let mean = |which: usize| {
             let psnr = compared.views.iter().map(|view| view.seen[which][0].psnr);
             psnr.sum::<f64>() / views as f64

@@ -1,6 +1,6 @@
 //! What the user is told of a pair of models, as it is found and again in the report.
 
-use crate::options::{BakeOptions, Parallax};
+use crate::options::BakeOptions;
 use parbake_image::MapKind;
 use parbake_model::Model;
 use parbake_progress::{Message, Watcher};
@@ -50,7 +50,7 @@ pub(crate) fn for_plain_materials(model: &str, options: &BakeOptions) -> Option<
     let own = BakeOptions::default();
     let has_silhouette = options.silhouette.is_some();
     let has_background = options.silhouette_background != own.silhouette_background;
-    let is_flat = options.parallax == Parallax::None;
+    let is_flat = options.parallax_plan().is_none();
     let idle = [
         (options.robust_scale.is_some(), "--robust-scale"),
         (has_silhouette && is_flat, "--silhouette"),
@@ -59,9 +59,8 @@ pub(crate) fn for_plain_materials(model: &str, options: &BakeOptions) -> Option<
     let idle: Vec<&str> = idle.into_iter().filter(|(is_idle, _)| *is_idle).map(|(_, name)| name).collect();
     (!idle.is_empty()).then(|| {
         format!(
-            "{model}: {} acts on plain materials alone, and whole materials are fitted here; leave it out, or give \
-             --shading lambert",
-            idle.join(", ")
+            "{model}: whole materials are fitted here, and only plain ones follow {}; for these give --shading lambert",
+            idle.join(" and ")
         )
     })
 }
@@ -85,6 +84,7 @@ pub(crate) fn unseen(model: &str, unseen: usize, covered: usize) -> Option<Strin
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::options::Parallax;
 
     /// Protects time spent on options that do nothing: those that whole materials do not follow are named, and those of
     /// the outline act on parallax maps.
@@ -94,7 +94,7 @@ mod tests {
         let told = |options: BakeOptions| for_plain_materials("m", &options);
         assert_eq!(told(own()), None);
         let both = told(BakeOptions { robust_scale: Some(0.5), silhouette: Some(1.0), ..own() });
-        assert!(both.is_some_and(|text| text.contains("--robust-scale, --silhouette acts")));
+        assert!(both.is_some_and(|text| text.contains("follow --robust-scale and --silhouette;")));
         let parallax = BakeOptions { silhouette: Some(1.0), parallax: Parallax::Tangent, ..own() };
         assert_eq!(told(parallax), None);
     }

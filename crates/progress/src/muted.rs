@@ -53,6 +53,10 @@ mod tests {
     struct Heard(Mutex<Vec<Message>>);
 
     impl Watcher for Heard {
+        fn wants_snapshot(&self) -> bool {
+            true
+        }
+
         fn message(&self, message: Message) {
             self.0.lock().unwrap().push(message);
         }
@@ -73,8 +77,9 @@ mod tests {
         for watcher in [&Muted(&heard) as &dyn Watcher, &WithoutWarnings(&heard)] {
             watcher.message(Message::Warning("odd".into()));
             watcher.progress(Stage::Shape, 1, 2);
-            assert!(watcher.stopped() && watcher.seconds_left() == Some(2.0) && !watcher.wants_snapshot());
+            assert!(watcher.stopped() && watcher.seconds_left() == Some(2.0));
         }
+        assert!(!Muted(&heard).wants_snapshot() && WithoutWarnings(&heard).wants_snapshot());
         let progress = Message::Progress { stage: Stage::Shape, done: 1, total: 2 };
         assert_eq!(*heard.0.lock().unwrap(), [progress]);
     }

@@ -13,6 +13,7 @@ pub struct BakeCommand {
     pub high: PathBuf,
 
     /// The low-poly: .obj, .gltf or .glb; missing UVs are made. Left out with --triangles
+    #[arg(required_unless_present = "triangles")]
     pub low: Option<PathBuf>,
 
     /// Make the low-poly, of at most so many triangles, 4 or more

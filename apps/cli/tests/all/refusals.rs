@@ -118,7 +118,7 @@ fn options_without_effect_are_refused() {
     let lod = ["lod", "model.glb", "-o", "never"];
     let eval = ["eval", "high.glb", "low.glb"];
     let raycast = ["raycast", "high.glb", "low.glb", "-o", "never.glb"];
-    let cases: [(&[&str], &[&str], &str); 34] = [
+    let cases: [(&[&str], &[&str], &str); 33] = [
         (&bake, &["--uv", "keep", "--gutter", "2"], "--gutter does nothing with --uv keep"),
         (
             &bake,
@@ -127,11 +127,6 @@ fn options_without_effect_are_refused() {
         ),
         (&bake, &["--shading", "pbr", "--silhouette", "1"], "--silhouette does nothing with --shading pbr"),
         (&raycast, &["--uv", "keep", "--gutter", "2"], "--gutter does nothing with --uv keep"),
-        (
-            &raycast,
-            &["--match", "closest-point", "--max-distance", "0.3"],
-            "--max-distance does nothing with --match closest-point",
-        ),
         (&["stats", "model.glb"], &["--samples", "100"], "--samples does nothing without --against"),
         (
             &["simplify", "model.glb", "-o", "never.glb"],
@@ -210,6 +205,7 @@ fn wrong_values_get_sentences() {
         (vec!["bake", "demo_high.glb"], "give LOW, or --triangles COUNT, which makes one of HIGH"),
         (vec!["check", "demo_low.glb", "--gutter", "-1"], "--gutter cannot be -1: it may be 0 or more"),
         (bake(&["--importance", "foo=2", "--texture-size", "16"]), "--importance cannot be foo: it may be"),
+        (bake(&["--rounds", "-1"]), "give 0 or more"),
         (vec!["batch", "run.sh"], "line 1, column 6: "),
     ] {
         let (code, said) = refusal(folder, &arguments);

@@ -43,7 +43,12 @@ pub fn write_obj(path: &Path, model: &Model) -> Result<u64, FileError> {
 /// The paths that [`write_obj`] may replace, of those that exist: its own, its material file's and its pictures'.
 pub(crate) fn replaced(path: &Path) -> Vec<PathBuf> {
     let stem = plain_stem(path);
-    let is_ours = |name: &str| name == format!("{stem}.mtl") || is_picture_of(&stem, name);
+    // On some disks names that differ in their case alone are one.
+    let stem = stem.to_lowercase();
+    let is_ours = |name: &str| {
+        let name = name.to_lowercase();
+        name == format!("{stem}.mtl") || is_picture_of(&stem, &name)
+    };
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let entries = folder.read_dir().into_iter().flatten().flatten();
     let beside = entries.map(|entry| entry.file_name()).filter(|name| name.to_str().is_some_and(is_ours));

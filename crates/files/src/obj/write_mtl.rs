@@ -32,7 +32,8 @@ pub(super) fn name_pictures<'a>(stem: &str, model: &'a Model) -> Vec<Option<Name
 pub(super) fn is_picture_of(stem: &str, name: &str) -> bool {
     let middle = name.strip_prefix(stem).and_then(|rest| rest.strip_prefix('_')?.strip_suffix(".png"));
     let is_number = |end: &str| {
-        end.is_empty() || end.strip_prefix('_').is_some_and(|number| number.parse::<usize>().is_ok())
+        let number = end.strip_prefix('_').unwrap_or("");
+        end.is_empty() || number.parse::<usize>().is_ok_and(|n| n > 1 && n.to_string() == number)
     };
     middle.is_some_and(|middle| WHAT.iter().any(|what| middle.strip_prefix(what).is_some_and(is_number)))
 }

@@ -8,7 +8,7 @@
 //! Contract: a moved layout is as sound as the one before, and shows the surface better.
 
 use super::layout_score::LayoutScore;
-use super::refined::{Begun, refined};
+use super::refined::{Begun, Limits, refined};
 use super::steps::Steps;
 use super::surface_samples::Source;
 use super::{Moved, UvStageOptions, UvStageReport, as_f32, contact, packing, signal};
@@ -63,19 +63,20 @@ pub fn moved(
     let options = &UvOptions { refine_steps: asked.steps, shape_steps, refine_by, ..UvOptions::default() };
     let score = &LayoutScore::new(mesh, start, problem, own, asked.gutter_required.then_some(asked.gutter));
     let tensors = &tensors(problem, start);
+    let limits = &Limits::new(own);
     let unmoved = vec![1.0; score.kept.len()];
     if watcher.stopped() {
         return None;
     }
     let packed = packed(problem, start, &packing(asked), tensors)
         .map(|packed| (score.relative(problem, &packed), packed))
-        .filter(|(errors, _)| total(errors) < total(&unmoved));
+        .filter(|(errors, _)| rank(errors, limits) < rank(&unmoved, limits));
     let is_packed = packed.is_some();
     let (mut errors, mut layout) = packed.unwrap_or_else(|| (unmoved, start.clone()));
     let mut frames = vec![as_f32(&start.points), as_f32(&layout.points)];
     let most = options.refine_steps + FLAT.len() * options.shape_steps;
     let steps = &mut Steps::new(most, mesh, start, watcher);
-    frames.extend(shaped(score, &mut layout, &mut errors, tensors, options, steps));
+    frames.extend(shaped((score, limits), &mut layout, &mut errors, tensors, options, steps));
     let before_refining = frames.len();
     let more_triangles = if own { asked.more_triangles } else { 0 };
     let begun = Begun { layout, errors, way: frames };
@@ -96,16 +97,16 @@ fn told_apart(texture_size: usize, samples: usize) -> usize {
     size
 }
 
-/// The error that counts is that of all sizes.
-fn total(errors: &[f64]) -> f64 {
-    errors.iter().sum()
+/// The lower, the better a layout is to begin with: none that refinement will not save, then the error of all sizes.
+fn rank(errors: &[f64], limits: &Limits) -> (bool, f64) {
+    (limits.is_lost_from_the_start(errors), errors.iter().sum())
 }
 
 /// Moves the layout, which leaves these errors, to the better one of the signal-specialised
 /// starts, and returns the way there. The start is a guess: how plain the plain is depends on the
 /// texture's size, and where both guesses are bad, none is better.
 fn shaped(
-    score: &LayoutScore,
+    (score, limits): (&LayoutScore, &Limits),
     layout: &mut Layout,
     least: &mut Vec<f64>,
     tensors: &[DMat2],
@@ -119,7 +120,7 @@ fn shaped(
         steps.begin();
         shape(score.problem, &mut guess, tensors, &own, |points, loss| steps.step(&mut way, points, loss));
         let errors = score.relative(score.problem, &guess);
-        if total(&errors) < total(least) && score.is_sound(&guess) {
+        if rank(&errors, limits) < rank(least, limits) && score.is_sound(&guess) {
             (*layout, *least, shaped) = (guess, errors, way);
         }
         if steps.watcher.stopped() {

@@ -24,7 +24,7 @@ use parbake_model::glam::{DVec2, Vec2};
 
 /// Turns at most; in between scales are weighted anew.
 const TURNS: usize = 3;
-/// Steps of a low-poly's turn.
+/// Steps of a low-poly's turn, where there are no more turns to share them.
 const STEPS_OF_TURN: usize = 10;
 /// What a low-poly's turn must leave at most of the errors for another one to follow: on twenty layouts of 512² the first took
 /// 0 to 2 % off, and those after it hardly anything.
@@ -85,13 +85,15 @@ pub fn refined(
     let (tolerance, solve) =
         if score.own { (options.tolerance, options.solve) } else { (1e-3, Solve::ROUGH) };
     let turns = if score.own { TURNS } else { options.refine_steps.div_ceil(STEPS_OF_TURN).clamp(1, TURNS) };
-    let turn = UvOptions { refine_steps: options.refine_steps.div_ceil(turns), tolerance, solve, ..*options };
+    let most = options.refine_steps.div_ceil(turns);
     let (mut balance, mut texture) = Balance::new(coarse, score.start);
     // Views see a surface under all angles: half of it is minified.
     balance.weights.fill(1.0);
     let (mut finer, mut fine_frames) = (None::<Finer>, Vec::new());
-    let mut best: Option<Best> = None;
     let mut before = errors.iter().sum::<f64>();
+    let is_good = !score.own && limits.are_kept(&errors) && score.is_sound(&layout);
+    let mut best =
+        is_good.then(|| Best { layout: layout.clone(), errors, is_finer: false, way: [frames.len(), 0] });
     for count in 0..turns {
         if count == FINER_AFTER && more_triangles > 0 {
             let errors = by_triangle(coarse, &layout, &texture);
@@ -100,6 +102,8 @@ pub fn refined(
         }
         let problem = &finer.as_ref().map_or(*coarse, |finer| finer.problem(coarse));
         let way = if finer.is_some() { &mut fine_frames } else { &mut frames };
+        let refine_steps = most.min(options.refine_steps - count * most);
+        let turn = UvOptions { refine_steps, tolerance, solve, ..*options };
         steps.begin();
         let step = |points: &[DVec2], loss| steps.step(way, points, loss);
         texture = refine(problem, &balance, &mut layout, texture, &turn, step).texture;
@@ -149,7 +153,7 @@ impl Best {
 }
 
 /// What errors as shares of those of the start may be.
-struct Limits {
+pub struct Limits {
     /// Those of minified scales.
     minified: f64,
     /// Those after which there is no hope, before the first turn and after one.
@@ -157,7 +161,8 @@ struct Limits {
 }
 
 impl Limits {
-    fn new(own: bool) -> Self {
+    /// Those of a model's own layout, or of a low-poly's.
+    pub fn new(own: bool) -> Self {
         if own {
             Self { minified: 1.0, hopeless: [f64::INFINITY; 2] }
         } else {
@@ -169,7 +174,8 @@ impl Limits {
         errors[0] < WORTH_IT && errors[1..].iter().all(|error| *error < self.minified)
     }
 
-    fn is_lost_from_the_start(&self, errors: &[f64]) -> bool {
+    /// Whether no turn would make up for what is minified.
+    pub fn is_lost_from_the_start(&self, errors: &[f64]) -> bool {
         errors[1..].iter().any(|error| *error > self.hopeless[0])
     }
 
