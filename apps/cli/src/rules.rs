@@ -9,7 +9,7 @@ use clap::ArgMatches;
 use clap::parser::ValueSource;
 use parbake::{
     BakeOptions, EvaluateOptions, GeometryMap, ImageOptions, Match, Method, PictureUv, QUALITY_OF_LOSSLESS,
-    RaycastOptions, RaycastUv, Work, WriteOptions, idle_options, is_lossless,
+    RaycastOptions, RaycastUv, Work, WriteOptions, idle_options,
 };
 use serde_json::Value;
 use std::path::Path;
@@ -124,7 +124,7 @@ pub fn check_raycast(options: &RaycastOptions, given: &ArgMatches) -> Result<(),
 
 /// Refuses a quality of textures that lose nothing.
 pub fn check_quality(formats: &WriteOptions, given: &ArgMatches) -> Result<(), Failure> {
-    match is_lossless(formats.texture_format) {
+    match formats.texture_format.is_lossless() {
         true => refuse_typed(given, "texture_quality", QUALITY_OF_LOSSLESS),
         false => Ok(()),
     }

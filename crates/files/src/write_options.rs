@@ -28,6 +28,11 @@ pub enum TextureFormat {
 }
 
 impl TextureFormat {
+    /// Whether texels are kept as they are, whatever quality is asked for.
+    pub fn is_lossless(self) -> bool {
+        matches!(self, Self::Png | Self::WebpLossless)
+    }
+
     /// Its media type.
     pub fn media_type(self) -> &'static str {
         match self {

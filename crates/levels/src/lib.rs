@@ -5,6 +5,7 @@
 //! merged: the materials of a model on one common set of maps ─ maps: which may lose texels, or become factors
 //!                                                             └ fewer_texels: how many each may lose
 //! search: with which triangles, texels and maps a file is smallest at a PSNR
+//! screen: triangles, texels and mip levels that a size on screen asks for
 //! face_frames: tangents that a file lacks, as viewers make them up
 //! ```
 //!
@@ -15,4 +16,5 @@ pub mod face_frames;
 pub mod fewer_texels;
 pub mod maps;
 pub mod merged;
+pub mod screen;
 pub mod search;

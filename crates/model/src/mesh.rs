@@ -56,4 +56,9 @@ impl Mesh {
         let [a, b, c] = self.corners(triangle);
         (b - a).cross(c - a)
     }
+
+    /// Area of all triangles.
+    pub fn area(&self) -> f64 {
+        (0..self.triangles.len()).map(|t| 0.5 * f64::from(self.area_normal(t).length())).sum()
+    }
 }

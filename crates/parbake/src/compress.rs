@@ -209,9 +209,7 @@ fn has_more_than_colour(material: &Material) -> bool {
 /// Width of a sample in the common frame: that of views, or of a texel where those are finer, for who
 /// keeps so many will come nearer. Texels of more than 2048² have no sample each.
 fn sample_width(surface: &Mesh, texture_size: usize) -> f64 {
-    let area: f64 =
-        (0..surface.triangles.len()).map(|t| 0.5 * f64::from(surface.area_normal(t).length())).sum();
-    Source::SAMPLE.min(area.sqrt() / texture_size.min(2048) as f64)
+    Source::SAMPLE.min(surface.area().sqrt() / texture_size.min(2048) as f64)
 }
 
 /// Whether all coordinates lie in the square, give or take `slack`.

@@ -5,7 +5,6 @@
 
 use crate::options::{BakeOptions, Method, Parallax, Shading, UvMode};
 use crate::work::Work;
-use parbake_files::TextureFormat;
 
 /// Options of a bake that do nothing where a model's own texture is replaced: the surface stays.
 pub const IDLE_IN_COMPRESS: [&str; 15] = [
@@ -29,11 +28,6 @@ pub const IDLE_IN_COMPRESS: [&str; 15] = [
 /// What is said of the quality of textures that lose nothing.
 pub const QUALITY_OF_LOSSLESS: &str =
     "does nothing with a lossless --texture-format; choose another or leave it out";
-
-/// Whether textures of this format lose nothing, whatever quality is asked for.
-pub fn is_lossless(format: TextureFormat) -> bool {
-    matches!(format, TextureFormat::Png | TextureFormat::WebpLossless)
-}
 
 /// The options that do nothing in this work beside the others, each with why and what to do instead: the end of a sentence
 /// that begins with the option's name.
@@ -80,7 +74,7 @@ pub fn idle_options(options: &BakeOptions, work: Work) -> Vec<(&'static str, &'s
     add(options.rounds == Some(0), &["keep_normals", "robust_scale"], why);
 
     // Textures for viewers without parallax maps are JPEG in either case.
-    let is_exact = is_lossless(options.write.texture_format) && !options.has_fallback();
+    let is_exact = options.write.texture_format.is_lossless() && !options.has_fallback();
     add(is_exact, &["texture_quality"], QUALITY_OF_LOSSLESS);
     let why = match options.silhouette {
         Some(_) => "does nothing with --silhouette 0; leave one of the two out",

@@ -73,7 +73,7 @@ pub use comparison::{
 pub use compress::{compress, has_colour_alone};
 pub use error::BakeError;
 pub use fallback::FallbackReport;
-pub use idle_options::{IDLE_IN_COMPRESS, QUALITY_OF_LOSSLESS, idle_options, is_lossless};
+pub use idle_options::{IDLE_IN_COMPRESS, QUALITY_OF_LOSSLESS, idle_options};
 pub use image::{BakedImage, ImageOptions, ImageReport, PictureUv, bake_image};
 pub use lod::options::LodOptions;
 pub use lod::search::Verdict;

@@ -16,6 +16,7 @@ use parbake_atlas::AtlasError;
 use parbake_evaluate::renderer::PlacedModel;
 use parbake_evaluate::screen_size::{AtSize, ScreenComparison};
 use parbake_levels::face_frames::with_face_tangents;
+use parbake_levels::screen::{self, largest_texture};
 use parbake_model::Model;
 use parbake_progress::Watcher;
 use parbake_simplify::start::triangles_within;
@@ -179,35 +180,17 @@ impl<'a> Maker<'a> {
     /// About a texel for each pixel that the surface covers at this size, where charts fill three quarters of the
     /// texture.
     pub fn texels_along(&self, low: &Model, screen_size: f64) -> f64 {
-        let area: f64 =
-            (0..low.mesh.triangles.len()).map(|t| 0.5 * f64::from(low.mesh.area_normal(t).length())).sum();
-        let pixels_per_unit = 0.5 * screen_size * f64::from(self.high.frame.scale);
-        (area * pixels_per_unit.powi(2) / 0.75).sqrt().max(1.0)
+        screen::texels_along(&low.mesh, f64::from(self.high.frame.scale), screen_size)
     }
 
     pub fn power_of_two(&self, side: f64) -> usize {
-        let most = self.options.max_texture_size;
-        (2f64.powf(side.log2().round()) as usize).clamp(32.min(most), most)
+        screen::texture_size(side, self.options.max_texture_size)
     }
 
-    /// The mip level with a texel for each pixel at the size where a level is no longer meant to be seen: that which the
-    /// next one is made for, or half of the last one's own. `share` is how many times as many texels along a side the
-    /// texture has as the level's own size needs.
+    /// The mip level at which a level is last meant to be seen ([`screen::smallest_mip`]).
     pub fn smallest_mip(&self, level: usize, share: f64) -> f64 {
-        let sizes = &self.options.screen_size;
-        let smaller = sizes.get(level + 1).copied().unwrap_or(0.5 * sizes[level]);
-        (share * sizes[level] / smaller).log2().max(0.0)
+        screen::smallest_mip(&self.options.screen_size, level, share)
     }
-}
-
-/// Texels along the longest side of a model's textures; 0 where it has none.
-pub(crate) fn largest_texture(model: &Model) -> usize {
-    model.images.iter().map(|image| image.width.max(image.height)).max().unwrap_or(0)
-}
-
-/// Texels of all textures of a model.
-pub(crate) fn texels_of(model: &Model) -> usize {
-    model.images.iter().map(|image| image.width * image.height).sum()
 }
 
 /// What comes of a texture of this size, or of twice that as often as charts do not fit.
@@ -223,21 +206,16 @@ fn with_room<T>(
     }
 }
 
-/// Triangles for each pixel of a square as wide as a level, at the default error: machines of many small parts would have
-/// several under each pixel.
-const TRIANGLES_A_PIXEL: f64 = 1.0;
-
 /// Triangles of each level, of which none has fewer than `least`.
 fn wanted_triangles(high: &HighPoly, whole: usize, options: &LodOptions, least: usize) -> Vec<usize> {
     let wanted = |level: usize| match (options.triangles.get(level), options.ratio.get(level)) {
         (Some(&count), _) => count,
         (None, Some(share)) => ((share * whole as f64).round() as usize).max(least),
         (None, None) => {
-            // The longest side is 2 long in the common frame.
             let (size, error) = (options.screen_size[level], options.error);
-            let needed = triangles_within(high.scene.mesh(), (2.0 * error / size) as f32);
-            let closer = LodOptions::default().error / error;
-            needed.min((TRIANGLES_A_PIXEL * size * size * closer) as usize).max(least)
+            let within = screen::distance_of_pixels(error, size);
+            let needed = triangles_within(high.scene.mesh(), within as f32);
+            needed.min(screen::most_triangles(size, LodOptions::default().error / error)).max(least)
         }
     };
     (0..options.screen_size.len()).into_par_iter().map(wanted).collect()

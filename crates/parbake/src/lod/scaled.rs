@@ -8,7 +8,7 @@
 
 use super::candidate::Way;
 use super::delivered::{Coarser, surface_of};
-use super::maker::{Draft, Maker, largest_texture};
+use super::maker::{Draft, Maker};
 use super::picture_score::PictureScore;
 use crate::bake::Baked;
 use crate::error::BakeError;
@@ -18,6 +18,7 @@ use crate::work::Work;
 use parbake_atlas::check_mesh;
 use parbake_levels::fewer_texels::with_fewer_texels;
 use parbake_levels::merged::with_common_maps;
+use parbake_levels::screen::largest_texture;
 use parbake_model::Model;
 
 /// Texels that a model without textures may get for the colours of its materials.

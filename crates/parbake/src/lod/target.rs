@@ -17,6 +17,7 @@ use parbake_files::NormalY;
 use parbake_files::{TextureFormat, WriteOptions};
 use parbake_levels::face_frames::with_face_tangents;
 use parbake_levels::maps::{LevelMap, Reduction, level_maps, size_of, with_reductions};
+use parbake_levels::screen::distance_of_pixels;
 use parbake_levels::search::{Baking, Choice, Measured, Plan, Search, Step, Verdict, error_of};
 use parbake_model::Model;
 use parbake_simplify::start::triangles_within;
@@ -163,8 +164,7 @@ pub(crate) fn find(
 fn bounds(maker: &Maker, level: usize, finer: Option<&Model>, target: f64) -> (Plan, Plan) {
     let (high, options) = (&maker.high, maker.options);
     let pixels = options.screen_size[level];
-    // The longest side is 2 long in the common frame.
-    let within = |error: f64| triangles_within(high.scene.mesh(), (2.0 * error / pixels) as f32);
+    let within = |error: f64| triangles_within(high.scene.mesh(), distance_of_pixels(error, pixels) as f32);
     let all = finer.map_or(high.triangles, |low| low.mesh.triangles.len());
     let most = within(NOTHING).clamp(maker.least.min(all), all);
     let first = within(0.25 * 10f64.powf((USUAL - target) / 20.0)).min(most);
@@ -205,13 +205,11 @@ impl Tried {
             size: size_of(model, map, reduction),
         };
         let quality = self.qualities[choice.get(self.maps.len()).copied().unwrap_or(0)];
-        let is_lossless =
-            matches!(self.write.texture_format, TextureFormat::Png | TextureFormat::WebpLossless);
         Trial {
             bake: 0,
             triangles: model.mesh.triangles.len(),
             maps: self.maps.iter().zip(reductions(&self.maps, choice)).map(map).collect(),
-            texture_quality: (!is_lossless).then_some(quality),
+            texture_quality: (!self.write.texture_format.is_lossless()).then_some(quality),
             bytes: 0,
             psnr: 0.0,
             reached: false,

@@ -16,11 +16,12 @@
 use super::candidate::{Candidate, Way};
 use super::chain::Chain;
 use super::delivered::{Coarser, baked_draft, coarser, may_keep_vertices};
-use super::maker::{Draft, Maker, texels_of};
+use super::maker::{Draft, Maker};
 use super::picture_score::{PictureScore, Tried};
 use super::scaled::{scaled, scaled_draft};
 use crate::error::BakeError;
 use parbake_levels::maps::{Reduction, level_maps, with_reductions};
+use parbake_levels::screen::texels_of;
 use parbake_model::Model;
 use std::cell::Cell;
 use std::time::Instant;

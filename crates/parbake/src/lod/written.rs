@@ -1,9 +1,7 @@
 //! A level as its file holds it: figures are of that.
 
 use crate::error::BakeError;
-use parbake_files::{
-    Limits, MeshCompression, NoResources, TextureFormat, WriteOptions, glb_bytes_with, read_gltf_bytes,
-};
+use parbake_files::{Limits, MeshCompression, NoResources, WriteOptions, glb_bytes_with, read_gltf_bytes};
 use parbake_files::{NormalY, with_normal_y};
 use parbake_model::Model;
 use std::borrow::Cow;
@@ -28,7 +26,7 @@ pub(crate) fn as_written<'a>(
 ) -> Result<AsWritten<'a>, BakeError> {
     let turned = with_normal_y(model, normal_y);
     let (file, written) = glb_bytes_with(&turned, write)?;
-    let keeps_texels = matches!(write.texture_format, TextureFormat::Png | TextureFormat::WebpLossless);
+    let keeps_texels = write.texture_format.is_lossless();
     if keeps_texels && write.mesh_compression == MeshCompression::None {
         return Ok(AsWritten { model: Cow::Borrowed(model), bytes: written.bytes });
     }
