@@ -95,6 +95,10 @@ pub fn refined(
     let mut best =
         is_good.then(|| Best { layout: layout.clone(), errors, is_finer: false, way: [frames.len(), 0] });
     for count in 0..turns {
+        let refine_steps = most.min(options.refine_steps.saturating_sub(count * most));
+        if refine_steps == 0 {
+            break;
+        }
         if count == FINER_AFTER && more_triangles > 0 {
             let errors = by_triangle(coarse, &layout, &texture);
             finer = Finer::new(score.mesh, &layout, coarse, &errors, more_triangles);
@@ -102,7 +106,6 @@ pub fn refined(
         }
         let problem = &finer.as_ref().map_or(*coarse, |finer| finer.problem(coarse));
         let way = if finer.is_some() { &mut fine_frames } else { &mut frames };
-        let refine_steps = most.min(options.refine_steps - count * most);
         let turn = UvOptions { refine_steps, tolerance, solve, ..*options };
         steps.begin();
         let step = |points: &[DVec2], loss| steps.step(way, points, loss);
