@@ -201,7 +201,10 @@ fn wrong_values_get_sentences() {
         (bake(&["--texture-size", "16k"]), "16 to 8192"),
         (bake(&["--options", "text.json"]), "text.json: line 1, column 2: this is not JSON"),
         (bake(&["--options", "empty.json"]), "empty.json: the file is empty; expected a JSON object"),
-        (bake(&["--options", "demo_high.glb"]), "demo_high.glb: this is not a text file; expected a JSON object"),
+        (
+            bake(&["--options", "demo_high.glb"]),
+            "demo_high.glb: this is not a text file; expected a JSON object",
+        ),
         (vec!["bake", "demo_high.glb"], "give LOW, or --triangles COUNT, which makes one of HIGH"),
         (vec!["check", "demo_low.glb", "--gutter", "-1"], "--gutter cannot be -1: it may be 0 or more"),
         (bake(&["--importance", "foo=2", "--texture-size", "16"]), "--importance cannot be foo: it may be"),
