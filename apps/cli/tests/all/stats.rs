@@ -96,7 +96,7 @@ fn mistakes_are_told() {
     for (arguments, code, words) in [
         (&["stats", "nothing.glb"][..], 1, "nothing.glb"),
         (&["stats", "a.obj", "--against", "nothing.glb"], 1, "nothing.glb"),
-        (&["stats", "a.obj", "--samples", "1"], 2, "1000 to 100000000"),
+        (&["stats", "a.obj", "--against", "a.obj", "--samples", "1"], 2, "1000 to 100000000"),
         (&["stats", "a.obj", "--json", "a.obj"], 2, "overwrite"),
     ] {
         let out = parbake(folder).args(arguments).output().unwrap();
