@@ -167,7 +167,7 @@ mod tests {
         };
         let html = settings(&options, Work::Bake, Used::default());
         let views = options.plan().views;
-        let idle = ["more_triangles", "no_content_aware", "importance", "silhouette_background"];
+        let idle = ["more_triangles", "no_content_aware", "importance"];
         let acting = fields(&options).into_keys().filter(|name| !idle.contains(&name.as_str()));
         for name in acting {
             assert!(
