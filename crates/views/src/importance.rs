@@ -294,7 +294,10 @@ mod tests {
         assert_eq!(weights(&model, &["node:cover=2"], None), Ok(vec![1.0, 1.0, 2.0]));
         assert_eq!(weights(&model, &[], None), Ok(vec![]));
         let message = weights(&model, &["cloth=2"], None).unwrap_err();
-        assert!(message.contains("--importance cloth") && message.contains("\"Cloth blue\""), "{message}");
+        assert!(
+            message.contains("--importance cannot be cloth") && message.contains("\"Cloth blue\""),
+            "{message}"
+        );
         let message = weights(&model, &["node:cower=2"], None).unwrap_err();
         assert!(message.contains("\"cower\"") && message.contains("it has \"cover\""), "{message}");
         assert!(weights(&Model { nodes: None, ..model }, &["node:cover=2"], None).is_err());
