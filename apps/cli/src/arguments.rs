@@ -29,7 +29,11 @@ const HELP_IN_COMPRESS: [(&str, &str); 7] = [
         "Seconds after which the best texture so far is written, 0 to 1e9, reading of files included. \
 Below 8 (34 at 2048², 135 at 4096²) UVs are only repaired [default: no limit]",
     ),
-    ("shading", OWN_SHADING),
+    (
+        "shading",
+        "What of the materials is fitted: auto fits whole materials where one has more than colour, normals and emission; \
+lambert colours, normals and emission; pbr the whole metallic-roughness material",
+    ),
     ("uv", "UV mode: how the model's texture coordinates are treated"),
     ("method", "UV optimiser; textures are solved the same way"),
     (
@@ -46,16 +50,6 @@ Below 8 (34 at 2048², 135 at 4096²) UVs are only repaired [default: no limit]"
 0.01 to 1000. Lower it if surfaces look mottled; 1000 is least squares [default: 1, with --method paper 1000]",
     ),
 ];
-
-/// Help of `--shading` where there is one model.
-const OWN_SHADING: &str = "What of the materials is fitted: auto fits whole materials where one has more than colour, normals and \
-emission; lambert colours, normals and emission; pbr the whole metallic-roughness material";
-
-/// Options of a bake whose help is another one in `bake` and `demo`.
-const HELP_IN_BAKE: [(&str, &str); 1] = [(
-    "uv_steps",
-    "Steps of the UV optimiser, 0 to 10000 [default: by preset 10, 30, 60; with --method paper 800]",
-)];
 
 /// Options of files whose help speaks of parallax maps, for commands that write none.
 const HELP_WITHOUT_PARALLAX: [(&str, &str); 2] = [
@@ -84,9 +78,6 @@ pub fn command() -> Clap {
     let whole = WITHOUT_PARALLAX.into_iter().fold(Arguments::command(), |whole, name| {
         whole.mut_subcommand(name, |own| with_help(own, &HELP_WITHOUT_PARALLAX))
     });
-    let whole = ["bake", "demo"]
-        .into_iter()
-        .fold(whole, |whole, name| whole.mut_subcommand(name, |own| with_help(own, &HELP_IN_BAKE)));
     let whole = whole.mut_subcommands(|own| {
         own.mut_args(|argument| match argument.get_action().takes_values() {
             // The option's own check says more about a negative number than the parser could.

@@ -93,7 +93,10 @@ fn typing_error(error: &clap::Error) -> ! {
 
 /// Whether `bake` was given a high-poly alone.
 fn lacks_low_poly(error: &clap::Error) -> bool {
-    let lacks = |name: &str| matches!(error.get(ContextKind::InvalidArg), Some(ContextValue::Strings(names)) if *names == [name]);
+    let lacks = |name: &str| match error.get(ContextKind::InvalidArg) {
+        Some(ContextValue::Strings(names)) => *names == [name],
+        _ => false,
+    };
     let is_bake = || error.render().to_string().contains("parbake bake ");
     error.kind() == ErrorKind::MissingRequiredArgument && lacks("<LOW>") && is_bake()
 }

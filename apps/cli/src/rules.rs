@@ -113,8 +113,7 @@ pub fn check_raycast(options: &RaycastOptions, given: &ArgMatches) -> Result<(),
         refuse("curvature_radius", "does nothing without --maps curvature; add that or leave it out")?;
     }
     if options.r#match == Match::ClosestPoint {
-        let why = "does nothing with --match closest-point, which casts no rays; leave it out";
-        refuse("ray_normals", why)?;
+        refuse("ray_normals", "does nothing with --match closest-point, which casts no rays; leave it out")?;
     }
     if options.uv == RaycastUv::Keep {
         refuse("gutter", "does nothing with --uv keep, which leaves charts where they are; leave it out")?;

@@ -180,8 +180,7 @@ pub struct BakeOptions {
     #[serde(skip)]
     pub smallest_mip: Option<f64>,
 
-    /// Steps of the UV optimiser, 0 to 10000 [default: by preset 10, 30, 60, in compress 80, 240, 480; with
-    /// --method paper 800]
+    /// Steps of the UV optimiser, 0 to 10000 [default: by preset 10, 30, 60; with --method paper 800]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::UV))]
     pub uv_steps: Option<usize>,
 

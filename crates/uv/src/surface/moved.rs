@@ -97,7 +97,7 @@ fn told_apart(texture_size: usize, samples: usize) -> usize {
     size
 }
 
-/// The lower, the better a layout is to begin with: none that refinement will not save, then the error of all sizes.
+/// Orders layouts to begin with, the best one first: those that refinement can make good, then by the error of all sizes.
 fn rank(errors: &[f64], limits: &Limits) -> (bool, f64) {
     (limits.is_lost_from_the_start(errors), errors.iter().sum())
 }
