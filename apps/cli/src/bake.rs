@@ -222,7 +222,11 @@ fn finish(
 /// Which figures of a comparison somebody reads; none where nobody does. FLIP, which takes most of the time, is for the
 /// HTML report alone; channels are for the report and for JSON.
 pub fn figures_read(talk: Talk, json: bool, report: bool) -> Option<Detail> {
-    (!talk.quiet || json || report).then_some(Detail { flip: report, channels: report || json })
+    (!talk.quiet || json || report).then_some(Detail {
+        ms_ssim: report || json,
+        flip: report,
+        channels: report || json,
+    })
 }
 
 /// Whether there is time for a comparison: who interrupts a bake wants its end, unless the report shows the figures.

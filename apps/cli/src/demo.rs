@@ -38,7 +38,7 @@ pub fn run(command: &DemoCommand, given: &ArgMatches) -> Result<Ending, Failure>
         let output = folder.join("demo.glb");
         let pair = Pair { high, low, warnings: Vec::new(), seconds: None };
         let mut baked = bake_and_write(&pair, &command.bake, &output, &console)?;
-        compare(&pair.high, &mut baked, Detail { flip: true, channels: true }, &console)?;
+        compare(&pair.high, &mut baked, Detail::ALL, &console)?;
         let report = folder.join("demo.html");
         write_report(&report, &pair.high, &baked, &console)?;
         let [high, low] = ["demo_high.glb", "demo_low.glb"].map(|name| folder.join(name));

@@ -8,7 +8,7 @@
 //! Contract: values are display-referred, 0 to 1: colours with sRGB's curve, clipped at 1; normals of the common
 //! frame as `(n + 1) / 2`; all else as it is, in grey.
 
-use crate::figures::{PIXELS_PER_DEGREE, ViewFigures};
+use crate::figures::{Metrics, PIXELS_PER_DEGREE, ViewFigures};
 use crate::renderer::{PlacedModel, RenderedView};
 use parbake_image::display::encode_srgb;
 use parbake_image::{MapKind, MapValues};
@@ -141,13 +141,13 @@ impl Channel {
     }
 
     /// The figures of two views with channels.
-    pub fn compare(self, high: &RenderedView, low: &RenderedView, with_flip: bool) -> ViewFigures {
+    pub fn compare(self, high: &RenderedView, low: &RenderedView, metrics: Metrics) -> ViewFigures {
         let ([high, low], error) = self.pair(high, low);
         let flip = || parbake_metric::flip(&high, &low, PIXELS_PER_DEGREE).ok();
         ViewFigures {
             psnr: parbake_metric::psnr_from_mse(error),
-            ms_ssim: parbake_metric::ms_ssim(&high, &low).ok().flatten(),
-            flip: (with_flip && self.is_color()).then(flip).flatten(),
+            ms_ssim: metrics.ms_ssim.then(|| parbake_metric::ms_ssim(&high, &low).ok()).flatten().flatten(),
+            flip: (metrics.flip && self.is_color()).then(flip).flatten(),
         }
     }
 }

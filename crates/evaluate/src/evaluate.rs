@@ -4,10 +4,9 @@
 use crate::channels::{Channel, ChannelFigures};
 use crate::conventions::Shading;
 use crate::error::EvaluateError;
-use crate::figures::{ViewFigures, compare, mean};
+use crate::figures::{Metrics, ViewFigures, compare, mean};
 use crate::options::EvaluateOptions;
 use crate::renderer::{PlacedModel, RenderedView, Renderer};
-use parbake_metric::Rgb;
 use parbake_model::Model;
 use parbake_progress::{Message, Stage, Watcher};
 use parbake_render::camera::fibonacci_sphere;
@@ -59,8 +58,9 @@ pub fn evaluate_on(
 ) -> Result<Vec<Evaluation>, EvaluateError> {
     let unjudged = not_compared(high.materials.iter().chain(&low.materials));
     unjudged.into_iter().for_each(|text| watcher.message(Message::Warning(text)));
+    let detail = Detail { ms_ssim: true, channels: true };
     let Compared { shading, channels, views } =
-        evaluate_each(high, &[low], options, backgrounds, true, watcher)?;
+        evaluate_each(high, &[low], options, backgrounds, detail, watcher)?;
     let of_channel = |(k, &channel): (usize, &Channel)| {
         let views: Vec<ViewFigures> = views.iter().map(|view| view.channels[0][k]).collect();
         ChannelFigures { channel, mean: mean(&views), views }
@@ -72,6 +72,15 @@ pub fn evaluate_on(
         Evaluation { options, shading, mean: mean(&views), views, channels: channels.clone() }
     };
     Ok(backgrounds.iter().enumerate().map(of).collect())
+}
+
+/// What is compared besides the PSNR of what is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Detail {
+    /// MS-SSIM.
+    pub ms_ssim: bool,
+    /// The channels of whole materials.
+    pub channels: bool,
 }
 
 /// What became of a comparison.
@@ -93,7 +102,7 @@ pub struct ComparedView {
 }
 
 /// Compares several models with one high-poly, which is rendered once for all of them, on each background, and
-/// channel by channel if `with_channels` and if whole materials are compared.
+/// channel by channel if `detail` says so and if whole materials are compared.
 ///
 /// # Errors
 /// As of [`evaluate`].
@@ -102,7 +111,7 @@ pub fn evaluate_each(
     low: &[&Model],
     options: &EvaluateOptions,
     backgrounds: &[&str],
-    with_channels: bool,
+    detail: Detail,
     watcher: &dyn Watcher,
 ) -> Result<Compared, EvaluateError> {
     let color =
@@ -112,10 +121,11 @@ pub fn evaluate_each(
     let shading = renderer.shading();
     let high = renderer.place(high);
     let low: Vec<PlacedModel> = low.iter().map(|low| renderer.place(low)).collect();
-    let channels = match with_channels && shading == Shading::Pbr {
+    let channels = match detail.channels && shading == Shading::Pbr {
         true => Channel::of(std::iter::once(&high).chain(&low)),
         false => Vec::new(),
     };
+    let metrics = Metrics { ms_ssim: detail.ms_ssim, flip: !options.no_flip };
     let done = AtomicUsize::new(0);
     let views = fibonacci_sphere(options.views, 0.0).into_par_iter().map(|direction| {
         let render = |model: &PlacedModel| match channels.is_empty() {
@@ -123,16 +133,14 @@ pub fn evaluate_each(
             false => renderer.render_with_channels(model, direction),
         };
         let wanted = render(&high);
-        let pictures: Vec<Rgb> = colors.iter().map(|&color| renderer.tonemap(&wanted, color)).collect();
+        let pictures = renderer.tonemap_on(&wanted, &colors);
         let mut view = ComparedView { seen: Vec::new(), channels: Vec::new() };
         for low in &low {
             let own: RenderedView = render(low);
-            let pairs = colors.iter().zip(&pictures);
-            let on = |(&color, high): (&[f32; 3], &Rgb)| {
-                compare(high, &renderer.tonemap(&own, color), !options.no_flip)
-            };
-            view.seen.push(pairs.map(on).collect());
-            let of = |channel: &Channel| channel.compare(&wanted, &own, !options.no_flip);
+            let shown = renderer.tonemap_on(&own, &colors);
+            let pairs = pictures.iter().zip(&shown);
+            view.seen.push(pairs.map(|(wanted, own)| compare(wanted, own, metrics)).collect());
+            let of = |channel: &Channel| channel.compare(&wanted, &own, metrics);
             view.channels.push(channels.iter().map(of).collect());
         }
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;

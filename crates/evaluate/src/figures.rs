@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub struct ViewFigures {
     /// Decibels, higher is better.
     pub psnr: f64,
-    /// 0 … 1, higher is better; none below 161 pixels.
+    /// 0 … 1, higher is better; none below 161 pixels, or when left out.
     pub ms_ssim: Option<f64>,
     /// Mean FLIP, 0 … 1, lower is better; none when left out.
     pub flip: Option<f64>,
@@ -19,13 +19,27 @@ pub struct ViewFigures {
 /// FLIP's viewing distance: pixels per degree of its authors' default monitor.
 pub(crate) const PIXELS_PER_DEGREE: f32 = 67.020_64;
 
-/// All figures of one pair of pictures of equal size.
-pub fn compare(high: &Rgb, low: &Rgb, with_flip: bool) -> ViewFigures {
+/// Which figures are made besides PSNR.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Metrics {
+    /// MS-SSIM, a third of the time of rendering.
+    pub ms_ssim: bool,
+    /// FLIP, which takes longer than all else.
+    pub flip: bool,
+}
+
+impl Metrics {
+    /// All of them.
+    pub const ALL: Self = Self { ms_ssim: true, flip: true };
+}
+
+/// The figures of one pair of pictures of equal size.
+pub fn compare(high: &Rgb, low: &Rgb, metrics: Metrics) -> ViewFigures {
     let error = parbake_metric::mean_squared_error(high, low).unwrap_or(f64::NAN);
     ViewFigures {
         psnr: parbake_metric::psnr_from_mse(error),
-        ms_ssim: parbake_metric::ms_ssim(high, low).ok().flatten(),
-        flip: with_flip.then(|| parbake_metric::flip(high, low, PIXELS_PER_DEGREE).ok()).flatten(),
+        ms_ssim: metrics.ms_ssim.then(|| parbake_metric::ms_ssim(high, low).ok()).flatten().flatten(),
+        flip: metrics.flip.then(|| parbake_metric::flip(high, low, PIXELS_PER_DEGREE).ok()).flatten(),
     }
 }
 

@@ -125,6 +125,16 @@ impl Renderer {
         tonemapped(&view.picture, &self.options.display(), background)
     }
 
+    /// The same on each background. What covers a pixel looks the same on all.
+    pub fn tonemap_on(&self, view: &RenderedView, backgrounds: &[[f32; 3]]) -> Vec<Rgb> {
+        let mut shown: Vec<Rgb> = Vec::with_capacity(backgrounds.len());
+        for &background in backgrounds {
+            let next = tonemapped_as(&view.picture, &self.options.display(), background, shown.first());
+            shown.push(next);
+        }
+        shown
+    }
+
     /// Pixels along a side, and samples along a side of a pixel.
     fn size(&self) -> (usize, usize) {
         (self.options.resolution, self.options.supersample)
@@ -162,6 +172,11 @@ impl RenderedView {
 
 /// A picture as a screen shows it; the gain brightens the model, not what is behind it.
 pub fn tonemapped(picture: &Picture, display: &Display, background: [f32; 3]) -> Rgb {
+    tonemapped_as(picture, display, background, None)
+}
+
+/// The same; pixels without background are taken from `known`, the same picture on another one.
+fn tonemapped_as(picture: &Picture, display: &Display, background: [f32; 3], known: Option<&Rgb>) -> Rgb {
     let after = Display { gain: 1.0, ..*display };
     let pixel = |p: &[f32; 4]| -> [f32; 3] {
         std::array::from_fn(|k| {
@@ -170,6 +185,11 @@ pub fn tonemapped(picture: &Picture, display: &Display, background: [f32; 3]) ->
     };
     // Most pixels show nothing, and powers take long.
     let empty = pixel(&[0.0; 4]);
-    let pixels = picture.rgba.iter().map(|p| if *p == [0.0; 4] { empty } else { pixel(p) }).collect();
+    let shown = |(index, p): (usize, &[f32; 4])| match known {
+        _ if *p == [0.0; 4] => empty,
+        Some(known) if p[3] == 1.0 => known.pixels[index],
+        _ => pixel(p),
+    };
+    let pixels = picture.rgba.iter().enumerate().map(shown).collect();
     Rgb { width: picture.size, height: picture.size, pixels }
 }

@@ -10,7 +10,7 @@
 
 use crate::conventions::Shading;
 use crate::error::EvaluateError;
-use crate::figures;
+use crate::figures::{self, Metrics};
 use crate::options::EvaluateOptions;
 use crate::renderer::{PlacedModel, Renderer};
 use parbake_metric::Rgb;
@@ -113,7 +113,7 @@ impl ScreenComparison {
     /// Where the original has no extent.
     pub fn compare(&self, a: &PlacedModel, b: &PlacedModel, pixels: f64) -> Result<AtSize, EvaluateError> {
         let pictures = self.pictures(a, pixels)?;
-        let own = |(direction, other)| figures::compare(other, &pictures.picture(b, direction), true);
+        let own = |(direction, other)| figures::compare(other, &pictures.picture(b, direction), Metrics::ALL);
         let views: Vec<_> = pictures.seen_from().map(own).collect();
         let mean = figures::mean(&views);
         Ok(AtSize { pixels, psnr: mean.psnr, ms_ssim: mean.ms_ssim, flip: mean.flip })

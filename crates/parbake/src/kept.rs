@@ -10,7 +10,7 @@ use crate::comparison::{COMPARED_VIEWS, compared_as};
 use crate::error::BakeError;
 use crate::options::{BakeOptions, UvMode};
 use parbake_atlas::sharing;
-use parbake_evaluate::evaluate::evaluate_each;
+use parbake_evaluate::evaluate::{Detail, evaluate_each};
 use parbake_evaluate::options::EvaluateOptions;
 use parbake_model::Model;
 use parbake_progress::{Message, Watcher, WithoutWarnings};
@@ -46,7 +46,8 @@ pub(crate) fn lost(
     let resolution = as_summary.resolution.min(PIXELS_PER_TEXEL * bake.texture_size);
     for views in VIEWS {
         let options = EvaluateOptions { views, resolution, no_flip: true, ..as_summary.clone() };
-        let compared = evaluate_each(model, &[kept, found], &options, &[&options.background], false, &())?;
+        let compared =
+            evaluate_each(model, &[kept, found], &options, &[&options.background], Detail::default(), &())?;
         let mean = |which: usize| {
             let psnr = compared.views.iter().map(|view| view.seen[which][0].psnr);
             psnr.sum::<f64>() / views as f64

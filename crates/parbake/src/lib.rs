@@ -91,7 +91,9 @@ pub use parbake_atlas::{LayoutCheck, ModelCheck, UvCheck, check_mesh, check_mode
 pub use parbake_evaluate::EvaluateError;
 pub use parbake_evaluate::channels::{Channel, ChannelFigures};
 pub use parbake_evaluate::evaluate::{Evaluation, evaluate, evaluate_on};
-pub use parbake_evaluate::figures::{ViewFigures, compare as compare_pictures, mean as mean_figures};
+pub use parbake_evaluate::figures::{
+    Metrics, ViewFigures, compare as compare_pictures, mean as mean_figures,
+};
 pub use parbake_evaluate::options::EvaluateOptions;
 pub use parbake_evaluate::renderer::{PlacedModel, RenderedView, Renderer, tonemapped};
 pub use parbake_evaluate::screen_size::AtSize;

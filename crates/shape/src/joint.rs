@@ -149,6 +149,19 @@ impl<'a> Fit<'a> {
     }
 
     fn look(&self, at: &[Vec3], texture: &Provisional, views: &[(usize, u64)]) -> Judgement {
+        self.with_surface(at, texture, |surface, textures| self.views.look(surface, textures, views))
+    }
+
+    fn picture_loss(&self, at: &[Vec3], texture: &Provisional, views: &[(usize, u64)]) -> f64 {
+        self.with_surface(at, texture, |surface, textures| self.views.picture_loss(surface, textures, views))
+    }
+
+    fn with_surface<T>(
+        &self,
+        at: &[Vec3],
+        texture: &Provisional,
+        look: impl FnOnce(&Surface, &Textures) -> T,
+    ) -> T {
         let positions = self.points.vertices(at);
         let surface = Surface {
             positions: &positions,
@@ -159,7 +172,7 @@ impl<'a> Fit<'a> {
             edges: &self.edges,
         };
         let [color, normal] = texture.pyramids();
-        self.views.look(&surface, &Textures::new(&color, Some(&normal)), views)
+        look(&surface, &Textures::new(&color, Some(&normal)))
     }
 
     fn snapshot(&self, at: &[Vec3], texture: &Provisional) -> Snapshot {
@@ -207,7 +220,7 @@ pub fn fit_shape(
 
     let rate = options.rate.min(gap / options.steps_in_gap);
     let steps = if gap_in_pixels < CLOSE_ENOUGH { 0 } else { needed_steps(gap_in_pixels, options) };
-    let loss = if steps == 0 { 0.0 } else { fit.look(&points.rest, &start, &measured).loss.image };
+    let loss = if steps == 0 { 0.0 } else { fit.picture_loss(&points.rest, &start, &measured) };
     let held = loss as f32 / (options.reach * gap).powi(2).max(1e-12);
     let mut moving = MovingPoints::new(&points, options.motion, rate);
     let projected = options.keeps_sides.then(|| start.clone());
@@ -292,7 +305,7 @@ fn keep_sides(moving: &mut MovingPoints, fit: &Fit, projected: &Provisional, vie
         }
         now = of(kept.at());
     }
-    let loss = |at: &[Vec3]| fit.look(at, projected, views).loss.image;
+    let loss = |at: &[Vec3]| fit.picture_loss(at, projected, views);
     if loss(kept.at()) < loss(moving.at()) {
         *moving = kept;
     }

@@ -50,20 +50,34 @@ impl Views<'_> {
         sum
     }
 
+    /// Mean of the pictures' losses alone, which takes a third of the time.
+    pub fn picture_loss(&self, surface: &Surface, textures: &Textures, views: &[(usize, u64)]) -> f64 {
+        let of = |&(index, seed): &(usize, u64)| {
+            self.with_view(index, seed, |view| forward(surface, textures, &HEADLIGHT_BRDF, view).loss.image)
+        };
+        let each: Vec<f64> = views.par_iter().map(of).collect();
+        each.iter().fold(0.0, |sum, loss| sum + loss / views.len() as f64)
+    }
+
     fn look_once(&self, surface: &Surface, textures: &Textures, index: usize, seed: u64) -> Judgement {
+        self.with_view(index, seed, |view| {
+            let tape = forward(surface, textures, &HEADLIGHT_BRDF, view);
+            let mut gradients = Gradients::zeros(surface, textures, true);
+            adjoint(surface, textures, &HEADLIGHT_BRDF, view, &tape, &mut gradients);
+            Judgement { loss: tape.loss, gradients }
+        })
+    }
+
+    fn with_view<T>(&self, index: usize, seed: u64, look: impl FnOnce(&View) -> T) -> T {
         let rendered = &self.references[index];
         let composer = Composer::new(self.background.for_view(seed), self.display, self.size);
         let reference = Reference::new(rendered.linear(), self.size, &composer);
-        let view = View {
+        look(&View {
             camera: &rendered.view.camera,
             reference: &reference,
             composer: &composer,
             comparison: self.comparison,
             antialias: true,
-        };
-        let tape = forward(surface, textures, &HEADLIGHT_BRDF, &view);
-        let mut gradients = Gradients::zeros(surface, textures, true);
-        adjoint(surface, textures, &HEADLIGHT_BRDF, &view, &tape, &mut gradients);
-        Judgement { loss: tape.loss, gradients }
+        })
     }
 }

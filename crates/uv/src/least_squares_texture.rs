@@ -32,6 +32,9 @@ fn doubled(coarse: &FloatImage<Vec4>) -> FloatImage<Vec4> {
     FloatImage::square(size, (0..size * size).into_par_iter().map(texel).collect())
 }
 
+/// Share of the largest weight of a texel from which on its samples have a mean: below it, rounding decides.
+const ASKED: f32 = 1e-4;
+
 /// How exactly a texture is solved for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solve {
@@ -69,16 +72,17 @@ pub fn least_squares_texture(
     NormalEquations::assemble(mapped, start.width, solve.smoothness).solve(start, solve, None)
 }
 
-/// The best texture whose values lie in [0, 1]; begins at `start`.
+/// The best texture whose values lie in [0, 1], of `size`² texels; begins where each texel has the mean of its samples.
 ///
 /// Texels that leave the box are held at its border and the rest is solved again
 /// (active set), as often as `solve` says.
-pub fn least_squares_texture_in_box(
+pub fn least_squares_texture_from_means(
     mapped: &ParameterizedSignal,
-    start: FloatImage<Vec4>,
+    size: usize,
     solve: &Solve,
 ) -> FloatImage<Vec4> {
-    NormalEquations::assemble(mapped, start.width, solve.smoothness).solve_in_box(start, solve)
+    let equations = NormalEquations::assemble(mapped, size, solve.smoothness);
+    equations.solve_in_box(equations.means(), solve)
 }
 
 /// A first guess for a texture of this size: rough textures from coarse to fine, so that
@@ -103,6 +107,18 @@ pub fn least_squares_texture_in_bytes(
 }
 
 impl NormalEquations {
+    /// What each texel's samples ask for in the mean, by the sums of the matrix's rows; half where no sample asks.
+    fn means(&self) -> FloatImage<Vec4> {
+        let mut room = self.room();
+        let sums = self.product(&vec![Vec4::ONE; self.size * self.size], &mut room);
+        let least = ASKED * sums.iter().map(|sum| sum.x).fold(0.0, f32::max);
+        let mean = |(sum, right): (&Vec4, &Vec4)| match sum.x > least {
+            true => *right / sum.x,
+            false => Vec4::splat(0.5),
+        };
+        FloatImage::square(self.size, sums.par_iter().zip(&self.right).map(mean).collect())
+    }
+
     fn solve_in_box(&self, start: FloatImage<Vec4>, solve: &Solve) -> FloatImage<Vec4> {
         let mut texture = self.solve(start, solve, None);
         for _ in 0..solve.box_passes {
@@ -211,9 +227,9 @@ mod tests {
             runs: &runs,
         };
         let few = Solve { steps: 5, ..Solve::FINAL };
-        let left = |start| {
-            trilinear_errors(&mapped, &least_squares_texture_in_box(&mapped, start, &few)).iter().sum::<f64>()
-        };
+        let equations = NormalEquations::assemble(&mapped, 256, few.smoothness);
+        let left =
+            |start| trilinear_errors(&mapped, &equations.solve_in_box(start, &few)).iter().sum::<f64>();
         let (flat, fine) =
             (left(FloatImage::solid(256, Vec4::splat(0.5))), left(rough_texture(&mapped, 256)));
         assert!(fine < 0.9 * flat, "{fine} of {flat}");

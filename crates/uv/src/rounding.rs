@@ -99,7 +99,7 @@ impl<'a> Rounding<'a> {
 mod tests {
     use super::*;
     use crate::least_squares_texture::{
-        ParameterizedSignal, Solve, least_squares_texture_in_box, least_squares_texture_in_bytes,
+        ParameterizedSignal, Solve, least_squares_texture_from_means, least_squares_texture_in_bytes,
     };
     use crate::signal::{Pixels, Sample, Signal};
     use crate::triangle_batches::TriangleBatches;
@@ -140,10 +140,10 @@ mod tests {
             signal_scales: &signal_scales,
             runs: &runs,
         };
-        let start = || FloatImage::solid(32, Vec4::splat(0.5));
-        let mut apart = least_squares_texture_in_box(&mapped, start(), &Solve::FINAL);
+        let start = FloatImage::solid(32, Vec4::splat(0.5));
+        let mut apart = least_squares_texture_from_means(&mapped, 32, &Solve::FINAL);
         apart.texels.iter_mut().for_each(|t| *t = (*t * WHITE).round() / WHITE);
-        let together = least_squares_texture_in_bytes(&mapped, start(), &Solve::FINAL);
+        let together = least_squares_texture_in_bytes(&mapped, start, &Solve::FINAL);
         assert!(together.texels.iter().all(|t| {
             t.cmpge(Vec4::ZERO).all() && t.cmple(Vec4::ONE).all() && (*t * WHITE).round() / WHITE == *t
         }));

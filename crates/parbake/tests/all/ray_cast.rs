@@ -46,7 +46,7 @@ fn a_baseline_without_coordinates_is_repaired() {
 fn the_figures_are_those_of_evaluate() {
     let (high, low) = small_pair();
     let baked = bake(&high, &low, &quick(), &()).unwrap();
-    let comparison = compare_bake(&high, &baked, Detail::default(), &()).unwrap();
+    let comparison = compare_bake(&high, &baked, Detail { ms_ssim: true, ..Detail::default() }, &()).unwrap();
     let options = EvaluateOptions { no_flip: true, ..compared_as(&baked.report.options) };
     let names: Vec<&str> = comparison.backgrounds.iter().map(|on| on.background.as_str()).collect();
     let own = evaluate_on(&high, &baked.model, &options, &names, &()).unwrap();

@@ -37,7 +37,7 @@ pub use settings::flags;
 
 use parbake::BakeError;
 use parbake::Baked;
-use parbake::{Message, Stage, Watcher};
+use parbake::{Message, Stage, Watcher, compared_as};
 use parbake_model::Model;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -47,7 +47,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Runs on rayon's current thread pool, for some seconds; the watcher is told of
 /// progress as [`Stage::Evaluate`] and cannot stop it.
 pub fn html_report(high: &Model, baked: &Baked, watcher: &dyn Watcher) -> Result<String, BakeError> {
-    let (done, total) = (AtomicUsize::new(0), parbake::COMPARED_VIEWS + pictures::SIDES);
+    let (done, total) = (AtomicUsize::new(0), compared_as(&baked.report.options).views + pictures::SIDES);
     let tick = || {
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
         watcher.message(Message::Progress { stage: Stage::Evaluate, done, total });

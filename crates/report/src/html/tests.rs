@@ -111,7 +111,7 @@ fn the_page_is_whole() {
 
     for (model, background) in [(&baked.model, "black"), (&baked.ray_cast, "grey")] {
         let options = EvaluateOptions {
-            views: parbake::COMPARED_VIEWS,
+            views: parbake::compared_as(&options()).views,
             background: background.into(),
             no_flip: true,
             ..EvaluateOptions::default()

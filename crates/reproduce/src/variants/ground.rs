@@ -7,7 +7,7 @@ use super::options::VariantsOptions;
 use super::report::VariantFigures;
 use super::stored::Stored;
 use parbake::{BakeError, Message, Watcher};
-use parbake::{EvaluateOptions, compare_pictures, mean_figures, tonemapped};
+use parbake::{EvaluateOptions, Metrics, compare_pictures, mean_figures, tonemapped};
 use parbake_fit::backend::{Backend, Cpu};
 use parbake_fit::parallax::{State, fit_parallax_of};
 use parbake_fit::schedule::{Comparison, Fitted, fit_textures};
@@ -224,7 +224,7 @@ impl<'a> Ground<'a> {
         let views: Vec<_> = (self.wanted.iter())
             .map(|(camera, wanted)| {
                 let picture = tonemapped(&look.render(camera, size, supersample), display, [0.0; 3]);
-                compare_pictures(wanted, &picture, false)
+                compare_pictures(wanted, &picture, Metrics { ms_ssim: true, flip: false })
             })
             .collect();
         let figures = mean_figures(&views);

@@ -25,7 +25,7 @@ pub use surface_texture::{SurfaceSamples, SurfaceTexture};
 
 use crate::contact::{Border, ContactOptions};
 use crate::convergence::Convergence;
-use crate::least_squares_texture::{ParameterizedSignal, Solve, least_squares_texture_in_box};
+use crate::least_squares_texture::{ParameterizedSignal, Solve, least_squares_texture_from_means};
 use crate::mode::{Method, UvMode};
 use crate::moves::UvMoves;
 use crate::optimise::Problem;
@@ -37,9 +37,8 @@ use parbake_atlas::{
     AtlasError, ChartScale, Layout, PackOptions, RepairOptions, TutteOptions, UnwrapOptions, check, pack,
     repair, tutte, unwrap,
 };
-use parbake_image::FloatImage;
 use parbake_mesh::{Bisected, Piece, ensure_normals, material_uvs};
-use parbake_model::glam::{DVec2, Vec2, Vec4};
+use parbake_model::glam::{DVec2, Vec2};
 use parbake_model::{Material, Mesh, Model, Placement};
 use parbake_progress::Watcher;
 use rayon::prelude::*;
@@ -69,6 +68,8 @@ pub struct UvStageOptions {
     pub smallest_mip: Option<f64>,
     /// Steps of the refinement, or rounds of the paper's method at most.
     pub steps: usize,
+    /// Whether a low-poly's coordinates are refined only where triangles have few texels (`refined.rs`).
+    pub refines_scarce_only: bool,
     /// Triangles that a model's own surface may have more.
     pub more_triangles: usize,
 }
@@ -322,12 +323,13 @@ fn contact(asked: &UvStageOptions, activation_texels: f64) -> ContactOptions {
 /// solved for: for all sizes at once where `all_sizes` says so, else for the full one.
 fn errors(problem: &Problem, layout: &Layout, all_sizes: bool) -> Vec<f64> {
     let solved = if all_sizes { problem.signal_scales } else { &problem.signal_scales[..1] };
-    let start = FloatImage::solid(problem.texture_size, Vec4::splat(0.5));
-    let rough = Solve { steps: 40, ..Solve::ROUGH };
+    // For one size twelve steps tell layouts apart as forty do.
+    let rough = Solve { steps: if all_sizes { 40 } else { 12 }, ..Solve::ROUGH };
+    let runs = &runs(layout, solved);
     let mut texture =
-        least_squares_texture_in_box(&mapped(layout, solved, &runs(layout, solved)), start, &rough);
+        least_squares_texture_from_means(&mapped(layout, solved, runs), problem.texture_size, &rough);
     texture.texels.par_iter_mut().for_each(|t| *t = (*t * 255.0).round() / 255.0);
-    trilinear_errors(&mapped(layout, problem.signal_scales, &runs(layout, problem.signal_scales)), &texture)
+    trilinear_errors(&mapped(layout, problem.signal_scales, runs), &texture)
 }
 
 fn runs(layout: &Layout, signal_scales: &[Signal]) -> TriangleBatches {
@@ -362,6 +364,7 @@ mod tests {
             parallax_size: Some(64),
             smallest_mip: None,
             steps: 30,
+            refines_scarce_only: false,
             more_triangles: 0,
         }
     }

@@ -36,6 +36,10 @@ const FLAT: [f64; 2] = [0.1, 1e-3];
 /// moving at all, and half a texel is enough to not run into them.
 const ACTIVATION_TEXELS: f64 = 0.5;
 
+/// Texels of the texture for each triangle below which they are scarce. With 65 to 260, refinement changed what views show
+/// of six models by 0.007 dB at most; with 30 to 75 it took 6 % off the error.
+const SCARCE: usize = 64;
+
 /// None where no better one was found.
 pub fn moved(
     mesh: &Mesh,
@@ -60,7 +64,8 @@ pub fn moved(
     let shape_steps = most_steps.min(10 * asked.steps);
     let own = source.surface.is_none();
     let refine_by = if own { RefineBy::Stiffness } else { RefineBy::Laplacian };
-    let options = &UvOptions { refine_steps: asked.steps, shape_steps, refine_by, ..UvOptions::default() };
+    let refine_steps = if own { asked.steps } else { worthwhile_steps(asked, mesh.triangles.len()) };
+    let options = &UvOptions { refine_steps, shape_steps, refine_by, ..UvOptions::default() };
     let score = &LayoutScore::new(mesh, start, problem, own, asked.gutter_required.then_some(asked.gutter));
     let tensors = &tensors(problem, start);
     let limits = &Limits::new(own);
@@ -85,6 +90,12 @@ pub fn moved(
     report.steps = moved.frames.len().saturating_sub(before_refining);
     report.relative_error = relative;
     Some(moved)
+}
+
+/// Steps in which a low-poly of so many triangles is refined.
+fn worthwhile_steps(asked: &UvStageOptions, triangles: usize) -> usize {
+    let is_scarce = asked.texture_size * asked.texture_size < SCARCE * triangles;
+    if is_scarce || !asked.refines_scarce_only { asked.steps } else { 0 }
 }
 
 /// Texels along a side of the texture that layouts are judged by: halved until every other of its texels
@@ -153,4 +164,31 @@ fn even_scales(layout: &Layout) -> Vec<f64> {
         area[*chart as usize] += layout.rest_area(t);
     }
     drawn.iter().zip(&area).map(|(d, a)| if *d > 0.0 && *a > 0.0 { (a / d).sqrt() } else { 1.0 }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mode::{Method, UvMode};
+    use crate::paper::Guide;
+
+    /// Protects time where texels abound, coordinates where they do not, and who asks for steps.
+    #[test]
+    fn coordinates_are_refined_where_texels_are_scarce() {
+        let asked = UvStageOptions {
+            mode: UvMode::Optimize,
+            method: Method::Fit,
+            guide: Guide::ContentAware,
+            texture_size: 512,
+            gutter: 1.0,
+            gutter_required: false,
+            parallax_size: None,
+            smallest_mip: None,
+            steps: 10,
+            refines_scarce_only: true,
+            more_triangles: 0,
+        };
+        assert_eq!([1000, 4096, 4097].map(|triangles| worthwhile_steps(&asked, triangles)), [0, 0, 10]);
+        assert_eq!(worthwhile_steps(&UvStageOptions { refines_scarce_only: false, ..asked }, 1000), 10);
+    }
 }

@@ -67,6 +67,7 @@ fn options(mode: UvMode) -> UvStageOptions {
         parallax_size: None,
         smallest_mip: None,
         steps: 12,
+        refines_scarce_only: false,
         more_triangles: 0,
     }
 }
