@@ -220,7 +220,7 @@ fn finish(
 }
 
 /// Which figures of a comparison somebody reads; none where nobody does. FLIP, which takes most of the time, is for the
-/// HTML report alone; channels are for the report and for JSON.
+/// HTML report alone; MS-SSIM and channels are for the report and for JSON.
 pub fn figures_read(talk: Talk, json: bool, report: bool) -> Option<Detail> {
     (!talk.quiet || json || report).then_some(Detail {
         ms_ssim: report || json,

@@ -74,7 +74,7 @@ pub fn evaluate_on(
     Ok(backgrounds.iter().enumerate().map(of).collect())
 }
 
-/// What is compared besides the PSNR of what is seen.
+/// What is compared besides the PSNR of what is seen; FLIP follows [`EvaluateOptions::no_flip`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Detail {
     /// MS-SSIM.

@@ -22,9 +22,9 @@ pub(crate) const PIXELS_PER_DEGREE: f32 = 67.020_64;
 /// Which figures are made besides PSNR.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Metrics {
-    /// MS-SSIM, a third of the time of rendering.
+    /// MS-SSIM.
     pub ms_ssim: bool,
-    /// FLIP, which takes longer than all else.
+    /// FLIP, which takes longer than rendering both.
     pub flip: bool,
 }
 

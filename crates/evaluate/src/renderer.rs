@@ -126,7 +126,7 @@ impl Renderer {
     }
 
     /// The same on each background. What covers a pixel looks the same on all.
-    pub fn tonemap_on(&self, view: &RenderedView, backgrounds: &[[f32; 3]]) -> Vec<Rgb> {
+    pub(crate) fn tonemap_on(&self, view: &RenderedView, backgrounds: &[[f32; 3]]) -> Vec<Rgb> {
         let mut shown: Vec<Rgb> = Vec::with_capacity(backgrounds.len());
         for &background in backgrounds {
             let next = tonemapped_as(&view.picture, &self.options.display(), background, shown.first());

@@ -16,7 +16,7 @@ use parbake_model::Model;
 use parbake_progress::Watcher;
 
 /// Views that are compared: enough for a mean, few enough that it takes seconds.
-pub const COMPARED_VIEWS: usize = 8;
+const COMPARED_VIEWS: usize = 8;
 /// The same after a bake by [`Preset::Fast`], which would otherwise take a fifth of its time for this.
 const FEW_COMPARED_VIEWS: usize = 4;
 

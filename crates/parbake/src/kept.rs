@@ -6,7 +6,7 @@
 
 use crate::bake::Baked;
 use crate::budget::check_budget;
-use crate::comparison::{COMPARED_VIEWS, compared_as};
+use crate::comparison::compared_as;
 use crate::error::BakeError;
 use crate::options::{BakeOptions, UvMode};
 use parbake_atlas::sharing;
@@ -18,9 +18,8 @@ use parbake_views::PrepareError;
 
 /// Decibels that coordinates which are sound may cost.
 const MOST_LOST: f64 = 0.05;
-/// Views that are compared, the worse of two sets, since one texture may be luckier in one of them: those of the
-/// summary, and others.
-const VIEWS: [usize; 2] = [COMPARED_VIEWS, 12];
+/// Views that are compared, in two sets of which the worse counts, since one texture may be luckier in one of them.
+const VIEWS: [usize; 2] = [8, 12];
 /// Pixels of a compared picture for each texel, along a side: finer pictures of a small texture show no more of it.
 const PIXELS_PER_TEXEL: usize = 2;
 

@@ -67,8 +67,7 @@ pub use bake_to_triangles::bake_to_triangles;
 pub use budget::check_budget;
 pub use coarse_copy::{simplified, simplified_by_pictures};
 pub use comparison::{
-    BACKGROUNDS, BeforeAndAfter, COMPARED_VIEWS, Comparison, Detail, OnBackground, OnChannel, compare_bake,
-    compared_as,
+    BACKGROUNDS, BeforeAndAfter, Comparison, Detail, OnBackground, OnChannel, compare_bake, compared_as,
 };
 pub use compress::{compress, has_colour_alone};
 pub use error::BakeError;

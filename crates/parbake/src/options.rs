@@ -180,8 +180,8 @@ pub struct BakeOptions {
     #[serde(skip)]
     pub smallest_mip: Option<f64>,
 
-    /// Refinement steps of the UV optimiser, 0 to 10000 [default: by preset 10, 30, 60, but 0 for low-polys with 64 texels
-    /// or more per triangle unless best; with --method paper 800]
+    /// Refinement steps of the UV optimiser, 0 to 10000 [default: by preset 10, 30, 60; `fast` and `balanced` do not refine
+    /// low-polys with 80 texels or more a triangle; with --method paper 800]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::UV))]
     pub uv_steps: Option<usize>,
 
@@ -199,7 +199,7 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "WEIGHT", help_heading = heading::SHAPE))]
     pub silhouette: Option<f32>,
 
-    /// Training views, 1 to 4096 [default: by preset 160, 960, 1280]
+    /// Training views, 1 to 4096 [default: by preset 160 (240 with --parallax), 960, 1280]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::QUALITY))]
     pub views: Option<usize>,
 

@@ -84,12 +84,11 @@ impl BakeOptions {
         // Where triangles are many, outlines are a fraction of a pixel apart, and larger pictures
         // bring vertices closer: with some 900 triangles 0.4 dB from 160 to 256 pixels, 0.2 from 256
         // to 320. The larger the pictures, the fewer samples a pixel needs.
-        let (views, view_size, largest_size, samples, texture_size, [steps, views_per_step]) =
-            match self.preset {
-                Preset::Fast => (64, 160, 256, 3, 128, [60, 8]),
-                Preset::Balanced => (192, 320, 320, 2, 256, [200, 8]),
-                Preset::Best => (384, 384, 384, 2, 256, [400, 12]),
-            };
+        let (views, view_size, largest_size, samples, texture_size, steps) = match self.preset {
+            Preset::Fast => (64, 160, 256, 3, 128, 60),
+            Preset::Balanced => (192, 320, 320, 2, 256, 200),
+            Preset::Best => (384, 384, 384, 2, 256, 400),
+        };
         let laplacian = if self.shape == ShapeMode::Laplacian { LAPLACIAN } else { 0.0 };
         (self.method == Method::Fit && !self.hurried()).then_some(ShapePlan {
             views: self.at_most_views(views),
@@ -97,14 +96,7 @@ impl BakeOptions {
             largest_size: self.at_most_pixels(largest_size),
             texture_size,
             samples,
-            fit: ShapeOptions {
-                motion,
-                steps,
-                views_per_step,
-                laplacian,
-                seed: self.seed,
-                ..ShapeOptions::default()
-            },
+            fit: ShapeOptions { motion, steps, laplacian, seed: self.seed, ..ShapeOptions::default() },
         })
     }
 
@@ -248,7 +240,7 @@ impl BakeOptions {
         }
     }
 
-    /// Steps in which texture coordinates are moved: as asked, or as preset, method and command say.
+    /// Steps in which texture coordinates are refined at most: as asked, or as preset, method and command say.
     pub fn settled_uv_steps(&self, work: Work) -> usize {
         self.uv_stage_for(work).steps
     }
@@ -266,7 +258,8 @@ impl BakeOptions {
         // side it is seen from, and few sides are learnt by heart. From 640 to 960 views maps gain
         // 0.4 dB at 900 triangles, textures alone 0.1; from 960 to 1280 both gain 0.05.
         let (views, view_size, rounds, final_steps) = match self.preset {
-            Preset::Fast => (160, 192, 3, 1),
+            // Parallax maps are fitted to the same views.
+            Preset::Fast => (if self.parallax == Parallax::None { 160 } else { 240 }, 192, 3, 1),
             Preset::Balanced => (960, 192, 5, 2),
             Preset::Best => (1280, 256, 8, 3),
         };

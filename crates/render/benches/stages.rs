@@ -24,6 +24,7 @@ use parbake_render::cutout::CutoutCoefficients;
 use parbake_render::directions::ViewDirection;
 use parbake_render::edges::EdgeAdjacency;
 use parbake_render::frame::{TangentLight, tangent_light, tangent_light_adjoint};
+use parbake_render::gradient_pixels::GradientPixels;
 use parbake_render::interpolate::{
     Barycentrics, barycentrics, barycentrics_adjoint, footprint_adjoint, interpolate,
 };
@@ -142,7 +143,14 @@ impl Bench {
     fn view(&self) -> View<'_> {
         let (camera, reference, composer) = (&self.camera, &self.reference, &self.composer);
         let comparison = Comparison { image: ImageLoss::L2, coverage: 1.0, ..Comparison::default() };
-        View { camera, reference, composer, comparison, antialias: true }
+        View {
+            camera,
+            reference,
+            composer,
+            comparison,
+            antialias: true,
+            gradient_pixels: GradientPixels::All,
+        }
     }
 
     fn blends(&self) -> Blends {

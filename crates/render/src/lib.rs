@@ -33,6 +33,7 @@ mod cutout_images;
 pub mod directions;
 pub mod edges;
 pub mod frame;
+pub mod gradient_pixels;
 pub mod interpolate;
 pub mod interpretation;
 pub mod lighting;

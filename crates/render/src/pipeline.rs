@@ -12,6 +12,7 @@
 use crate::antialias::{BlendTape, Blends, find_blends};
 use crate::background::Composer;
 use crate::camera::Camera;
+use crate::gradient_pixels::GradientPixels;
 use crate::loss::{Comparison, LossValue, Reference, compare};
 use crate::parallax::ParallaxCoefficients;
 use crate::patch::{CornerGradients, Patch, ShiftUse};
@@ -36,6 +37,8 @@ pub struct View<'a> {
     pub comparison: Comparison,
     /// Blend silhouettes: without it coverage has no gradient.
     pub antialias: bool,
+    /// Pixels whose gradients the adjoint carries on to texels and vertices; those of blended edges' vertices are whole.
+    pub gradient_pixels: GradientPixels,
 }
 
 /// What a forward pass leaves for the adjoint, and for the curious.
@@ -199,14 +202,16 @@ pub fn adjoint(
         .map(|(index, (seen, gradient))| {
             let mut band = Band::default();
             for (row, (seen, gradient)) in seen.chunks(size).zip(gradient.chunks(size)).enumerate() {
-                let y = (index * BAND + row) as f64 + 0.5;
+                let row = index * BAND + row;
+                let Some(weight) = view.gradient_pixels.weight_in_row(row) else { continue };
+                let y = row as f64 + 0.5;
                 for (t, columns) in runs(seen) {
                     let triangle = &tape.screen.triangles[t];
                     let patch = Patch::new(surface, t, triangle, view.camera, textures);
                     let mut corners = CornerGradients::default();
-                    for column in columns {
+                    for column in columns.filter(|&column| view.gradient_pixels.reads_column(column)) {
                         let [r, g, b, _] = gradient[column];
-                        let (at, to_light) = ((column as f64 + 0.5, y), Vec3::new(r, g, b));
+                        let (at, to_light) = ((column as f64 + 0.5, y), weight * Vec3::new(r, g, b));
                         let sink = vertices.then_some(&mut corners);
                         let texels = patch.adjoint(brdf, at, to_light, sink);
                         band.shifts.extend(texels.shift);

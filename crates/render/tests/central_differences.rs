@@ -14,6 +14,7 @@ use parbake_model::{Basis, Wrap};
 use parbake_render::background::{Background, Composer};
 use parbake_render::camera::{Camera, Projection};
 use parbake_render::edges::EdgeAdjacency;
+use parbake_render::gradient_pixels::GradientPixels;
 use parbake_render::loss::{Comparison, ImageLoss, Reference};
 use parbake_render::parallax::ParallaxCoefficients;
 use parbake_render::pipeline::{Gradients, Tape, View, adjoint, forward};
@@ -55,6 +56,7 @@ struct Scene {
     background: Background,
     comparison: Comparison,
     antialias: bool,
+    gradient_pixels: GradientPixels,
     lit: bool,
     parallax: Option<ParallaxCoefficients>,
 }
@@ -96,6 +98,7 @@ fn scene(seed: u64, size: usize) -> Scene {
         background: Background::Color([0.1, 0.3, 0.2]),
         comparison: Comparison { image: ImageLoss::L2, coverage: 0.7, overhang_discount: 0.6 },
         antialias: true,
+        gradient_pixels: GradientPixels::All,
         lit: true,
         parallax: None,
     };
@@ -177,6 +180,7 @@ impl Scene {
             composer: &composer,
             comparison: self.comparison,
             antialias: self.antialias,
+            gradient_pixels: self.gradient_pixels,
         };
         let tape = if self.lit {
             forward(&surface, &textures, &Lambert, &view)
@@ -355,6 +359,26 @@ fn whole_view_without_antialiasing() {
     for seed in 12..16 {
         let comparison = Comparison { image: ImageLoss::L2, coverage: 0.0, ..Comparison::default() };
         check_all(&Scene { antialias: false, comparison, ..scene(seed, 48) }, &format!("seed {seed}"));
+    }
+}
+
+/// Protects a stochastic descent from a bias: gradients of a quarter of the pixels are those of all in the mean.
+#[test]
+fn quarters_of_the_pixels_agree_in_the_mean() {
+    let s = scene(5, 48);
+    let all = s.run(true).1.unwrap();
+    let largest = all.positions.iter().map(|g| g.abs().max_element()).fold(0.0, f32::max);
+    let quarters = [0, 1, 2, 3].map(GradientPixels::Quarter);
+    let mut mean = vec![Vec3::ZERO; all.positions.len()];
+    for gradient_pixels in quarters {
+        let one = Scene { gradient_pixels, ..s.clone() }.run(true).1.unwrap();
+        assert_ne!(one.positions, all.positions);
+        for (sum, own) in mean.iter_mut().zip(&one.positions) {
+            *sum += *own / quarters.len() as f32;
+        }
+    }
+    for (mean, all) in mean.iter().zip(&all.positions) {
+        assert!((*mean - *all).abs().max_element() < 1e-4 * largest, "{mean} {all}");
     }
 }
 

@@ -59,6 +59,7 @@ pub fn paper_joint_fit(
         display: high.conventions.display,
         comparison: Comparison { image: ImageLoss::L1, ..Comparison::default() },
         background: Background::Black,
+        reads_a_quarter: false,
     };
     let found = paper_fit(&placed, &views, seed, &plan.fit, watcher);
     let map = found.map.map(|map| map.as_stored());

@@ -41,7 +41,14 @@ impl Seen {
     /// What a surface is compared with: a coverage of this weight beside the picture, before this background.
     pub(crate) fn views(&self, display: Display, coverage: f32, background: Background) -> Views<'_> {
         let comparison = Comparison { coverage, ..Comparison::default() };
-        Views { references: &self.references, size: self.size, display, comparison, background }
+        Views {
+            references: &self.references,
+            size: self.size,
+            display,
+            comparison,
+            background,
+            reads_a_quarter: true,
+        }
     }
 
     /// Views whose outlines are measured, each with a seed for its background.

@@ -5,9 +5,11 @@
 
 use parbake_image::display::Display;
 use parbake_render::background::{Background, Composer};
+use parbake_render::gradient_pixels::GradientPixels;
 use parbake_render::loss::{Comparison, LossValue, Reference};
 use parbake_render::pipeline::{Gradients, View, adjoint, forward};
 use parbake_render::surface::{Surface, Textures};
+use parbake_solve::random::mixed;
 use parbake_views::high_poly::HEADLIGHT_BRDF;
 use parbake_views::reference::Reference as Rendered;
 use rayon::prelude::*;
@@ -25,6 +27,8 @@ pub struct Views<'a> {
     pub comparison: Comparison,
     /// What is behind both.
     pub background: Background,
+    /// Whether gradients are those of a quarter of the pixels ([`GradientPixels::Quarter`]), chosen by each view's seed.
+    pub reads_a_quarter: bool,
 }
 
 /// What some views say.
@@ -78,6 +82,11 @@ impl Views<'_> {
             composer: &composer,
             comparison: self.comparison,
             antialias: true,
+            gradient_pixels: match self.reads_a_quarter {
+                // Mixed twice: a background is chosen by bits of a seed that is mixed once.
+                true => GradientPixels::Quarter(mixed(mixed(seed))),
+                false => GradientPixels::All,
+            },
         })
     }
 }

@@ -32,8 +32,9 @@ fn doubled(coarse: &FloatImage<Vec4>) -> FloatImage<Vec4> {
     FloatImage::square(size, (0..size * size).into_par_iter().map(texel).collect())
 }
 
-/// Share of the largest weight of a texel from which on its samples have a mean: below it, rounding decides.
-const ASKED: f32 = 1e-4;
+/// A texel whose samples weigh less than this share of the heaviest texel's starts at a half: rounding would dominate its
+/// mean.
+const LEAST_WEIGHT: f32 = 1e-4;
 
 /// How exactly a texture is solved for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,11 +108,11 @@ pub fn least_squares_texture_in_bytes(
 }
 
 impl NormalEquations {
-    /// What each texel's samples ask for in the mean, by the sums of the matrix's rows; half where no sample asks.
+    /// The mean of each texel's samples, by the sums of the matrix's rows; a half where there are none.
     fn means(&self) -> FloatImage<Vec4> {
         let mut room = self.room();
         let sums = self.product(&vec![Vec4::ONE; self.size * self.size], &mut room);
-        let least = ASKED * sums.iter().map(|sum| sum.x).fold(0.0, f32::max);
+        let least = LEAST_WEIGHT * sums.iter().map(|sum| sum.x).fold(0.0, f32::max);
         let mean = |(sum, right): (&Vec4, &Vec4)| match sum.x > least {
             true => *right / sum.x,
             false => Vec4::splat(0.5),
@@ -199,6 +200,33 @@ mod tests {
     use crate::triangle_batches::TriangleBatches;
     use crate::trilinear_error::trilinear_errors;
     use glam::{DMat2, dvec2};
+
+    /// Protects the start that layouts are scored from: texels have the mean of their samples, and a half where there are none.
+    #[test]
+    fn texels_begin_at_the_mean_of_their_samples() {
+        let points = [dvec2(0.0, 0.0), dvec2(0.5, 0.0), dvec2(0.0, 0.5)];
+        let triangles = [[0, 1, 2]];
+        let of = |i: usize| {
+            let along = (i as f32 * 0.618_034).fract();
+            Sample { target: Vec4::splat(0.2), barycentric: [along, 0.5 - 0.5 * along], weight: 0.01 }
+        };
+        let samples: Vec<(u32, Sample)> = (0..100).map(|i| (0, of(i))).collect();
+        let mut signal = Signal::new(1, &samples);
+        signal.pixels = Pixels::ByTurns([DMat2::IDENTITY * (0.5 / 32.0); 2]);
+        let signal_scales = [signal];
+        let runs = TriangleBatches::new(&points, &triangles, &signal_scales[0]);
+        let mapped = ParameterizedSignal {
+            points: &points,
+            triangles: &triangles,
+            signal_scales: &signal_scales,
+            runs: &runs,
+        };
+        let means = NormalEquations::assemble(&mapped, 32, 1e-5).means();
+        let is_mean = |texel: &Vec4| (*texel - Vec4::splat(0.2)).abs().max_element() < 1e-4;
+        let covered = means.texels.iter().filter(|texel| is_mean(texel)).count();
+        assert!(means.texels.iter().all(|texel| is_mean(texel) || *texel == Vec4::splat(0.5)));
+        assert!((10..512).contains(&covered), "{covered}");
+    }
 
     /// Protects the time that fine textures of few samples take: begun from coarse to fine, few steps
     /// leave less than they do from a plain start.

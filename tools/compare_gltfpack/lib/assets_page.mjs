@@ -26,7 +26,8 @@ export function assetsPage(rows, settings, data) {
   const parts = [
     '# Assets',
     'What Parbake makes of models that others made: real assets, conformance cases, and geometry that is valid ' +
-      `but nasty. ${baked} of ${rows.length} are baked. This page is made by`,
+      `but nasty. ${baked} of ${rows.length} are baked. Read it to see what to expect of models like yours. The last column has ` +
+      "the sentences that the command printed; those of the low-poly begin with its name, `low`. This page is made by",
     `    cd tools/compare_gltfpack && npm ci\n    node assets.mjs DATA --page ../../docs/assets.md ${numbers.join(' ')}${options}`,
     `Each model is cut to ${triangles} triangles (half of its own if that is less) and baked onto that with textures ` +
       `of ${textureSize}². PSNR in dB compares pictures by three.js of the model and the bake ` +

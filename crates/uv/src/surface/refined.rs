@@ -76,7 +76,12 @@ pub fn refined(
     if limits.is_lost_from_the_start(&errors) {
         return None;
     }
-    if score.own && coarse.signal_scales[0].samples.len() < SAMPLES_PER_TEXEL * coarse.texture_size.pow(2) {
+    let few_samples = SAMPLES_PER_TEXEL * coarse.texture_size.pow(2);
+    let stays = match score.own {
+        true => coarse.signal_scales[0].samples.len() < few_samples,
+        false => options.refine_steps == 0,
+    };
+    if stays {
         let is_better = limits.are_kept(&errors) && score.is_sound(&layout);
         return is_better.then_some((Moved { layout, frames, bisected: None }, errors));
     }
