@@ -199,7 +199,7 @@ pub struct BakeOptions {
     #[cfg_attr(feature = "clap", arg(long, allow_negative_numbers = true, value_name = "WEIGHT", help_heading = heading::SHAPE))]
     pub silhouette: Option<f32>,
 
-    /// Training views, 1 to 4096 [default: by preset 160 (240 with --parallax), 960, 1280]
+    /// Training views, 1 to 4096 [default: by preset 160 (240 for parallax maps), 960, 1280]
     #[cfg_attr(feature = "clap", arg(long, value_name = "COUNT", help_heading = heading::QUALITY))]
     pub views: Option<usize>,
 

@@ -16,13 +16,13 @@
 //! Contract: the result lies in the high-poly's common frame, has at most the wanted number of triangles (but one at
 //! least in each layer, and in each part what that has to keep), smooth normals and no texture coordinates; its materials are the high-poly's by index. It
 //! depends on the arguments alone, not on the number of threads, unless the watcher has no seconds left: then polishing
-//! ends early, but collapsing goes on down to the wanted number. Only a watcher that says stop leaves more triangles.
+//! ends early, but collapsing goes on down to the wanted number. Where the watcher says stop, quadrics alone take away what is too much.
 
 use crate::collapse::collapse_to;
 use crate::creases::with_normals;
 use crate::pictures::Pictures;
 use crate::polish::{PolishOptions, is_over, polish};
-use crate::start::{CoarseSurfaces, Start, counts_of_parts, with_lost_parts};
+use crate::start::{CoarseSurfaces, Start, collapsed_at_once, counts_of_parts, with_lost_parts};
 use crate::surface::Surface;
 use crate::target::{BACKGROUNDS, EQUAL, Target};
 use parbake_model::Mesh;
@@ -251,10 +251,14 @@ fn layer(
         let part = |k: f64| (first as f64 + k) / attempts as f64;
         let whole = &Portion::new(watcher, part(0.0)..part(1.0));
         sets.iter_mut().for_each(|set| weigh(set, EQUAL));
-        let (reports, surface) = collapsed(&sets[first], &starts, options.triangles, whole);
+        let (reports, mut surface) = collapsed(&sets[first], &starts, options.triangles, whole);
         if !tried.is_empty() && is_over(watcher) {
             // It may have too many triangles still.
             break;
+        }
+        if surface.count() > options.triangles && watcher.stopped() {
+            let few = collapsed_at_once(&surface.to_mesh(), options.triangles, options.least > 0);
+            surface = Surface::in_parts(&few, parts);
         }
         // Its own: what is alike ends alike, and the more attempts differ, the better is the best of them.
         let weights = reciprocal_errors(&mut sets[0], &surface);

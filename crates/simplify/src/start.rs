@@ -88,6 +88,13 @@ impl CoarseSurfaces {
     }
 }
 
+/// Edge collapses of a surface down to `target` triangles by quadrics alone, in no time. Small parts go first, unless
+/// `keeps_parts`.
+pub fn collapsed_at_once(surface: &Mesh, target: usize, keeps_parts: bool) -> Mesh {
+    let flags = if keeps_parts { SHAPED } else { SHAPED | Flags::Prune };
+    CoarseSurfaces::of(surface, flags).collapsed_to(target)
+}
+
 impl Coarse {
     fn count(&self) -> usize {
         self.indices.len() / 3

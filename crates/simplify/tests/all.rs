@@ -306,3 +306,28 @@ fn edges_are_hard_where_the_high_poly_has_them() {
     // Euler's formula for a closed surface: no vertex is split.
     assert_eq!(mesh.positions.len(), mesh.triangles.len() / 2 + 2);
 }
+
+/// Protects the number of triangles that was asked for, also where there is no time to choose them by pictures.
+#[test]
+fn a_stop_leaves_no_more_triangles_than_were_asked_for() {
+    struct Stopped;
+    impl Watcher for Stopped {
+        fn stopped(&self) -> bool {
+            true
+        }
+    }
+    let high = prepared(sphere(16));
+    let options = ChooseOptions {
+        triangles: 60,
+        least: 0,
+        room: 3,
+        views: 8,
+        sets: 1,
+        attempts: 1,
+        view_size: 48,
+        polish: PolishOptions { rounds: 1, sweeps: 1, ..PolishOptions::default() },
+        seed: 0,
+    };
+    let found = chosen(&high, &options, &Stopped);
+    assert!((20..=60).contains(&found.mesh.triangles.len()), "{}", found.mesh.triangles.len());
+}
