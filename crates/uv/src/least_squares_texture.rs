@@ -73,6 +73,17 @@ pub fn least_squares_texture(
     NormalEquations::assemble(mapped, start.width, solve.smoothness).solve(start, solve, None)
 }
 
+/// The best texture whose values lie in [0, 1]; begins at `start`.
+///
+/// As of [`least_squares_texture_from_means`].
+pub fn least_squares_texture_in_box(
+    mapped: &ParameterizedSignal,
+    start: FloatImage<Vec4>,
+    solve: &Solve,
+) -> FloatImage<Vec4> {
+    NormalEquations::assemble(mapped, start.width, solve.smoothness).solve_in_box(start, solve)
+}
+
 /// The best texture whose values lie in [0, 1], of `size`² texels; begins where each texel has the mean of its samples.
 ///
 /// Texels that leave the box are held at its border and the rest is solved again

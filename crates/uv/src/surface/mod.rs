@@ -25,7 +25,9 @@ pub use surface_texture::{SurfaceSamples, SurfaceTexture};
 
 use crate::contact::{Border, ContactOptions};
 use crate::convergence::Convergence;
-use crate::least_squares_texture::{ParameterizedSignal, Solve, least_squares_texture_from_means};
+use crate::least_squares_texture::{
+    ParameterizedSignal, Solve, least_squares_texture_from_means, least_squares_texture_in_box,
+};
 use crate::mode::{Method, UvMode};
 use crate::moves::UvMoves;
 use crate::optimise::Problem;
@@ -37,8 +39,9 @@ use parbake_atlas::{
     AtlasError, ChartScale, Layout, PackOptions, RepairOptions, TutteOptions, UnwrapOptions, check, pack,
     repair, tutte, unwrap,
 };
+use parbake_image::FloatImage;
 use parbake_mesh::{Bisected, Piece, ensure_normals, material_uvs};
-use parbake_model::glam::{DVec2, Vec2};
+use parbake_model::glam::{DVec2, Vec2, Vec4};
 use parbake_model::{Material, Mesh, Model, Placement};
 use parbake_progress::Watcher;
 use rayon::prelude::*;
@@ -328,10 +331,17 @@ const FULL_SIZE_STEPS: usize = 12;
 /// solved for: for all sizes at once where `all_sizes` says so, else for the full one.
 fn errors(problem: &Problem, layout: &Layout, all_sizes: bool) -> Vec<f64> {
     let solved = if all_sizes { problem.signal_scales } else { &problem.signal_scales[..1] };
-    let rough = Solve { steps: if all_sizes { ALL_SIZES_STEPS } else { FULL_SIZE_STEPS }, ..Solve::ROUGH };
-    let runs = &runs(layout, solved);
-    let mut texture =
-        least_squares_texture_from_means(&mapped(layout, solved, runs), problem.texture_size, &rough);
+    let (runs, size) = (&runs(layout, solved), problem.texture_size);
+    let surface = mapped(layout, solved, runs);
+    let rough = |steps| Solve { steps, ..Solve::ROUGH };
+    let mut texture = match all_sizes {
+        // A start nearer to the end would choose other layouts, no better ones.
+        true => {
+            let start = FloatImage::solid(size, Vec4::splat(0.5));
+            least_squares_texture_in_box(&surface, start, &rough(ALL_SIZES_STEPS))
+        }
+        false => least_squares_texture_from_means(&surface, size, &rough(FULL_SIZE_STEPS)),
+    };
     texture.texels.par_iter_mut().for_each(|t| *t = (*t * 255.0).round() / 255.0);
     trilinear_errors(&mapped(layout, problem.signal_scales, runs), &texture)
 }
