@@ -18,11 +18,13 @@
 //! depends on the arguments alone, not on the number of threads, unless the watcher has no seconds left: then polishing
 //! ends early, but collapsing goes on down to the wanted number. Where the watcher says stop, quadrics alone take away what is too much.
 
+use crate::at_once::collapsed_at_once;
 use crate::collapse::collapse_to;
 use crate::creases::with_normals;
 use crate::pictures::Pictures;
 use crate::polish::{PolishOptions, is_over, polish};
-use crate::start::{CoarseSurfaces, Start, collapsed_at_once, counts_of_parts, with_lost_parts};
+use crate::shares::shares;
+use crate::start::{CoarseSurfaces, Start, counts_of_parts, with_lost_parts};
 use crate::surface::Surface;
 use crate::target::{BACKGROUNDS, EQUAL, Target};
 use parbake_model::Mesh;
@@ -167,20 +169,6 @@ fn least_of(mesh: &Mesh, parts: &[u32], least: usize) -> usize {
     counts_of_parts(mesh, parts).values().map(|&count| count.min(least)).sum()
 }
 
-/// The triangles of each layer: as many of the wanted ones as it has of those that were `begun` with, but its floor at
-/// least, for which the largest make room.
-fn shares(wanted: usize, begun: &[usize], floors: &[usize]) -> Vec<usize> {
-    let all = begun.iter().sum::<usize>().max(1);
-    let mut shares: Vec<usize> =
-        begun.iter().zip(floors).map(|(begun, &floor)| (wanted * begun / all).max(floor)).collect();
-    while shares.iter().sum::<usize>() > wanted {
-        let above = (0..shares.len()).filter(|&layer| shares[layer] > floors[layer]);
-        let Some(largest) = above.max_by_key(|&layer| shares[layer]) else { break };
-        shares[largest] -= 1;
-    }
-    shares
-}
-
 /// For each material the place of its layer; that of the first for one that no triangle has.
 fn kinds_of_materials(high: &HighPoly, layers: &[(LayerKind, Vec<u32>)]) -> Vec<usize> {
     let materials = &high.scene.mesh().triangle_materials;
@@ -257,7 +245,7 @@ fn layer(
             break;
         }
         if surface.count() > options.triangles && watcher.stopped() {
-            let few = collapsed_at_once(&surface.to_mesh(), options.triangles, options.least > 0);
+            let few = collapsed_at_once(&surface.to_mesh(), options.triangles, parts, options.least);
             surface = Surface::in_parts(&few, parts);
         }
         // Its own: what is alike ends alike, and the more attempts differ, the better is the best of them.
@@ -337,18 +325,4 @@ fn reciprocal_errors(targets: &mut [Target], surface: &Surface) -> [f32; BACKGRO
 /// Lets backgrounds count so much.
 fn weigh(targets: &mut [Target], weights: [f32; BACKGROUNDS.len()]) {
     targets.par_iter_mut().for_each(|target| target.weigh(weights));
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Protects budgets: layers share the triangles as they begin, none gets less than its floor, and together they have
-    /// no more than is wanted.
-    #[test]
-    fn layers_share_the_triangles() {
-        assert_eq!(shares(100, &[300, 100], &[1, 1]), [75, 25]);
-        assert_eq!(shares(100, &[999, 1, 0], &[1, 8, 1]), [91, 8, 1]);
-        assert_eq!(shares(10, &[50, 50], &[8, 8]), [8, 8]);
-    }
 }

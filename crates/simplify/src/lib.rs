@@ -2,6 +2,7 @@
 //!
 //! `choose.rs` is the order; `target.rs` has the error, `pictures.rs` what a change would do to it.
 
+mod at_once;
 pub mod change;
 pub mod choose;
 pub mod collapse;
@@ -11,6 +12,7 @@ pub mod operations;
 pub mod pictures;
 pub mod polish;
 pub mod raster;
+mod shares;
 pub mod start;
 pub mod surface;
 pub mod target;

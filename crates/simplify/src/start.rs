@@ -52,6 +52,11 @@ impl CoarseSurfaces {
         Self { parts: parts.to_vec(), ..Self::of(&surface, Flags::Prune | SHAPED) }
     }
 
+    /// Of a mesh of which no small part goes before the others.
+    pub(crate) fn unpruned(mesh: &Mesh) -> Self {
+        Self::of(&Surface::new(mesh).to_mesh(), SHAPED)
+    }
+
     fn of(surface: &Mesh, flags: Flags) -> Self {
         let (positions, indices, materials) = by_material(surface);
         let halvings = Mutex::new(vec![Arc::new(Coarse { positions, indices })]);
@@ -86,13 +91,6 @@ impl CoarseSurfaces {
         }
         assembled(&now.positions, &now.indices, |triangle| self.materials[triangle[0] as usize])
     }
-}
-
-/// Edge collapses of a surface down to `target` triangles by quadrics alone, in no time. Small parts go first, unless
-/// `keeps_parts`.
-pub fn collapsed_at_once(surface: &Mesh, target: usize, keeps_parts: bool) -> Mesh {
-    let flags = if keeps_parts { SHAPED } else { SHAPED | Flags::Prune };
-    CoarseSurfaces::of(surface, flags).collapsed_to(target)
 }
 
 impl Coarse {
@@ -138,13 +136,8 @@ pub fn with_lost_parts(start: Mesh, mesh: &Mesh, parts: &[u32], least: usize) ->
     let part_of = |material: u32| parts.get(material as usize).copied().unwrap_or(0);
     let mut out = only(&start, |material| lost.iter().all(|(part, _)| *part != part_of(material)));
     for &(part, _) in &lost {
-        let own = Surface::new(&only(mesh, |material| part_of(material) == part)).to_mesh();
-        // Nothing of it is pruned.
-        let own = CoarseSurfaces::of(&own, SHAPED).collapsed_to(LOST_ROOM * least);
-        let first = out.positions.len() as u32;
-        out.positions.extend(own.positions);
-        out.triangles.extend(own.triangles.iter().map(|triangle| triangle.map(|vertex| vertex + first)));
-        out.triangle_materials.extend(own.triangle_materials);
+        let own = CoarseSurfaces::unpruned(&only(mesh, |material| part_of(material) == part));
+        append(&mut out, own.collapsed_to(LOST_ROOM * least));
     }
     out
 }
@@ -171,8 +164,16 @@ fn spans_of_parts(mesh: &Mesh, parts: &[u32]) -> BTreeMap<u32, f32> {
     boxes.into_iter().map(|(part, (low, high))| (part, low.distance(high))).collect()
 }
 
+/// Adds the triangles of another surface; positions, triangles and materials alone.
+pub(crate) fn append(out: &mut Mesh, own: Mesh) {
+    let first = out.positions.len() as u32;
+    out.positions.extend(own.positions);
+    out.triangles.extend(own.triangles.iter().map(|triangle| triangle.map(|vertex| vertex + first)));
+    out.triangle_materials.extend(own.triangle_materials);
+}
+
 /// The triangles of some materials.
-fn only(mesh: &Mesh, is_wanted: impl Fn(u32) -> bool) -> Mesh {
+pub(crate) fn only(mesh: &Mesh, is_wanted: impl Fn(u32) -> bool) -> Mesh {
     let triangles = mesh.triangles.iter().zip(&mesh.triangle_materials);
     let (triangles, triangle_materials) = triangles.filter(|(_, material)| is_wanted(**material)).unzip();
     Mesh { positions: mesh.positions.clone(), triangles, triangle_materials, ..Mesh::default() }

@@ -28,6 +28,21 @@ fn chosen(high: &HighPoly, options: &ChooseOptions, watcher: &dyn Watcher) -> Ch
     choose_triangles(high, None, &coarse_surfaces(high), options, watcher).swap_remove(0)
 }
 
+/// A choice of so many triangles that takes no time.
+fn brief(triangles: usize) -> ChooseOptions {
+    ChooseOptions {
+        triangles,
+        least: 0,
+        room: 2,
+        views: 8,
+        sets: 1,
+        attempts: 1,
+        view_size: 48,
+        polish: PolishOptions { rounds: 1, sweeps: 1, ..PolishOptions::default() },
+        seed: 0,
+    }
+}
+
 /// A sphere within another one, which has the next material.
 fn nested(outer: usize, inner: usize) -> Mesh {
     let (mut mesh, inner) = (sphere(outer), sphere(inner));
@@ -282,17 +297,7 @@ fn cube(cells: u32) -> Mesh {
 /// high-poly is.
 #[test]
 fn edges_are_hard_where_the_high_poly_has_them() {
-    let options = ChooseOptions {
-        triangles: 40,
-        least: 0,
-        room: 2,
-        views: 8,
-        sets: 1,
-        attempts: 1,
-        view_size: 48,
-        polish: PolishOptions { rounds: 1, sweeps: 1, ..PolishOptions::default() },
-        seed: 0,
-    };
+    let options = brief(40);
     let mesh = chosen(&prepared(cube(4)), &options, &()).mesh;
     let lean = |index: usize| {
         let face = mesh.area_normal(index).normalize();
@@ -307,27 +312,29 @@ fn edges_are_hard_where_the_high_poly_has_them() {
     assert_eq!(mesh.positions.len(), mesh.triangles.len() / 2 + 2);
 }
 
+/// Never has time.
+struct Stopped;
+
+impl Watcher for Stopped {
+    fn stopped(&self) -> bool {
+        true
+    }
+}
+
 /// Protects the number of triangles that was asked for, also where there is no time to choose them by pictures.
 #[test]
 fn a_stop_leaves_no_more_triangles_than_were_asked_for() {
-    struct Stopped;
-    impl Watcher for Stopped {
-        fn stopped(&self) -> bool {
-            true
-        }
-    }
-    let high = prepared(sphere(16));
-    let options = ChooseOptions {
-        triangles: 60,
-        least: 0,
-        room: 3,
-        views: 8,
-        sets: 1,
-        attempts: 1,
-        view_size: 48,
-        polish: PolishOptions { rounds: 1, sweeps: 1, ..PolishOptions::default() },
-        seed: 0,
-    };
-    let found = chosen(&high, &options, &Stopped);
+    let found = chosen(&prepared(sphere(16)), &ChooseOptions { room: 3, ..brief(60) }, &Stopped);
     assert!((20..=60).contains(&found.mesh.triangles.len()), "{}", found.mesh.triangles.len());
+}
+
+/// Protects parts that have to stay from quadrics that would let the small one go, where there is no time.
+#[test]
+fn a_stop_leaves_each_part_what_it_keeps() {
+    let high = prepared_of(nested(16, 4), vec![Material::default(); 2]);
+    let coarse = CoarseSurfaces::new(high.scene.mesh(), &[0, 1]);
+    let options = ChooseOptions { least: 4, room: 3, ..brief(60) };
+    let mesh = choose_triangles(&high, None, &coarse, &options, &Stopped).swap_remove(0).mesh;
+    let small = mesh.triangle_materials.iter().filter(|&&material| material == 0).count();
+    assert!(small >= 4 && mesh.triangles.len() <= 60, "{small} of {}", mesh.triangles.len());
 }

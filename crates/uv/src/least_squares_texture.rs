@@ -75,7 +75,8 @@ pub fn least_squares_texture(
 
 /// The best texture whose values lie in [0, 1]; begins at `start`.
 ///
-/// As of [`least_squares_texture_from_means`].
+/// Texels that leave the box are held at its border and the rest is solved again
+/// (active set), as often as `solve` says.
 pub fn least_squares_texture_in_box(
     mapped: &ParameterizedSignal,
     start: FloatImage<Vec4>,
@@ -84,10 +85,7 @@ pub fn least_squares_texture_in_box(
     NormalEquations::assemble(mapped, start.width, solve.smoothness).solve_in_box(start, solve)
 }
 
-/// The best texture whose values lie in [0, 1], of `size`² texels; begins where each texel has the mean of its samples.
-///
-/// Texels that leave the box are held at its border and the rest is solved again
-/// (active set), as often as `solve` says.
+/// The same of `size`² texels; begins where each texel has the mean of its samples.
 pub fn least_squares_texture_from_means(
     mapped: &ParameterizedSignal,
     size: usize,

@@ -129,6 +129,11 @@ fn outputs_keep_to_the_schema() {
     }
 }
 
+/// How many views the bake's summary compares.
+fn compared_views(report: &serde_json::Value) -> String {
+    report["comparison"]["options"]["views"].to_string()
+}
+
 /// Protects one figure everywhere: what a bake says of itself is what `eval` says of what it wrote.
 #[test]
 fn a_bake_and_eval_agree() {
@@ -141,7 +146,8 @@ fn a_bake_and_eval_agree() {
     );
     let report = json(&folder.join("a.json"));
     // As the bake's last line says: without further options.
-    let eval = ["eval", "demo_high.glb", "a.glb", "--views", "4", "--no-flip", "--json", "e.json"];
+    let views = compared_views(&report);
+    let eval = ["eval", "demo_high.glb", "a.glb", "--views", &views, "--no-flip", "--json", "e.json"];
     run(folder, &eval);
     let own = report["comparison"]["backgrounds"][0]["mean"]["baked"]["psnr"].as_f64().unwrap();
     let evaluated = json(&folder.join("e.json"))["mean"]["psnr"].as_f64().unwrap();
@@ -163,8 +169,10 @@ fn a_bake_and_eval_agree_on_metal() {
         parbake::write_glb(&folder.join(name), model).unwrap();
     }
     run(folder, &[&["bake", "metal.glb", "low.glb", "-o", "a.glb", "--json", "a.json"], &SMALL[..]].concat());
-    run(folder, &["eval", "metal.glb", "a.glb", "--views", "4", "--no-flip", "--json", "e.json"]);
-    let (report, evaluated) = (json(&folder.join("a.json")), json(&folder.join("e.json")));
+    let report = json(&folder.join("a.json"));
+    let views = compared_views(&report);
+    run(folder, &["eval", "metal.glb", "a.glb", "--views", &views, "--no-flip", "--json", "e.json"]);
+    let evaluated = json(&folder.join("e.json"));
     let schema = json(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/report.schema.json"));
     for out in [&report, &evaluated] {
         let wrong = faults(out, &schema, &schema, "");

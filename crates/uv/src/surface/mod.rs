@@ -71,7 +71,7 @@ pub struct UvStageOptions {
     pub smallest_mip: Option<f64>,
     /// Steps of the refinement, or rounds of the paper's method at most.
     pub steps: usize,
-    /// Whether a low-poly's coordinates are refined only where triangles have few texels (`refined.rs`).
+    /// Whether a low-poly's coordinates are refined only where the texture has few texels a triangle (`moved.rs`).
     pub refines_scarce_only: bool,
     /// Triangles that a model's own surface may have more.
     pub more_triangles: usize,
