@@ -12,8 +12,8 @@ use crate::stage_times::stage_line;
 use crate::watch;
 use clap::ArgMatches;
 use parbake::{
-    BakeOptions, BakeReport, Baked, Comparison, Convention, Detail, Loaded, Message, Model, NormalY, Shading,
-    Stage, StageTime, Warning, WarningKind, Watcher, Work, bake, bake_to_triangles, check_budget,
+    BakeOptions, BakeReport, Baked, Comparison, Convention, Detail, Loaded, Message, Metrics, Model, NormalY,
+    Shading, Stage, StageTime, Warning, WarningKind, Watcher, Work, bake, bake_to_triangles, check_budget,
     compare_bake, psnr_from_mse, read_model, read_painted_model, with_normal_y, with_threads, write_file,
 };
 use parbake_report::html_report;
@@ -222,11 +222,9 @@ fn finish(
 /// Which figures of a comparison somebody reads; none where nobody does. FLIP, which takes most of the time, is for the
 /// HTML report alone; MS-SSIM and channels are for the report and for JSON.
 pub fn figures_read(talk: Talk, json: bool, report: bool) -> Option<Detail> {
-    (!talk.quiet || json || report).then_some(Detail {
-        ms_ssim: report || json,
-        flip: report,
-        channels: report || json,
-    })
+    let is_whole = report || json;
+    let metrics = Metrics { ms_ssim: is_whole, flip: report };
+    (!talk.quiet || is_whole).then_some(Detail { metrics, channels: is_whole })
 }
 
 /// Whether there is time for a comparison: who interrupts a bake wants its end, unless the report shows the figures.

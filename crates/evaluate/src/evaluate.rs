@@ -58,7 +58,7 @@ pub fn evaluate_on(
 ) -> Result<Vec<Evaluation>, EvaluateError> {
     let unjudged = not_compared(high.materials.iter().chain(&low.materials));
     unjudged.into_iter().for_each(|text| watcher.message(Message::Warning(text)));
-    let detail = Detail { ms_ssim: true, channels: true };
+    let detail = Detail { metrics: Metrics { flip: !options.no_flip, ..Metrics::ALL }, channels: true };
     let Compared { shading, channels, views } =
         evaluate_each(high, &[low], options, backgrounds, detail, watcher)?;
     let of_channel = |(k, &channel): (usize, &Channel)| {
@@ -74,13 +74,18 @@ pub fn evaluate_on(
     Ok(backgrounds.iter().enumerate().map(of).collect())
 }
 
-/// What is compared besides the PSNR of what is seen; FLIP follows [`EvaluateOptions::no_flip`].
+/// What is compared besides the PSNR of what is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Detail {
-    /// MS-SSIM.
-    pub ms_ssim: bool,
+    /// Other figures.
+    pub metrics: Metrics,
     /// The channels of whole materials.
     pub channels: bool,
+}
+
+impl Detail {
+    /// All of it.
+    pub const ALL: Self = Self { metrics: Metrics::ALL, channels: true };
 }
 
 /// What became of a comparison.
@@ -102,7 +107,8 @@ pub struct ComparedView {
 }
 
 /// Compares several models with one high-poly, which is rendered once for all of them, on each background, and
-/// channel by channel if `detail` says so and if whole materials are compared.
+/// channel by channel if `detail` says so and if whole materials are compared. `detail` decides on FLIP, not
+/// [`EvaluateOptions::no_flip`].
 ///
 /// # Errors
 /// As of [`evaluate`].
@@ -125,7 +131,6 @@ pub fn evaluate_each(
         true => Channel::of(std::iter::once(&high).chain(&low)),
         false => Vec::new(),
     };
-    let metrics = Metrics { ms_ssim: detail.ms_ssim, flip: !options.no_flip };
     let done = AtomicUsize::new(0);
     let views = fibonacci_sphere(options.views, 0.0).into_par_iter().map(|direction| {
         let render = |model: &PlacedModel| match channels.is_empty() {
@@ -139,8 +144,8 @@ pub fn evaluate_each(
             let own: RenderedView = render(low);
             let shown = renderer.tonemap_on(&own, &colors);
             let pairs = pictures.iter().zip(&shown);
-            view.seen.push(pairs.map(|(wanted, own)| compare(wanted, own, metrics)).collect());
-            let of = |channel: &Channel| channel.compare(&wanted, &own, metrics);
+            view.seen.push(pairs.map(|(wanted, own)| compare(wanted, own, detail.metrics)).collect());
+            let of = |channel: &Channel| channel.compare(&wanted, &own, detail.metrics);
             view.channels.push(channels.iter().map(of).collect());
         }
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;

@@ -9,7 +9,8 @@ pub use crate::comparison_figures::{BACKGROUNDS, BeforeAndAfter, Comparison, OnB
 use crate::error::BakeError;
 use crate::options::{BakeOptions, Preset};
 use parbake_evaluate::channels::Channel;
-use parbake_evaluate::evaluate::{self, Compared, ComparedView, evaluate_each};
+pub use parbake_evaluate::evaluate::Detail;
+use parbake_evaluate::evaluate::{Compared, ComparedView, evaluate_each};
 use parbake_evaluate::figures::{ViewFigures, mean};
 use parbake_evaluate::options::EvaluateOptions;
 use parbake_model::Model;
@@ -19,22 +20,6 @@ use parbake_progress::Watcher;
 const COMPARED_VIEWS: usize = 8;
 /// The same after a bake by [`Preset::Fast`], which would otherwise take a fifth of its time for this.
 const FEW_COMPARED_VIEWS: usize = 4;
-
-/// Which figures are made besides PSNR.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Detail {
-    /// MS-SSIM.
-    pub ms_ssim: bool,
-    /// FLIP, which takes most of the time.
-    pub flip: bool,
-    /// The channels of whole materials.
-    pub channels: bool,
-}
-
-impl Detail {
-    /// All of them.
-    pub const ALL: Self = Self { ms_ssim: true, flip: true, channels: true };
-}
 
 /// The conventions of a comparison after a bake with these options.
 pub fn compared_as(options: &BakeOptions) -> EvaluateOptions {
@@ -61,11 +46,10 @@ pub fn compare_bake(
     detail: Detail,
     watcher: &dyn Watcher,
 ) -> Result<Comparison, BakeError> {
-    let options = EvaluateOptions { no_flip: !detail.flip, ..compared_as(&baked.report.options) };
-    let wanted = evaluate::Detail { ms_ssim: detail.ms_ssim, channels: detail.channels };
+    let options = EvaluateOptions { no_flip: !detail.metrics.flip, ..compared_as(&baked.report.options) };
     let both = [&baked.ray_cast, &baked.model];
     let Compared { shading, channels, views } =
-        evaluate_each(high, &both, &options, &BACKGROUNDS, wanted, watcher)?;
+        evaluate_each(high, &both, &options, &BACKGROUNDS, detail, watcher)?;
     let mean_of = |pairs: &[BeforeAndAfter]| {
         let of = |one: fn(&BeforeAndAfter) -> ViewFigures| mean(&pairs.iter().map(one).collect::<Vec<_>>());
         BeforeAndAfter { ray_cast: of(|p| p.ray_cast), baked: of(|p| p.baked) }

@@ -1,6 +1,7 @@
 //! Fewer triangles where there is no time to compare pictures: edge collapses by quadrics alone.
 //!
-//! Contract: at most the wanted number of triangles, unless parts have to keep more; each part keeps what it has to.
+//! Contract: at most the wanted number of triangles, unless parts have to keep more or quadrics find nothing to collapse; each
+//! part keeps what it has to.
 
 use crate::shares::shares;
 use crate::start::{CoarseSurfaces, append, counts_of_parts, only};
@@ -12,15 +13,20 @@ pub(crate) fn collapsed_at_once(surface: &Mesh, target: usize, parts: &[u32], le
     if least == 0 {
         return CoarseSurfaces::new(surface, parts).collapsed_to(target);
     }
-    let (parts_found, begun): (Vec<u32>, Vec<usize>) = counts_of_parts(surface, parts).into_iter().unzip();
+    let (found, begun): (Vec<u32>, Vec<usize>) = counts_of_parts(surface, parts).into_iter().unzip();
     let floors: Vec<usize> = begun.iter().map(|&count| count.min(least)).collect();
-    let mut out = Mesh::default();
-    for (part, (share, floor)) in
-        parts_found.into_iter().zip(shares(target, &begun, &floors).into_iter().zip(floors))
-    {
-        let own = only(surface, |material| parts.get(material as usize).copied().unwrap_or(0) == part);
-        let few = CoarseSurfaces::unpruned(&own).collapsed_to(share);
-        let own = if few.triangles.len() < floor { own } else { few };
+    let shares = shares(target, &begun, &floors);
+    // Larger parts make up for smaller ones that cannot become as coarse as their share.
+    let mut order: Vec<usize> = (0..found.len()).collect();
+    order.sort_by_key(|&index| shares[index]);
+    let (mut out, mut excess) = (Mesh::default(), 0);
+    for index in order {
+        let own =
+            only(surface, |material| parts.get(material as usize).copied().unwrap_or(0) == found[index]);
+        let wanted = shares[index].saturating_sub(excess).max(floors[index]);
+        let few = CoarseSurfaces::unpruned(&own).collapsed_to(wanted);
+        let own = if few.triangles.len() < floors[index] { own } else { few };
+        excess = (excess + own.triangles.len()).saturating_sub(shares[index]);
         append(&mut out, own);
     }
     out

@@ -2,7 +2,7 @@
 
 use crate::small_pair;
 use parbake::{BakeOptions, EvaluateOptions, Preset, ShapeMode, UvMode};
-use parbake::{Detail, bake, compare_bake, compared_as, evaluate_on};
+use parbake::{Detail, Metrics, bake, compare_bake, compared_as, evaluate_on};
 
 fn quick() -> BakeOptions {
     BakeOptions {
@@ -46,7 +46,13 @@ fn a_baseline_without_coordinates_is_repaired() {
 fn the_figures_are_those_of_evaluate() {
     let (high, low) = small_pair();
     let baked = bake(&high, &low, &quick(), &()).unwrap();
-    let comparison = compare_bake(&high, &baked, Detail { ms_ssim: true, ..Detail::default() }, &()).unwrap();
+    let comparison = compare_bake(
+        &high,
+        &baked,
+        Detail { metrics: Metrics { ms_ssim: true, flip: false }, channels: false },
+        &(),
+    )
+    .unwrap();
     let options = EvaluateOptions { no_flip: true, ..compared_as(&baked.report.options) };
     let names: Vec<&str> = comparison.backgrounds.iter().map(|on| on.background.as_str()).collect();
     let own = evaluate_on(&high, &baked.model, &options, &names, &()).unwrap();
