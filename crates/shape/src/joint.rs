@@ -17,9 +17,8 @@
 //! fitted to: those that it was fitted to would always say so. Where outlines are more than a pixel apart, steps begin with views of half the size, which show the
 //! way as well and take a third of the time.
 //!
-//! Gradients are those of a quarter of the pixels, other ones in each look (`parbake_render::gradient_pixels`); edges' own are
-//! whole. Compared with all pixels, moving vertices takes up to a third less time, and two models by `balanced` have 0.03 dB less to
-//! 0.03 dB more.
+//! Gradients are those of a quarter of the pixels, chosen at random for each view and step
+//! (`parbake_render::gradient_pixels`); those at silhouettes are whole. docs/algorithms/vertices.md has what that is worth.
 //!
 //! Contract: the mesh has texture coordinates and lies in the common frame; triangles stay
 //! sane (`triangle_quality.rs`), vertices at one position stay together. The result does not depend on
