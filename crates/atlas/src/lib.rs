@@ -10,6 +10,7 @@
 //! repair      a sound layout from a delivered one
 //! mend        its faults mended where they are
 //! sharing     texels that several parts share, in words
+//! own_squares parts that show one value each, moved to a few texels of their own
 //! blocks      several textures in one, by rectangles that are moved
 //! tiles       charts of repeated textures brought into one tile
 //! tutte       an embedding of each piece in a circle or square
@@ -21,6 +22,7 @@ mod conflicts;
 pub mod error;
 pub mod layout;
 pub mod model_check;
+pub mod own_squares;
 pub mod pack;
 pub mod predicates;
 pub mod repair;
@@ -33,6 +35,7 @@ pub use check::{UvCheck, check};
 pub use error::AtlasError;
 pub use layout::{BoundaryEdge, Layout};
 pub use model_check::{LayoutCheck, ModelCheck, check_mesh, check_model};
+pub use own_squares::with_own_squares;
 pub use pack::{ChartScale, PackOptions, pack};
 pub use repair::{RepairOptions, repair};
 pub use sharing::{Sharing, sharing};

@@ -117,26 +117,27 @@ pub(crate) fn bake_as(
     run(high, low, work, options, watcher, Instant::now())
 }
 
-/// Bakes a model onto itself, triangle by triangle.
+/// Bakes a model onto itself, triangle by triangle; `low` is the same with other texture coordinates, or the same.
 pub(crate) fn bake_onto_itself(
     model: &Model,
+    low: &Model,
     options: &BakeOptions,
     watcher: &dyn Watcher,
 ) -> Result<Baked, BakeError> {
     options.check()?;
     let begin = Instant::now();
-    bake_prepared_onto_itself(&prepare(model, options)?, model, options, watcher, begin)
+    bake_prepared_onto_itself(&prepare(model, options)?, low, options, watcher, begin)
 }
 
 /// The same of a model that is prepared already, for several bakes of it; a time budget counts from `begin`.
 pub(crate) fn bake_prepared_onto_itself(
     prepared: &HighPoly,
-    model: &Model,
+    low: &Model,
     options: &BakeOptions,
     watcher: &dyn Watcher,
     begin: Instant,
 ) -> Result<Baked, BakeError> {
-    run(prepared, model, Work::Compress, options, watcher, begin)
+    run(prepared, low, Work::Compress, options, watcher, begin)
 }
 
 pub(crate) fn conventions(options: &BakeOptions) -> Conventions {

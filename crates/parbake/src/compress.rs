@@ -32,7 +32,7 @@ use parbake_progress::{Clock, Message, ProgressScope, Stage, Watcher};
 use parbake_render::scene::Scene;
 use parbake_uv::surface::{
     RepairedLowPoly, Source, SurfaceSamples, SurfaceTexture, UvStageOptions, UvStageResult, optimise_uvs,
-    repair_uvs,
+    repair_uvs, with_plain_parts_apart,
 };
 use parbake_views::PrepareError;
 use parbake_views::frame::{common_frame, placed};
@@ -84,8 +84,8 @@ fn compressed(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Re
         && !delivered.mesh.uvs.is_empty()
         && in_one_tile(&delivered.mesh, slack).is_none();
     if repeats && kept::may_be_kept(options) {
-        let plain = |options: &BakeOptions, watcher: &dyn Watcher| match options.uv {
-            UvMode::Keep => bake_onto_itself(model, options, watcher),
+        let plain = |low: &Model, options: &BakeOptions, watcher: &dyn Watcher| match options.uv {
+            UvMode::Keep => bake_onto_itself(model, low, options, watcher),
             _ => plain(model, options, watcher),
         };
         return kept::weighed(model, options, watcher, plain);
@@ -105,11 +105,12 @@ pub fn has_colour_alone(model: &Model, options: &BakeOptions) -> bool {
 fn whole(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<Baked, BakeError> {
     let begin = Cell::new(Some(Instant::now()));
     let prepared = prepare_high_poly(model, options)?;
-    kept::weighed(model, options, watcher, |options, watcher| {
+    let baked = kept::weighed(model, options, watcher, |low, options, watcher| {
         // The first bake's time began before the model was prepared.
         let begin = begin.take().unwrap_or_else(Instant::now);
-        bake_prepared_onto_itself(&prepared, model, options, watcher, begin)
-    })
+        bake_prepared_onto_itself(&prepared, low, options, watcher, begin)
+    })?;
+    Ok(kept::with_own_tangents(model, baked))
 }
 
 /// Solves for the texture of a model whose materials have colour alone.
@@ -142,6 +143,9 @@ fn plain(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<
     let own = OwnSurface { model, frame: &frame, stored, signal, options };
     clock.lap(Stage::Prepare);
 
+    let apart = with_plain_parts_apart(model, options.texture_size);
+    let is_apart = apart.is_some();
+    let delivered = apart.map_or(Ok(delivered), |apart| repair_uvs(&apart, &as_it_is))?;
     let delivered = in_the_square(delivered, slack)
         .map(|delivered| own.textured(own.unmoved(delivered, &as_it_is, watcher)));
     clock.lap(Stage::Solve);
@@ -173,7 +177,7 @@ fn plain(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<
         let finished = |of: &Solved| own.finished(of.low.model.clone(), &of.solved);
         if let Some(lost) = kept::lost(model, &finished(kept), &finished(&written), options)? {
             written = kept.clone();
-            written.low.report.repaired.extend(kept::sentences(model, lost));
+            written.low.report.repaired.extend(kept::sentences(model, lost, is_apart));
         }
     }
     clock.lap(Stage::Solve);

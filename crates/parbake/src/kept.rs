@@ -12,8 +12,10 @@ use crate::options::{BakeOptions, UvMode};
 use parbake_atlas::sharing;
 use parbake_evaluate::evaluate::{Detail, evaluate_each};
 use parbake_evaluate::options::EvaluateOptions;
-use parbake_model::Model;
+use parbake_mesh::material_uvs;
+use parbake_model::{Material, Mesh, Model};
 use parbake_progress::{Message, Watcher, WithoutWarnings};
+use parbake_uv::surface::with_plain_parts_apart;
 use parbake_views::PrepareError;
 
 /// Decibels that coordinates which are sound may cost.
@@ -56,10 +58,11 @@ pub(crate) fn lost(
     Ok((lost > MOST_LOST).then_some(lost))
 }
 
-/// What the user is told of it.
-pub(crate) fn sentences(model: &Model, lost: f64) -> Vec<String> {
+/// What the user is told of it; `apart` says whether materials without textures were moved.
+pub(crate) fn sentences(model: &Model, lost: f64, apart: bool) -> Vec<String> {
+    let but = if apart { ", but for materials without textures, which got a few texels each" } else { "" };
     let mut sentences = vec![format!(
-        "Texture coordinates were kept as they are: the best layout without shared texels shows {lost:.1} dB less. \
+        "Texture coordinates were kept as they are{but}: the best layout without shared texels shows {lost:.1} dB less. \
          --uv repair or --gutter TEXELS forces such a layout."
     )];
     sentences.extend(sharing(&model.mesh).sentence());
@@ -67,7 +70,8 @@ pub(crate) fn sentences(model: &Model, lost: f64) -> Vec<String> {
 }
 
 /// Runs the bake with its own coordinates after the one that is `found`, if that changed them, and returns
-/// the one that shows more. `bake` runs with other options.
+/// the one that shows more. Its own coordinates are those of `model`, in which materials without textures have texels of
+/// their own where there is room. `bake` bakes the model onto the one that it is given, with other options.
 ///
 /// # Errors
 /// As of `bake`.
@@ -75,19 +79,19 @@ pub(crate) fn weighed(
     model: &Model,
     options: &BakeOptions,
     watcher: &dyn Watcher,
-    bake: impl Fn(&BakeOptions, &dyn Watcher) -> Result<Baked, BakeError>,
+    bake: impl Fn(&Model, &BakeOptions, &dyn Watcher) -> Result<Baked, BakeError>,
 ) -> Result<Baked, BakeError> {
     if !may_be_kept(options) || model.mesh.uvs.is_empty() {
-        return bake(options, watcher);
+        return bake(model, options, watcher);
     }
     let begin = std::time::Instant::now();
     let quiet = WithoutWarnings(watcher);
     // Of a budget the bake with the coordinates as they are needs the smaller part.
     let first = BakeOptions { time_budget: options.time_budget.map(|s| FIRST_SHARE * s), ..options.clone() };
     if check_budget(&first).is_err() {
-        return bake(options, watcher);
+        return bake(model, options, watcher);
     }
-    let mut found = bake(&first, &quiet)?;
+    let mut found = bake(model, &first, &quiet)?;
     found.report.options = options.clone();
     let has_new = |baked: &Baked| {
         let (before, after) = (&model.mesh, &baked.model.mesh);
@@ -96,8 +100,11 @@ pub(crate) fn weighed(
     if has_new(&found) && !watcher.stopped() {
         let time_budget = options.time_budget.map(|s| (s - begin.elapsed().as_secs_f64()).max(0.0));
         let own = BakeOptions { uv: UvMode::Keep, time_budget, ..options.clone() };
+        let apart = with_plain_parts_apart(model, options.texture_size);
+        let is_apart = apart.is_some();
+        let low = apart.as_ref().unwrap_or(model);
         // What is left may not be enough for another bake, and one that was stopped is no fair match.
-        let kept = match check_budget(&own).is_ok().then(|| bake(&own, &quiet)) {
+        let kept = match check_budget(&own).is_ok().then(|| bake(low, &own, &quiet)) {
             // All triangles of a palette's colour lie on one point: there is nothing that could be kept.
             Some(Err(BakeError::Prepare(PrepareError::FlatTextureCoordinates { .. }))) => None,
             other => other.transpose()?.filter(|_| !watcher.stopped()),
@@ -105,7 +112,8 @@ pub(crate) fn weighed(
         let lost = kept.as_ref().map(|kept| lost(model, &kept.model, &found.model, options)).transpose()?;
         if let (Some(mut kept), Some(lost)) = (kept, lost.flatten()) {
             kept.report.options = options.clone();
-            let told = sentences(model, lost).into_iter().map(|text| format!("{}: {text}", model.name));
+            let told =
+                sentences(model, lost, is_apart).into_iter().map(|text| format!("{}: {text}", model.name));
             kept.report.warnings.splice(0..0, told);
             found = kept;
         }
@@ -115,12 +123,65 @@ pub(crate) fn weighed(
     Ok(found)
 }
 
+/// The bake without tangents where the model has none and kept its coordinates: each viewer then makes up the same ones
+/// for both. glTF asks for MikkTSpace, whose normals are smooth where those of viewers with tangents of each triangle are not.
+pub(crate) fn with_own_tangents(model: &Model, mut baked: Baked) -> Baked {
+    let own = material_uvs(&model.mesh, &model.materials);
+    let has_textures = |m: &Material| m.all_texture_slots().next().is_some();
+    let is_drawn: Vec<bool> = model.materials.iter().map(has_textures).collect();
+    let is_kept = |of: &Mesh| {
+        let mesh = &model.mesh;
+        let mut pairs = mesh.triangles.iter().zip(&of.triangles).zip(&mesh.triangle_materials);
+        let same = |(a, b): (u32, u32)| own.get(a as usize) == of.uvs.get(b as usize);
+        mesh.triangles.len() == of.triangles.len()
+            && pairs.all(|((a, b), &m)| !is_drawn[m as usize] || (0..3).all(|k| same((a[k], b[k]))))
+    };
+    if model.mesh.tangents.is_empty() {
+        for of in [&mut baked.model, &mut baked.ray_cast] {
+            if is_kept(&of.mesh) {
+                of.mesh.tangents.clear();
+            }
+        }
+    }
+    baked
+}
+
 /// Share of a time budget that the first of two bakes has.
 const FIRST_SHARE: f64 = 0.6;
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+
+    /// Protects relief in viewers that make up tangents: a model without gets none with its own coordinates, and those that fit with
+    /// others; one with tangents gets them.
+    #[test]
+    fn tangents_come_with_new_coordinates() {
+        let (_, low) = crate::demo_pair();
+        let normals = Some(parbake_model::TextureSlot::default());
+        let drawn = Material { normal_texture: normals, ..Material::default() };
+        let model = Model { materials: vec![drawn], ..low };
+        let options = BakeOptions {
+            uv: UvMode::Keep,
+            preset: crate::Preset::Fast,
+            texture_size: 16,
+            views: Some(4),
+            view_size: Some(32),
+            rounds: Some(0),
+            ..BakeOptions::default()
+        };
+        let baked = crate::bake::bake_onto_itself(&model, &model, &options, &()).unwrap();
+        assert!(!baked.model.mesh.tangents.is_empty());
+        let kept = with_own_tangents(&model, baked.clone());
+        assert!(kept.model.mesh.tangents.is_empty() && kept.ray_cast.mesh.tangents.is_empty());
+        let mut moved = baked.clone();
+        moved.model.mesh.uvs[0].x += 0.01;
+        assert_eq!(with_own_tangents(&model, moved.clone()).model, moved.model);
+        let mut with_tangents = model;
+        with_tangents.mesh.tangents = vec![parbake_model::glam::Vec4::X; with_tangents.mesh.positions.len()];
+        assert_eq!(with_own_tangents(&with_tangents, baked.clone()).model, baked.model);
+    }
 
     /// Protects time budgets that can hold: neither of two bakes is begun with a share that is refused.
     #[test]
@@ -131,7 +192,7 @@ mod tests {
                 BakeOptions { texture_size: 1024, time_budget: Some(budget), ..BakeOptions::default() };
             // It would fail on any other error as well.
             let unwritable = || BakeError::OutOfView { low: String::new(), high: String::new() };
-            let found = weighed(&model, &options, &(), |own, _| check_budget(own).and(Err(unwritable())));
+            let found = weighed(&model, &options, &(), |_, own, _| check_budget(own).and(Err(unwritable())));
             assert!(matches!(found, Err(BakeError::OutOfView { .. })), "{budget}: {:?}", found.err());
         }
     }

@@ -15,11 +15,13 @@ mod finer;
 mod layout_score;
 mod moved;
 mod paper;
+mod plain_parts;
 mod refined;
 mod steps;
 mod surface_samples;
 mod surface_texture;
 
+pub use plain_parts::with_plain_parts_apart;
 pub use surface_samples::Source;
 pub use surface_texture::{SurfaceSamples, SurfaceTexture};
 
