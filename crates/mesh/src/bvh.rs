@@ -11,6 +11,7 @@ use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use parbake_model::Mesh;
 use parbake_model::glam::{Vec3, Vec3A};
+use rayon::prelude::*;
 
 /// How far outside a triangle, in barycentric weights, a ray may still hit it.
 const EDGE_TOLERANCE: f32 = 1e-6;
@@ -45,6 +46,7 @@ pub(crate) struct Near {
 impl Bvh {
     pub(crate) fn new(mesh: &Mesh) -> Self {
         let solid: Vec<u32> = (0..mesh.triangles.len() as u32)
+            .into_par_iter()
             .filter(|&t| {
                 let [a, b, c] = mesh.corners(t as usize);
                 let normal = (b - a).cross(c - a).length_squared();
@@ -54,7 +56,8 @@ impl Bvh {
                 normal > 0.0 && normal.is_finite() && shortest > 0.0
             })
             .collect();
-        let corners: Vec<Corners> = solid.iter().map(|&t| Corners::new(mesh.corners(t as usize))).collect();
+        let corners: Vec<Corners> =
+            solid.par_iter().map(|&t| Corners::new(mesh.corners(t as usize))).collect();
         let boxes = boxes(&corners);
         let indices = (0..solid.len() as u32).collect();
         // obvhs's "very fast" preset, by measurement: a million triangles take a
@@ -70,8 +73,8 @@ impl Bvh {
         ReinsertionOptimizer::default().run(&mut tree, 0.01, None);
         collapse(&mut tree, 8, 3.0);
         Self {
-            triangles: tree.primitive_indices.iter().map(|&i| corners[i as usize]).collect(),
-            sources: tree.primitive_indices.iter().map(|&i| solid[i as usize]).collect(),
+            triangles: tree.primitive_indices.par_iter().map(|&i| corners[i as usize]).collect(),
+            sources: tree.primitive_indices.par_iter().map(|&i| solid[i as usize]).collect(),
             nodes: WideNode::of(&tree.nodes),
         }
     }

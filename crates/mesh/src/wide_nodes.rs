@@ -52,16 +52,23 @@ impl WideNode {
         let mut waiting = vec![(0usize, 0usize)];
         while let Some((index, place)) = waiting.pop() {
             let pair = |index: usize| [0, 1].map(|k| nodes[index].first_index as usize + k);
-            let mut children = if nodes[index].is_leaf() { vec![index] } else { pair(index).to_vec() };
-            while children.len() < WIDTH {
+            let (mut children, mut count) = ([index; WIDTH], 1);
+            if !nodes[index].is_leaf() {
+                children[..2].copy_from_slice(&pair(index));
+                count = 2;
+            }
+            while count < WIDTH {
                 let area = |child: usize| nodes[child].aabb().half_area();
-                let inner = (0..children.len()).filter(|&k| !nodes[children[k]].is_leaf());
+                let inner = (0..count).filter(|&k| !nodes[children[k]].is_leaf());
                 let largest = inner.max_by(|&a, &b| area(children[a]).total_cmp(&area(children[b])));
                 let Some(largest) = largest else { break };
-                let opened = children.swap_remove(largest);
-                children.extend(pair(opened));
+                let opened = children[largest];
+                // The last one takes its place, and its children follow.
+                children[largest] = children[count - 1];
+                children[count - 1..=count].copy_from_slice(&pair(opened));
+                count += 1;
             }
-            for (k, &child) in children.iter().enumerate() {
+            for (k, &child) in children[..count].iter().enumerate() {
                 let node = &nodes[child];
                 let aabb = node.aabb();
                 for axis in 0..3 {

@@ -10,6 +10,7 @@ use crate::raster::{
 };
 use crate::raster_clusters::Clusters;
 use parbake_model::{AlphaMode, Mesh};
+use rayon::prelude::*;
 
 /// What can be rasterised.
 pub trait Raster {
@@ -57,10 +58,11 @@ pub(crate) struct AlphaClusters(Vec<(Kind, Clusters)>);
 
 impl AlphaClusters {
     /// Where a mesh has many triangles; `kind` is that of a triangle.
-    pub fn of_many(mesh: &Mesh, kind: impl Fn(usize) -> Kind) -> Option<Self> {
+    pub fn of_many(mesh: &Mesh, kind: impl Fn(usize) -> Kind + Sync) -> Option<Self> {
         let count = mesh.triangles.len();
         let of = |wanted: Kind| {
-            let own: Vec<u32> = (0..count as u32).filter(|&t| kind(t as usize) == wanted).collect();
+            let all = (0..count as u32).into_par_iter();
+            let own: Vec<u32> = all.filter(|&t| kind(t as usize) == wanted).collect();
             let clusters = || Clusters::new(&mesh.positions, &mesh.triangles, &own);
             (!own.is_empty()).then(|| (wanted, clusters()))
         };

@@ -30,7 +30,6 @@ use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{AlphaMode, Image, Material, Mesh};
 use rayon::prelude::*;
 use std::cell::Cell;
-use std::sync::OnceLock;
 
 /// A square picture in linear light: premultiplied RGB and coverage.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -85,8 +84,8 @@ pub struct Scene {
     pub(crate) face_normals: Vec<Vec3>,
     /// Whether textures are read as they are stored; vertex colours, which are linear, are encoded then.
     as_stored: bool,
-    /// Where there are many triangles; made when they are first looked at.
-    pub(crate) clusters: OnceLock<Option<AlphaClusters>>,
+    /// Where there are many triangles.
+    pub(crate) clusters: Option<AlphaClusters>,
 }
 
 impl Scene {
@@ -118,12 +117,15 @@ impl Scene {
         let pyramids = pyramids.all;
         let as_stored = !interpretation.decode_srgb;
         let face_normals = (0..mesh.triangles.len()).into_par_iter().map(|t| mesh.area_normal(t)).collect();
-        Self { mesh, surfaces, pyramids, face_normals, as_stored, clusters: OnceLock::new() }
+        let mut scene = Self { mesh, surfaces, pyramids, face_normals, as_stored, clusters: None };
+        // Not when views first look at them: these wait for each other, and would leave cores idle.
+        scene.clusters = scene.clustered();
+        scene
     }
 
-    pub(crate) fn clusters(&self) -> Option<&AlphaClusters> {
+    fn clustered(&self) -> Option<AlphaClusters> {
         let kind = |triangle| (self.alpha(triangle).0, self.transmits(triangle));
-        self.clusters.get_or_init(|| AlphaClusters::of_many(&self.mesh, kind)).as_ref()
+        AlphaClusters::of_many(&self.mesh, kind)
     }
 
     /// The mesh being rendered.
@@ -141,7 +143,7 @@ impl Scene {
 
     /// All triangles on the screen of one camera.
     pub fn on_screen(&self, camera: &Camera, size: usize) -> OnScreen<'_> {
-        let clusters = self.clusters().and_then(|c| c.on_screen(&self.mesh, camera, size, |_| true));
+        let clusters = self.clusters.as_ref().and_then(|c| c.on_screen(&self.mesh, camera, size, |_| true));
         clusters.unwrap_or_else(|| {
             OnScreen::All(ScreenTriangles::new(&self.mesh.positions, &self.mesh.triangles, camera, size))
         })
@@ -155,7 +157,9 @@ impl Scene {
         camera: &Camera,
         size: usize,
     ) -> Option<OnScreen<'_>> {
-        self.clusters()?.on_screen(&self.mesh, camera, size, |(mode, transmits)| is_meant(mode, transmits))
+        self.clusters
+            .as_ref()?
+            .on_screen(&self.mesh, camera, size, |(mode, transmits)| is_meant(mode, transmits))
     }
 
     /// The maps' values at a point of the surface, textures included; the normal is a unit vector of
@@ -265,13 +269,17 @@ impl Scene {
 
     /// From now on nothing stands in for the gloss of cloth and for light that passes a surface.
     pub fn leave_out_extensions(&mut self) {
-        // They are kept apart by what changes now.
-        self.clusters = OnceLock::new();
+        let modes = |scene: &Self| scene.surfaces.iter().map(|own| own.alpha_mode).collect::<Vec<_>>();
+        let before = modes(self);
         for surface in &mut self.surfaces {
             let (mode, opacity) = surface.own_alpha;
             surface.sheen = None;
             surface.alpha_mode = mode;
             surface.factors[MapKind::BaseColor].w = opacity;
+        }
+        // Triangles are kept apart by them.
+        if modes(self) != before {
+            self.clusters = self.clustered();
         }
     }
 

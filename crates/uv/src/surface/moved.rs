@@ -80,7 +80,7 @@ pub fn moved(
     let (mut errors, mut layout) = packed.unwrap_or_else(|| (unmoved, start.clone()));
     let mut frames = vec![as_f32(&start.points), as_f32(&layout.points)];
     let most = options.refine_steps + FLAT.len() * options.shape_steps;
-    let steps = &mut Steps::new(most, mesh, start, watcher);
+    let steps = &Steps::new(most, mesh, start, watcher);
     frames.extend(shaped((score, limits), &mut layout, &mut errors, tensors, options, steps));
     let before_refining = frames.len();
     let more_triangles = if own { asked.more_triangles } else { 0 };
@@ -122,20 +122,24 @@ fn shaped(
     least: &mut Vec<f64>,
     tensors: &[DMat2],
     options: &UvOptions,
-    steps: &mut Steps,
+    steps: &Steps,
 ) -> Vec<Vec<Vec2>> {
-    let (before, mut shaped) = (layout.clone(), Vec::new());
-    for flat in FLAT {
+    let before = layout.clone();
+    let guess = |flat: f64, is_told: bool| {
         let (mut guess, mut way) = (before.clone(), Vec::new());
         let own = UvOptions { flat, ..*options };
-        steps.begin();
-        shape(score.problem, &mut guess, tensors, &own, |points, loss| steps.step(&mut way, points, loss));
+        let mut descent = steps.descent(is_told);
+        shape(score.problem, &mut guess, tensors, &own, |points, loss| descent.step(&mut way, points, loss));
         let errors = score.relative(score.problem, &guess);
+        (guess, errors, way)
+    };
+    // Much of a descent is the factorisation of one matrix, on one core.
+    let [one, other] = FLAT;
+    let guesses: [_; 2] = rayon::join(|| guess(one, true), || guess(other, false)).into();
+    let mut shaped = Vec::new();
+    for (guess, errors, way) in guesses {
         if rank(&errors, limits) < rank(least, limits) && score.is_sound(&guess) {
             (*layout, *least, shaped) = (guess, errors, way);
-        }
-        if steps.watcher.stopped() {
-            break;
         }
     }
     shaped

@@ -68,7 +68,7 @@ pub fn refined(
     begun: Begun,
     options: &UvOptions,
     more_triangles: usize,
-    steps: &mut Steps,
+    steps: &Steps,
 ) -> Option<(Moved, Vec<f64>)> {
     let Begun { mut layout, errors, way: mut frames } = begun;
     let coarse = score.problem;
@@ -111,8 +111,8 @@ pub fn refined(
         let problem = &finer.as_ref().map_or(*coarse, |finer| finer.problem(coarse));
         let way = if finer.is_some() { &mut fine_frames } else { &mut frames };
         let turn = UvOptions { refine_steps, tolerance, solve, ..*options };
-        steps.begin();
-        let step = |points: &[DVec2], loss| steps.step(way, points, loss);
+        let mut descent = steps.descent(true);
+        let step = |points: &[DVec2], loss| descent.step(way, points, loss);
         texture = refine(problem, &balance, &mut layout, texture, &turn, step).texture;
         let errors = score.relative(problem, &layout);
         // By what the texture that will be solved for leaves.
