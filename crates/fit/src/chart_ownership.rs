@@ -41,14 +41,14 @@ impl ChartOwnership {
 
     /// Whether a shift leads from one owner to another.
     #[inline]
-    fn strays(&self, map: &ParallaxCoefficients, uv: Vec2, sight: &ViewDirection) -> bool {
-        self.owner(uv + map.shift(uv, sight)) != self.owner(uv)
+    fn crosses_a_border(&self, map: &ParallaxCoefficients, uv: Vec2, view_direction: &ViewDirection) -> bool {
+        self.owner(uv + map.shift(uv, view_direction)) != self.owner(uv)
     }
 }
 
-/// By how much a texel's coefficients shrink when a shift of theirs strays.
+/// By how much a texel's coefficients shrink when a shift of theirs crosses a border.
 const SHRINK: f32 = 0.85;
-/// Rounds at most: after these a stray shift is gone.
+/// Rounds at most: after these a shift is gone.
 const ROUNDS: usize = 32;
 
 /// Shrinks coefficients until no shift crosses a border, but for pixels that lie on one.
@@ -58,15 +58,16 @@ pub fn clamp_to_chart(
     chart_ownership: &ChartOwnership,
     map: &mut ParallaxCoefficients,
 ) -> [f64; 2] {
-    let (first, mut stray) = strays(views, chart_ownership, map);
+    let (first, mut crossing_pixels) = crossing(views, chart_ownership, map);
     let count = map.basis.count();
     for _ in 0..ROUNDS {
-        stray.retain(|(uv, sight)| chart_ownership.strays(map, *uv, sight));
-        if stray.is_empty() {
+        crossing_pixels
+            .retain(|(uv, view_direction)| chart_ownership.crosses_a_border(map, *uv, view_direction));
+        if crossing_pixels.is_empty() {
             break;
         }
         let mut shrink = vec![false; map.width * map.height];
-        for texel in stray.iter().flat_map(|(uv, _)| map.taps(*uv).index) {
+        for texel in crossing_pixels.iter().flat_map(|(uv, _)| map.taps(*uv).index) {
             shrink[texel as usize] = true;
         }
         for (texel, _) in shrink.into_iter().enumerate().filter(|(_, shrink)| *shrink) {
@@ -74,23 +75,23 @@ pub fn clamp_to_chart(
         }
     }
     // A shift that became smaller ends elsewhere, and that may be another chart's bay.
-    [first, if first > 0.0 { strays(views, chart_ownership, map).0 } else { 0.0 }]
+    [first, if first > 0.0 { crossing(views, chart_ownership, map).0 } else { 0.0 }]
 }
 
-/// The pixels that stray, and their share in all.
-fn strays(
+/// The pixels whose shifts cross a border, and their share in all.
+fn crossing(
     views: &[Vec<ViewSample>],
     chart_ownership: &ChartOwnership,
     map: &ParallaxCoefficients,
 ) -> (f64, Vec<(Vec2, ViewDirection)>) {
-    let stray: Vec<(Vec2, ViewDirection)> = (views.par_iter())
+    let crossing_pixels: Vec<(Vec2, ViewDirection)> = (views.par_iter())
         .flat_map_iter(|view| {
-            let pixels = view.iter().map(|pixel| (pixel.uv, pixel.sight()));
-            pixels.filter(|(uv, sight)| chart_ownership.strays(map, *uv, sight))
+            let pixels = view.iter().map(|pixel| (pixel.uv, pixel.view_direction()));
+            pixels.filter(|(uv, view_direction)| chart_ownership.crosses_a_border(map, *uv, view_direction))
         })
         .collect();
     let all: usize = views.iter().map(Vec::len).sum();
-    (stray.len() as f64 / all.max(1) as f64, stray)
+    (crossing_pixels.len() as f64 / all.max(1) as f64, crossing_pixels)
 }
 
 #[cfg(test)]
@@ -105,10 +106,10 @@ mod tests {
         let label = (0..16).map(|i| u32::from(i % 4 >= 2)).collect();
         let chart_ownership = ChartOwnership::new(&Atlas { size: 4, label, covered: vec![true; 16] });
         let mut map = ParallaxCoefficients::zeros(Basis::Harmonics(0), 1);
-        let sight = ViewDirection { direction: Vec3::Z, cosine: 1.0 };
+        let view_direction = ViewDirection { direction: Vec3::Z, cosine: 1.0 };
         let mut strays = |x: f32, from: f32| {
             map.coefficients[0] = Vec2::new(x / 0.282_094_8, 0.0);
-            chart_ownership.strays(&map, Vec2::new(from, 0.5), &sight)
+            chart_ownership.crosses_a_border(&map, Vec2::new(from, 0.5), &view_direction)
         };
         assert!(!strays(0.2, 0.25) && strays(0.3, 0.25));
         assert!(!strays(0.2, 0.75) && strays(0.3, 0.75));

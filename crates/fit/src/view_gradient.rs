@@ -58,7 +58,7 @@ pub(crate) fn add_view<B: Brdf, M: ShiftMap, const N: usize>(
     for group in pixels.chunks(GROUP) {
         for (i, pixel) in group.iter().enumerate() {
             light[i] = pixel.light();
-            from[i] = TangentView::under_headlight(pixel.sight(), &light[i]);
+            from[i] = TangentView::under_headlight(pixel.view_direction(), &light[i]);
             at[i] = texels.taps(pixel.uv + map.shift(pixel.uv, &from[i]));
         }
         for i in 0..group.len() {

@@ -100,7 +100,7 @@ mod tests {
         mesh
     }
 
-    fn exposures_of(mesh: &Mesh) -> Vec<f32> {
+    fn visible_shares(mesh: &Mesh) -> Vec<f32> {
         visibilities(mesh, &HighSurface::new(mesh))
     }
 
@@ -112,7 +112,7 @@ mod tests {
         let first = mesh.positions.len() as u32;
         mesh.positions.extend(&inner.positions);
         mesh.triangles.extend(inner.triangles.iter().map(|t| t.map(|i| i + first)));
-        let found = exposures_of(&mesh);
+        let found = visible_shares(&mesh);
         assert!(found[..12].iter().all(|e| *e == 1.0), "{found:?}");
         assert!(found[12..].iter().all(|e| *e == 0.0), "{found:?}");
     }
@@ -124,11 +124,11 @@ mod tests {
     fn a_sheet_is_seen_twice_and_a_pit_through_its_opening() {
         let corners = vec![vec3(0.0, 0.0, 0.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0)];
         let sheet = Mesh { positions: corners, triangles: vec![[0, 1, 2]], ..Mesh::default() };
-        assert_eq!(exposures_of(&sheet), [2.0]);
+        assert_eq!(visible_shares(&sheet), [2.0]);
         let mut pit = cube(1.0);
         pit.triangles.truncate(10);
         // The side at −z, seen from within.
-        let found = exposures_of(&pit);
+        let found = visible_shares(&pit);
         let floor = 0.5 * (found[8] + found[9]) - 1.0;
         assert!((floor - 0.199_82).abs() < 0.02, "{floor}");
     }
@@ -137,7 +137,7 @@ mod tests {
     #[test]
     fn triangles_without_area_have_none() {
         let mesh = Mesh { positions: vec![Vec3::ZERO; 3], triangles: vec![[0, 1, 2]], ..Mesh::default() };
-        assert_eq!(exposures_of(&mesh), [0.0]);
-        assert!(exposures_of(&Mesh::default()).is_empty());
+        assert_eq!(visible_shares(&mesh), [0.0]);
+        assert!(visible_shares(&Mesh::default()).is_empty());
     }
 }

@@ -193,7 +193,7 @@ impl BakeOptions {
     }
 
     /// What pixels beyond the high-poly's silhouette ask of the textures.
-    pub(crate) fn beyond(&self) -> UncoveredPixels {
+    pub(crate) fn uncovered_pixels(&self) -> UncoveredPixels {
         match self.silhouette_weight() {
             0.0 => UncoveredPixels::Ignore,
             weight => UncoveredPixels::Background(self.silhouette_background.light(), weight),

@@ -22,7 +22,7 @@ use parbake_image::quantise::from_image;
 use parbake_model::Model;
 use parbake_model::glam::{Vec2, Vec3};
 use parbake_progress::{Clock, Portion, ProgressScope, Showing, Stage};
-use parbake_render::directions::{VertexFrame, sight};
+use parbake_render::directions::{VertexFrame, view_direction};
 use parbake_render::parallax::ParallaxCoefficients;
 use parbake_views::alpha_layers::{LayerKind, alpha_layers};
 use parbake_views::high_poly::{Conventions, HEADLIGHT_BRDF, ViewSet};
@@ -97,7 +97,7 @@ pub(crate) fn fit_views(
     let solving = Portion::new(scope, 0.0..solving_share(options));
     let seen = OfMaps::new(&look, low, &prepared.written, &projected.maps, srgb);
 
-    let mut sampler = ViewSampler::new(placed, plan.reference.size, &display, options.beyond());
+    let mut sampler = ViewSampler::new(placed, plan.reference.size, &display, options.uncovered_pixels());
     if let Some(plan) = &parallax_plan {
         sampler = sampler.in_basis(plan.parallax.basis);
     }
@@ -176,8 +176,9 @@ pub(crate) fn fit_views(
 /// Where a point's maps are fetched, seen along a direction; none where it is cut out.
 fn shift_of(maps: &ParallaxMaps) -> impl Fn(Vec2, Vec3, &VertexFrame) -> Option<Vec2> + Sync + '_ {
     move |uv, to_viewer, frame| {
-        let sight = sight(maps.parallax.basis, frame, to_viewer);
-        let is_cut = maps.cutout.as_ref().is_some_and(|cutout| cutout.opacity(uv, sight.direction) < 0.0);
-        (!is_cut).then(|| uv + maps.parallax.shift(uv, &sight))
+        let view_direction = view_direction(maps.parallax.basis, frame, to_viewer);
+        let is_cut =
+            maps.cutout.as_ref().is_some_and(|cutout| cutout.opacity(uv, view_direction.direction) < 0.0);
+        (!is_cut).then(|| uv + maps.parallax.shift(uv, &view_direction))
     }
 }

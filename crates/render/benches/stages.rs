@@ -263,26 +263,27 @@ fn interpolate_attributes(bencher: Bencher) {
 }
 
 /// Where each sample falls, and from where it is seen.
-fn sights(b: &Bench) -> Vec<(Vec2, ViewDirection)> {
-    let sight = |&(t, x, y): &(usize, f64, f64)| {
+fn view_directions(b: &Bench) -> Vec<(Vec2, ViewDirection)> {
+    let view_direction = |&(t, x, y): &(usize, f64, f64)| {
         let weights = barycentrics(&b.screen.triangles[t], x, y).weights;
         let corners = b.triangles[t].map(|i| i as usize);
         let direction = b.camera.view_direction(interpolate(corners.map(|i| b.positions[i]), weights));
         let normal = interpolate(corners.map(|i| b.normals[i]), weights).normalize();
-        let sight = ViewDirection { direction, cosine: normal.dot(direction) };
-        (interpolate(corners.map(|i| b.uvs[i]), weights), sight)
+        let view_direction = ViewDirection { direction, cosine: normal.dot(direction) };
+        (interpolate(corners.map(|i| b.uvs[i]), weights), view_direction)
     };
-    b.samples.iter().map(sight).collect()
+    b.samples.iter().map(view_direction).collect()
 }
 
 /// A parallax map of 64², by the order of its functions.
 #[divan::bench(args = [0, 1, 2, 3, 4, 5, 6, 7])]
 fn parallax_forward(bencher: Bencher, order: usize) {
     let b = Bench::new();
-    let (map, sights) = (ParallaxCoefficients::zeros(parbake_model::Basis::Harmonics(order), 64), sights(&b));
+    let (map, view_directions) =
+        (ParallaxCoefficients::zeros(parbake_model::Basis::Harmonics(order), 64), view_directions(&b));
     bencher.counter(b.pixels()).bench_local(|| {
-        for (uv, sight) in &sights {
-            black_box(map.shift(*uv, sight));
+        for (uv, view_direction) in &view_directions {
+            black_box(map.shift(*uv, view_direction));
         }
     });
 }
@@ -290,11 +291,12 @@ fn parallax_forward(bencher: Bencher, order: usize) {
 #[divan::bench(args = [0, 1, 2, 3, 4, 5, 6, 7])]
 fn parallax_adjoint(bencher: Bencher, order: usize) {
     let b = Bench::new();
-    let (map, sights) = (ParallaxCoefficients::zeros(parbake_model::Basis::Harmonics(order), 64), sights(&b));
+    let (map, view_directions) =
+        (ParallaxCoefficients::zeros(parbake_model::Basis::Harmonics(order), 64), view_directions(&b));
     let mut into = map.zeros_like();
     bencher.counter(b.pixels()).bench_local(|| {
-        for (uv, sight) in &sights {
-            map.adjoint_of_maps(*uv, sight, black_box(Vec2::splat(0.1)), &mut into);
+        for (uv, view_direction) in &view_directions {
+            map.adjoint_of_maps(*uv, view_direction, black_box(Vec2::splat(0.1)), &mut into);
         }
     });
 }
@@ -302,10 +304,11 @@ fn parallax_adjoint(bencher: Bencher, order: usize) {
 #[divan::bench(args = [0, 1, 2, 3])]
 fn cutout_forward(bencher: Bencher, order: usize) {
     let b = Bench::new();
-    let (map, sights) = (CutoutCoefficients::opaque(parbake_model::Basis::Harmonics(order), 128), sights(&b));
+    let (map, view_directions) =
+        (CutoutCoefficients::opaque(parbake_model::Basis::Harmonics(order), 128), view_directions(&b));
     bencher.counter(b.pixels()).bench_local(|| {
-        for (uv, sight) in &sights {
-            black_box(map.opacity(*uv, sight.direction));
+        for (uv, view_direction) in &view_directions {
+            black_box(map.opacity(*uv, view_direction.direction));
         }
     });
 }

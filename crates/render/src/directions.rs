@@ -43,7 +43,7 @@ pub struct ViewDirection {
 
 /// From where a surface is seen, as the functions of a basis have it; `to_viewer` is of unit length.
 #[inline]
-pub fn sight(basis: Basis, frame: &VertexFrame, to_viewer: Vec3) -> ViewDirection {
+pub fn view_direction(basis: Basis, frame: &VertexFrame, to_viewer: Vec3) -> ViewDirection {
     let normal = frame.normal.normalize_or_zero();
     let cosine = normal.dot(to_viewer);
     if !basis.is_tangent() {
@@ -218,12 +218,12 @@ mod tests {
         let frame =
             VertexFrame { normal: Vec3::Z * 2.0, tangent: Vec3::new(3.0, 0.0, 1.0), handedness: -1.0 };
         let d = Vec3::new(0.48, -0.6, 0.64);
-        let line = sight(Basis::TangentShift, &frame, d);
+        let line = view_direction(Basis::TangentShift, &frame, d);
         assert!(
             (line.direction - Vec3::new(0.48, 0.6, 0.64)).length() < 1e-6 && line.cosine == line.direction.z
         );
-        assert_eq!(sight(Basis::TangentShift, &frame, -d), line);
-        let harmonic = sight(Basis::Harmonics(1), &frame, -d);
+        assert_eq!(view_direction(Basis::TangentShift, &frame, -d), line);
+        let harmonic = view_direction(Basis::Harmonics(1), &frame, -d);
         assert_eq!((harmonic.direction, harmonic.cosine), (-d, -0.64));
     }
 }

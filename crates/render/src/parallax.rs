@@ -106,8 +106,8 @@ impl ParallaxCoefficients {
     }
 
     #[inline]
-    fn factors(&self, uv: Vec2, sight: &ViewDirection) -> Factors {
-        let steepness = 1.0 / sight.cosine.abs().max(self.limit);
+    fn factors(&self, uv: Vec2, view_direction: &ViewDirection) -> Factors {
+        let steepness = 1.0 / view_direction.cosine.abs().max(self.limit);
         let depth =
             self.depth.as_ref().map_or(1.0, |map| map.fetch(&taps(uv, map.width, map.height, self.wrap))[0]);
         Factors { steepness, depth }
@@ -135,23 +135,23 @@ impl ParallaxCoefficients {
 
     /// How far the coordinate moves, in texture widths.
     #[inline]
-    pub fn shift(&self, uv: Vec2, sight: &ViewDirection) -> Vec2 {
-        let Factors { steepness, depth } = self.factors(uv, sight);
-        self.sum(&self.taps(uv), sight.direction) * (steepness * depth)
+    pub fn shift(&self, uv: Vec2, view_direction: &ViewDirection) -> Vec2 {
+        let Factors { steepness, depth } = self.factors(uv, view_direction);
+        self.sum(&self.taps(uv), view_direction.direction) * (steepness * depth)
     }
 
     /// The part of [`ParallaxCoefficients::adjoint`] that goes to the maps: all that a fit needs whose
     /// surface stands still.
     #[inline]
-    pub fn adjoint_of_maps(&self, uv: Vec2, sight: &ViewDirection, to_shift: Vec2, into: &mut Self) {
+    pub fn adjoint_of_maps(&self, uv: Vec2, view_direction: &ViewDirection, to_shift: Vec2, into: &mut Self) {
         let at = self.taps(uv);
-        let Factors { steepness, depth } = self.factors(uv, sight);
+        let Factors { steepness, depth } = self.factors(uv, view_direction);
         if let (Some(map), Some(into)) = (&self.depth, &mut into.depth) {
-            let sum = self.sum(&at, sight.direction);
+            let sum = self.sum(&at, view_direction.direction);
             into.scatter(&taps(uv, map.width, map.height, self.wrap), &[sum.dot(to_shift) * steepness]);
         }
         let to_sum = to_shift * (steepness * depth);
-        with_values(self.basis, sight.direction, |count, values| {
+        with_values(self.basis, view_direction.direction, |count, values| {
             for (index, weight) in at.index.into_iter().zip(at.weights()) {
                 let to_texel = to_sum * weight;
                 let to_lanes = Vec4::new(to_texel.x, to_texel.y, to_texel.x, to_texel.y);
@@ -170,14 +170,19 @@ impl ParallaxCoefficients {
     }
 
     /// The part of [`ParallaxCoefficients::adjoint`] that goes to the point and to the direction.
-    pub fn sight_adjoint(&self, uv: Vec2, sight: &ViewDirection, to_shift: Vec2) -> ShiftGradient {
-        let values = with_values(self.basis, sight.direction, |_, values| *values);
+    pub fn view_direction_adjoint(
+        &self,
+        uv: Vec2,
+        view_direction: &ViewDirection,
+        to_shift: Vec2,
+    ) -> ShiftGradient {
+        let values = with_values(self.basis, view_direction.direction, |_, values| *values);
         let count = self.basis.count();
         let at = self.taps(uv);
         let weights = at.weights();
         let sums = at.index.map(|index| self.at_texel(index, &values));
         let sum: Vec2 = sums.iter().zip(weights).map(|(s, w)| *s * w).sum();
-        let Factors { steepness, depth } = self.factors(uv, sight);
+        let Factors { steepness, depth } = self.factors(uv, view_direction);
         let to_sum = to_shift * (steepness * depth);
 
         let mut to_values = [0.0; MOST_FUNCTIONS];
@@ -196,19 +201,25 @@ impl ParallaxCoefficients {
             let at = taps(uv, map.width, map.height, self.wrap);
             to_uv += map.uv_adjoint(&at, &[along * steepness]);
         }
-        let to_cosine = -along * depth * steepness * steepness * sight.cosine.signum();
+        let to_cosine = -along * depth * steepness * steepness * view_direction.cosine.signum();
         ShiftGradient {
             uv: to_uv,
-            direction: directions_adjoint(self.basis, sight.direction, &to_values),
-            cosine: if sight.cosine.abs() < self.limit { 0.0 } else { to_cosine },
+            direction: directions_adjoint(self.basis, view_direction.direction, &to_values),
+            cosine: if view_direction.cosine.abs() < self.limit { 0.0 } else { to_cosine },
         }
     }
 
     /// Adjoint of [`ParallaxCoefficients::shift`]: adds to the maps' gradients (`into` has this map's
     /// shape) and returns those of the rest.
-    pub fn adjoint(&self, uv: Vec2, sight: &ViewDirection, to_shift: Vec2, into: &mut Self) -> ShiftGradient {
-        self.adjoint_of_maps(uv, sight, to_shift, into);
-        self.sight_adjoint(uv, sight, to_shift)
+    pub fn adjoint(
+        &self,
+        uv: Vec2,
+        view_direction: &ViewDirection,
+        to_shift: Vec2,
+        into: &mut Self,
+    ) -> ShiftGradient {
+        self.adjoint_of_maps(uv, view_direction, to_shift, into);
+        self.view_direction_adjoint(uv, view_direction, to_shift)
     }
 }
 
@@ -241,16 +252,17 @@ mod tests {
         let to_shift = Vec2::new(0.7, -1.3);
         for with_depth in [false, true] {
             let map = map(with_depth);
-            let value =
-                |map: &ParallaxCoefficients, uv, sight: &ViewDirection| map.shift(uv, sight).dot(to_shift);
+            let value = |map: &ParallaxCoefficients, uv, view_direction: &ViewDirection| {
+                map.shift(uv, view_direction).dot(to_shift)
+            };
             for i in 0..40 {
                 let uv = Vec2::new(0.5 + 0.4 * noise(7 * i), 0.5 + 0.4 * noise(11 * i + 5));
                 let direction = Vec3::new(noise(i), noise(2 * i + 3), 1.5 * noise(i + 8)).normalize();
-                let sight = ViewDirection { direction, cosine: noise(13 * i + 1) };
+                let view_direction = ViewDirection { direction, cosine: noise(13 * i + 1) };
                 let mut into = map.clone();
                 into.coefficients.fill(Vec2::ZERO);
                 into.depth.iter_mut().for_each(|d| d.texels.fill([0.0]));
-                let got = map.adjoint(uv, &sight, to_shift, &mut into);
+                let got = map.adjoint(uv, &view_direction, to_shift, &mut into);
                 let h = 1e-3;
                 let close = |have: f32, want: f32| {
                     assert!((have - want).abs() < 2e-2 * want.abs().max(1.0), "{i}: {have} {want}");
@@ -258,30 +270,36 @@ mod tests {
                 for k in (0..map.coefficients.len()).step_by(3) {
                     let mut moved = map.clone();
                     moved.coefficients[k].y += 1.0;
-                    close(into.coefficients[k].y, value(&moved, uv, &sight) - value(&map, uv, &sight));
+                    close(
+                        into.coefficients[k].y,
+                        value(&moved, uv, &view_direction) - value(&map, uv, &view_direction),
+                    );
                 }
                 for k in 0..map.depth.as_ref().map_or(0, |d| d.texels.len()) {
                     let mut moved = map.clone();
                     moved.depth.iter_mut().for_each(|d| d.texels[k][0] += 1.0);
                     let have = into.depth.as_ref().map_or(0.0, |d| d.texels[k][0]);
-                    close(have, value(&moved, uv, &sight) - value(&map, uv, &sight));
+                    close(have, value(&moved, uv, &view_direction) - value(&map, uv, &view_direction));
                 }
                 let along = |f: &dyn Fn(f32) -> f32| (f(h) - f(-h)) / (2.0 * h);
                 let kinked = |uv: Vec2, n: usize, axis: usize| {
                     ((uv[axis] - h) * n as f32 - 0.5).floor() != ((uv[axis] + h) * n as f32 - 0.5).floor()
                 };
                 if !(kinked(uv, 5, 0) || kinked(uv, 3, 0)) {
-                    close(got.uv.x, along(&|h| value(&map, uv + Vec2::X * h, &sight)));
+                    close(got.uv.x, along(&|h| value(&map, uv + Vec2::X * h, &view_direction)));
                 }
                 if !(kinked(uv, 4, 1) || kinked(uv, 6, 1)) {
-                    close(got.uv.y, along(&|h| value(&map, uv + Vec2::Y * h, &sight)));
+                    close(got.uv.y, along(&|h| value(&map, uv + Vec2::Y * h, &view_direction)));
                 }
-                if (sight.cosine.abs() - map.limit).abs() > h {
-                    let at = |h: f32| ViewDirection { cosine: sight.cosine + h, ..sight };
+                if (view_direction.cosine.abs() - map.limit).abs() > h {
+                    let at = |h: f32| ViewDirection { cosine: view_direction.cosine + h, ..view_direction };
                     close(got.cosine, along(&|h| value(&map, uv, &at(h))));
                 }
                 let across = direction.any_orthonormal_vector();
-                let at = |h: f32| ViewDirection { direction: (direction + across * h).normalize(), ..sight };
+                let at = |h: f32| ViewDirection {
+                    direction: (direction + across * h).normalize(),
+                    ..view_direction
+                };
                 close(got.direction.dot(across), along(&|h| value(&map, uv, &at(h))));
             }
         }

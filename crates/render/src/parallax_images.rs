@@ -160,14 +160,14 @@ mod tests {
             ..ParallaxMap::default()
         };
         let uv = Vec2::new(0.4, 0.5);
-        let sights = [
+        let view_directions = [
             ViewDirection { direction: Vec3::new(0.48, -0.6, 0.64), cosine: 0.64 },
             ViewDirection { direction: Vec3::new(0.6, 0.8, 0.0), cosine: 0.0 },
         ];
         let close = |have: Vec2, want: Vec2| assert!(have.distance(want) < 2e-6, "{have} {want}");
         let shift = |map: &ParallaxMap, images: &[Image]| {
             let unpacked = ParallaxCoefficients::unpack(map, images).unwrap();
-            sights.map(|sight| unpacked.shift(uv, &sight))
+            view_directions.map(|view_direction| unpacked.shift(uv, &view_direction))
         };
         let [facing, grazing] = shift(&map, &images);
         close(facing, FACING);
@@ -181,8 +181,8 @@ mod tests {
         map.cutout = Some(CutoutMap { basis: Basis::Harmonics(1), images: vec![4, 5], scale, offset });
         assert_eq!(map.check(&images), Ok(()));
         let cutout = CutoutCoefficients::unpack(map.cutout.as_ref().unwrap(), map.wrap, &images).unwrap();
-        for (sight, opacity) in sights.into_iter().zip([0.309_127, -0.113_026]) {
-            assert!((cutout.opacity(uv, sight.direction) - opacity).abs() < 2e-6);
+        for (view_direction, opacity) in view_directions.into_iter().zip([0.309_127, -0.113_026]) {
+            assert!((cutout.opacity(uv, view_direction.direction) - opacity).abs() < 2e-6);
         }
     }
 

@@ -58,7 +58,7 @@ struct Sample {
     uv: Vec2,
     /// Where textures are fetched.
     fetched: Vec2,
-    sight: ViewDirection,
+    view_direction: ViewDirection,
     per_x: Vec2,
     per_y: Vec2,
     to_light: Vec3,
@@ -75,14 +75,14 @@ struct Sample {
 #[derive(Clone, Copy, Debug)]
 pub struct ShiftUse {
     uv: Vec2,
-    sight: ViewDirection,
+    view_direction: ViewDirection,
     to_shift: Vec2,
 }
 
 impl ShiftUse {
     /// Adds to the gradient of the map that it was a use of.
     pub fn scatter(&self, map: &ParallaxCoefficients, into: &mut ParallaxCoefficients) {
-        map.adjoint_of_maps(self.uv, &self.sight, self.to_shift, into);
+        map.adjoint_of_maps(self.uv, &self.view_direction, self.to_shift, into);
     }
 }
 
@@ -153,11 +153,11 @@ impl<'a> Patch<'a> {
         };
         let (uv, per_x, per_y) = (along(at.weights), along(at.per_x), along(at.per_y));
         let Textures { color, normal: map, parallax, .. } = self.textures;
-        let mut sight = ViewDirection { direction: to_light, cosine: 1.0 };
+        let mut view_direction = ViewDirection { direction: to_light, cosine: 1.0 };
         let mut fetched = uv;
         if let Some(parallax) = parallax {
-            sight.cosine = normal.normalize_or_zero().dot(to_light);
-            fetched += parallax.shift(uv, &sight);
+            view_direction.cosine = normal.normalize_or_zero().dot(to_light);
+            fetched += parallax.shift(uv, &view_direction);
         }
         let mut lods = [color.lod(per_x, per_y); 2];
         let mut reaches = [color.reach(fetched, lods[0]); 2];
@@ -169,7 +169,7 @@ impl<'a> Patch<'a> {
             at,
             uv,
             fetched,
-            sight,
+            view_direction,
             per_x,
             per_y,
             lods,
@@ -212,7 +212,7 @@ impl<'a> Patch<'a> {
             gradients: [color.to_array(), normal.to_array()],
             shift,
         };
-        let used = |to_shift| ShiftUse { uv: s.uv, sight: s.sight, to_shift };
+        let used = |to_shift| ShiftUse { uv: s.uv, view_direction: s.view_direction, to_shift };
         let Some(corners) = corners else {
             let shade = brdf.adjoint(&s.light, &self.fetch(&s), gradient);
             let to_shift = self.textures.parallax.map(|_| used(self.to_coordinate(&s, &shade)));
@@ -241,10 +241,10 @@ impl<'a> Patch<'a> {
         );
         let to_shift = self.textures.parallax.map(|parallax| {
             let used = used(to_uv);
-            let shift = parallax.sight_adjoint(s.uv, &s.sight, to_uv);
+            let shift = parallax.view_direction_adjoint(s.uv, &s.view_direction, to_uv);
             to_uv += shift.uv;
             let unit = s.normal.normalize_or_zero();
-            let across = s.to_light - unit * s.sight.cosine;
+            let across = s.to_light - unit * s.view_direction.cosine;
             to_normal += across * (shift.cosine / s.normal.length().max(1e-20));
             to_direction += shift.direction + unit * shift.cosine;
             used

@@ -5,7 +5,7 @@
 //! that break their contract, are not there.
 
 use crate::cutout::CutoutCoefficients;
-use crate::directions::{VertexFrame, ViewDirection, sight};
+use crate::directions::{VertexFrame, ViewDirection, view_direction};
 use crate::interpolate::{Barycentrics, interpolate};
 use crate::parallax::ParallaxCoefficients;
 use crate::scene_layers::SurfaceLayers;
@@ -77,21 +77,22 @@ impl Shifted {
         let uvs = map.uvs(seen.mesh, seen.corners);
         let along = |w: [f32; 3]| -> Vec2 { interpolate(uvs, w) };
         let reach = along(seen.at.per_x).length().max(along(seen.at.per_y).length()) * seen.footprint;
-        let sight = sight(self.parallax.basis, &seen.frame(), seen.to_viewer);
-        let left = (2.0 - sight.cosine.abs() * reach / self.fade).clamp(0.0, 1.0);
-        Some((along(seen.at.weights), sight, left))
+        let view_direction = view_direction(self.parallax.basis, &seen.frame(), seen.to_viewer);
+        let left = (2.0 - view_direction.cosine.abs() * reach / self.fade).clamp(0.0, 1.0);
+        Some((along(seen.at.weights), view_direction, left))
     }
 
     /// How far coordinates move at a point of a triangle.
     pub fn at(&self, seen: &SeenPoint) -> Vec2 {
-        self.anchor(seen).map_or(Vec2::ZERO, |(uv, sight, left)| left * self.parallax.shift(uv, &sight))
+        self.anchor(seen)
+            .map_or(Vec2::ZERO, |(uv, view_direction, left)| left * self.parallax.shift(uv, &view_direction))
     }
 
     /// Whether a point of a triangle is there.
     pub fn is_opaque(&self, seen: &SeenPoint) -> bool {
         let Some(cutout) = &self.cutout else { return true };
-        let is_there = |(uv, sight, left): (Vec2, ViewDirection, f32)| {
-            1.0 + left * (cutout.opacity(uv, sight.direction) - 1.0) >= 0.0
+        let is_there = |(uv, view_direction, left): (Vec2, ViewDirection, f32)| {
+            1.0 + left * (cutout.opacity(uv, view_direction.direction) - 1.0) >= 0.0
         };
         self.anchor(seen).is_none_or(is_there)
     }

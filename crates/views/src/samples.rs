@@ -214,7 +214,7 @@ pub fn shifted_samples<V: AsRef<[ViewSample]>>(
 ) -> SampleSet {
     collect(views.into_par_iter(), texture_size, watcher, |view, out| {
         out.extend(view.as_ref().iter().map(|seen| {
-            let from = TangentView::under_headlight(seen.sight(), &seen.light());
+            let from = TangentView::under_headlight(seen.view_direction(), &seen.light());
             let uv = seen.uv + map.shift(seen.uv, &from);
             Sample::at(uv, texture_size, seen.light, seen.target, seen.weight)
         }));

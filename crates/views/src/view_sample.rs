@@ -19,7 +19,7 @@ pub struct ViewSample {
     /// Where it falls on the texture.
     pub uv: Vec2,
     /// Direction to the viewer and cosine, in 32767ths.
-    pub(crate) sight: [i16; 4],
+    pub(crate) view_direction: [i16; 4],
     /// As [`packed`] leaves it.
     pub(crate) light: [i16; 9],
     /// Wanted display value of red, green and blue, in 65535ths of 1.
@@ -33,13 +33,13 @@ const STEP: f32 = 1.0 / 32767.0;
 impl ViewSample {
     /// A pixel at this place of the texture that asks for nothing, for hand-made scenes.
     pub fn at(uv: Vec2) -> Self {
-        Self { uv, sight: [0; 4], light: [0; 9], target: [0; 3], weight: 0 }
+        Self { uv, view_direction: [0; 4], light: [0; 9], target: [0; 3], weight: 0 }
     }
 
     /// From where it is seen.
     #[inline]
-    pub fn sight(&self) -> ViewDirection {
-        let [x, y, z, cosine] = self.sight.map(|v| f32::from(v) * STEP);
+    pub fn view_direction(&self) -> ViewDirection {
+        let [x, y, z, cosine] = self.view_direction.map(|v| f32::from(v) * STEP);
         ViewDirection { direction: Vec3::new(x, y, z), cosine }
     }
 
@@ -57,10 +57,10 @@ pub fn sample_views(sampler: &ViewSampler, references: &[Reference]) -> Vec<Vec<
         .map(|reference| {
             let mut out = Vec::with_capacity(reference.pixels.len() / 3);
             sampler.fragments(reference, |seen| {
-                let [x, y, z] = seen.sight.direction.to_array();
+                let [x, y, z] = seen.view_direction.direction.to_array();
                 out.push(ViewSample {
                     uv: seen.uv,
-                    sight: [x, y, z, seen.sight.cosine].map(rounded),
+                    view_direction: [x, y, z, seen.view_direction.cosine].map(rounded),
                     light: packed(&seen.light),
                     target: seen.target,
                     weight: seen.weight,

@@ -12,7 +12,7 @@ use parbake_model::glam::{Vec2, Vec3};
 use parbake_model::{Basis, Mesh};
 use parbake_render::camera::Camera;
 use parbake_render::cutout::{CutoutCoefficients, rasterise_cut};
-use parbake_render::directions::{VertexFrame, ViewDirection, sight};
+use parbake_render::directions::{VertexFrame, ViewDirection, view_direction};
 use parbake_render::frame::{TangentLight, tangent_light};
 use parbake_render::interpolate::{barycentrics, interpolate};
 use parbake_render::raster::{
@@ -50,7 +50,7 @@ pub struct Fragment {
     /// Where it falls on the texture.
     pub uv: Vec2,
     /// From where it is seen, as the sampler's basis has it.
-    pub sight: ViewDirection,
+    pub view_direction: ViewDirection,
     /// How the light meets it.
     pub light: TangentLight,
     /// Wanted display value, in 65535ths of 1.
@@ -66,7 +66,7 @@ impl<'a> ViewSampler<'a> {
         Self { low, face_normals, size, display, beyond, basis: Basis::Harmonics(0), cutout: None }
     }
 
-    /// The same for maps of these functions: directions are those that [`sight`] gives.
+    /// The same for maps of these functions: directions are those that [`view_direction`] gives.
     pub fn in_basis(self, basis: Basis) -> Self {
         Self { basis, ..self }
     }
@@ -86,7 +86,8 @@ impl<'a> ViewSampler<'a> {
         let b = barycentrics(triangle, at.0, at.1).weights;
         let corners = self.low.triangles[index].map(|i| i as usize);
         let point = interpolate(corners.map(|i| self.low.positions[i]), b);
-        let direction = sight(self.basis, &self.frame(corners, b), camera.view_direction(point)).direction;
+        let direction =
+            view_direction(self.basis, &self.frame(corners, b), camera.view_direction(point)).direction;
         (interpolate(corners.map(|i| self.low.uvs[i]), b), direction)
     }
 
@@ -148,7 +149,7 @@ impl<'a> ViewSampler<'a> {
             let facing = if direction.dot(self.face_normals[triangle as usize]) < 0.0 { -1.0 } else { 1.0 };
             each(Fragment {
                 uv: interpolate(corners.map(|i| low.uvs[i]), b),
-                sight: sight(self.basis, &frame, direction),
+                view_direction: view_direction(self.basis, &frame, direction),
                 light: tangent_light(normal, tangent, handedness, direction, facing),
                 target,
                 weight,

@@ -7,7 +7,7 @@ use naga::Module;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{Basis, CutoutMap, Image, ParallaxMap};
 use parbake_render::cutout::CutoutCoefficients;
-use parbake_render::directions::{VertexFrame, ViewDirection, sight};
+use parbake_render::directions::{VertexFrame, ViewDirection, view_direction};
 use parbake_render::parallax::ParallaxCoefficients;
 
 /// Whose shader it is, since names and parameters differ.
@@ -143,7 +143,7 @@ impl Shader {
     /// The second output of HLSL's `main`, with the numbers of a map as its inputs.
     fn second(&self, maps: &Maps, which: usize, t: Vec2, line: Vec3) -> Vec<f32> {
         let rest = Value::vector(&[1.0, maps.map.limit, 0.0, 1.0]);
-        let mut inputs = vec![("t", v2(t)), ("sight", v3(line)), ("rest", rest)];
+        let mut inputs = vec![("t", v2(t)), ("view_direction", v3(line)), ("rest", rest)];
         let ranges = maps.ranges(which).concat().into_iter().map(v4);
         inputs.extend(["a", "b", "c", "d", "e", "f"].into_iter().zip(ranges));
         self.enter(Some(maps), 1, &inputs)
@@ -302,7 +302,7 @@ fn lines_of_sight_are_those_of_the_cpu() {
         for handedness in [1.0, -1.0].repeat(40) {
             let frame = VertexFrame { normal: random.vector(), tangent: random.vector(), handedness };
             let to_viewer = random.vector().normalize();
-            let want = sight(Basis::TangentShift, &frame, to_viewer).direction;
+            let want = view_direction(Basis::TangentShift, &frame, to_viewer).direction;
             let have = shader.line(to_viewer, &frame);
             assert!(have.distance(want) < 2e-5, "{:?} {frame:?}: {have} instead of {want}", shader.engine);
         }

@@ -45,7 +45,7 @@ pub(crate) fn hlsl() -> Option<Module> {
     const MAIN: &str = "
         Texture2D shiftMap; Texture2D cutoutMap; SamplerState linearClamp;
         struct Outputs { float4 first : SV_Target0; float4 second : SV_Target1; float4 third : SV_Target2; };
-        Outputs main(float3 toViewer : A0, float3 normal : A1, float3 tangent : A2, float3 sight : A3, float2 t : A4,
+        Outputs main(float3 toViewer : A0, float3 normal : A1, float3 tangent : A2, float3 view_direction : A3, float2 t : A4,
             float2 along : A5, float2 down : A6, float4 rest : A7, float4 a : A8, float4 b : A9, float4 c : A10,
             float4 d : A11, float4 e : A12, float4 f : A13) {
             Outputs outputs;
@@ -54,8 +54,8 @@ pub(crate) fn hlsl() -> Option<Module> {
             float3 same = ParbakeLineOfFrame(toViewer, normal, tangent, bitangent);
             outputs.first = float4(w, length(w - same));
             outputs.second = float4(
-                ParbakeShiftAt(shiftMap, linearClamp, t, sight, a, b, c, d, rest.y),
-                ParbakeOpacityAt(cutoutMap, linearClamp, t, sight, a, b, c, d, e, f), 0.0);
+                ParbakeShiftAt(shiftMap, linearClamp, t, view_direction, a, b, c, d, rest.y),
+                ParbakeOpacityAt(cutoutMap, linearClamp, t, view_direction, a, b, c, d, e, f), 0.0);
             outputs.third = float4(ParbakeFade(along, down, rest.z, rest.w), ParbakeFaded(rest.y, rest.z),
                 ParbakeCoverage(rest.y, rest.z), ParbakeFlipped(t).y);
             return outputs;

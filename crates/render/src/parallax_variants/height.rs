@@ -129,7 +129,7 @@ impl ShiftMap for HeightParallax {
 
 #[cfg(test)]
 mod tests {
-    use super::super::shift_map::tests::{noise, vantage, worst_gradient};
+    use super::super::shift_map::tests::{noise, test_view, worst_gradient};
     use super::*;
     use crate::directions::ViewDirection;
     use parbake_model::glam::Vec3;
@@ -148,7 +148,7 @@ mod tests {
         for variant in [Variant::Parallax, Variant::OffsetLimited, Variant::Steep, Variant::Occlusion] {
             for i in 0..30 {
                 let uv = Vec2::new(0.5 + 0.4 * noise(5 * i), 0.5 + 0.4 * noise(3 * i + 1));
-                let (map, from) = (map(variant), vantage(i));
+                let (map, from) = (map(variant), test_view(i));
                 let path =
                     |m: &HeightParallax| variant.marches().then(|| m.march(uv, &from).path(&m.heights));
                 let smooth = |down: &HeightParallax, up: &HeightParallax| path(down) == path(up);
@@ -164,7 +164,7 @@ mod tests {
     fn what_is_deep_recedes() {
         let from = |x: f32, z: f32| {
             let direction = Vec3::new(x, 0.0, z);
-            TangentView { sight: ViewDirection { direction, cosine: z }, tangent: direction }
+            TangentView { view_direction: ViewDirection { direction, cosine: z }, tangent: direction }
         };
         for variant in [Variant::Parallax, Variant::OffsetLimited, Variant::Steep, Variant::Occlusion] {
             let mut map = HeightParallax::flat(variant, 1, SCALE);

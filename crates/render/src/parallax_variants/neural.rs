@@ -125,7 +125,7 @@ impl NeuralParallax {
     }
 
     fn steepness(&self, from: &TangentView) -> f32 {
-        self.scale / from.sight.cosine.abs().max(self.limit)
+        self.scale / from.view_direction.cosine.abs().max(self.limit)
     }
 }
 
@@ -194,7 +194,7 @@ impl ShiftMap for NeuralParallax {
 
 #[cfg(test)]
 mod tests {
-    use super::super::shift_map::tests::{noise, vantage, worst_gradient};
+    use super::super::shift_map::tests::{noise, test_view, worst_gradient};
     use super::*;
 
     /// Protects back-propagation through all three layers.
@@ -205,7 +205,8 @@ mod tests {
             *weight = Vec4::from(std::array::from_fn(|k| noise(4 * i + k)));
         }
         for i in 0..4 {
-            let (uv, from) = (Vec2::new(0.5 + 0.4 * noise(5 * i), 0.5 + 0.4 * noise(3 * i + 1)), vantage(i));
+            let (uv, from) =
+                (Vec2::new(0.5 + 0.4 * noise(5 * i), 0.5 + 0.4 * noise(3 * i + 1)), test_view(i));
             // Which side of its kink each rectifier is on.
             let sides = |m: &NeuralParallax| {
                 let passed = m.pass(uv, &from);
@@ -221,7 +222,7 @@ mod tests {
     fn it_begins_with_no_shift() {
         let map = NeuralParallax::default();
         assert_eq!(map, NeuralParallax::default());
-        assert_eq!(map.shift(Vec2::splat(0.3), &vantage(2)), Vec2::ZERO);
+        assert_eq!(map.shift(Vec2::splat(0.3), &test_view(2)), Vec2::ZERO);
         assert_eq!(NeuralParallax::NUMBERS, 2018);
     }
 }

@@ -16,7 +16,7 @@ use parbake_model::glam::{Vec2, Vec3, Vec4};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TangentView {
     /// Direction to the viewer in the mesh's axes, and its cosine.
-    pub sight: ViewDirection,
+    pub view_direction: ViewDirection,
     /// Direction to the viewer along tangent, bitangent and vertex normal; about of unit length.
     pub tangent: Vec3,
 }
@@ -25,9 +25,9 @@ impl TangentView {
     /// Where the light stands with the viewer, shading knows the direction in the tangent frame
     /// already, but flipped on faces that are seen from behind: this turns it back.
     #[inline]
-    pub fn under_headlight(sight: ViewDirection, light: &TangentLight) -> Self {
-        let flipped = (light.light.z < 0.0) != (sight.cosine < 0.0);
-        Self { sight, tangent: if flipped { -light.light } else { light.light } }
+    pub fn under_headlight(view_direction: ViewDirection, light: &TangentLight) -> Self {
+        let flipped = (light.light.z < 0.0) != (view_direction.cosine < 0.0);
+        Self { view_direction, tangent: if flipped { -light.light } else { light.light } }
     }
 }
 
@@ -102,12 +102,12 @@ impl ShiftMap for Unshifted {
 impl ShiftMap for ParallaxCoefficients {
     #[inline]
     fn shift(&self, uv: Vec2, from: &TangentView) -> Vec2 {
-        ParallaxCoefficients::shift(self, uv, &from.sight)
+        ParallaxCoefficients::shift(self, uv, &from.view_direction)
     }
 
     #[inline]
     fn adjoint_of_maps(&self, uv: Vec2, from: &TangentView, to_shift: Vec2, into: &mut Self) {
-        ParallaxCoefficients::adjoint_of_maps(self, uv, &from.sight, to_shift, into);
+        ParallaxCoefficients::adjoint_of_maps(self, uv, &from.view_direction, to_shift, into);
     }
 
     fn coefficients(&self) -> Option<&ParallaxCoefficients> {
@@ -195,10 +195,10 @@ pub(super) mod tests {
         ((i * 37 + 11) % 101) as f32 / 50.0 - 1.0
     }
 
-    /// A vantage above the surface, in the mesh's axes as in the surface's.
-    pub(crate) fn vantage(i: usize) -> TangentView {
+    /// A test_view above the surface, in the mesh's axes as in the surface's.
+    pub(crate) fn test_view(i: usize) -> TangentView {
         let direction = Vec3::new(noise(i), noise(2 * i + 3), 0.3 + noise(3 * i + 8).abs()).normalize();
-        TangentView { sight: ViewDirection { direction, cosine: direction.z }, tangent: direction }
+        TangentView { view_direction: ViewDirection { direction, cosine: direction.z }, tangent: direction }
     }
 
     /// How far the gradient of a map's parameters is off central differences of `step`, at the
@@ -248,7 +248,7 @@ pub(super) mod tests {
         let mut back = map.zeros_like();
         back.set_parameters(&map.parameters());
         assert_eq!(back, map);
-        assert!(worst_gradient(&map, Vec2::new(0.4, 0.5), &vantage(1), 0.5, |_, _| true) < 1e-5);
+        assert!(worst_gradient(&map, Vec2::new(0.4, 0.5), &test_view(1), 0.5, |_, _| true) < 1e-5);
     }
 
     /// Protects surfaces seen from behind: the direction is that to the viewer on both sides.
@@ -256,8 +256,8 @@ pub(super) mod tests {
     fn a_flipped_light_is_turned_back() {
         for direction in [Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.6, 0.0, -0.8)] {
             let light = tangent_light(Vec3::Z, Vec3::X, 1.0, direction, direction.z.signum());
-            let sight = ViewDirection { direction, cosine: direction.z };
-            assert_eq!(TangentView::under_headlight(sight, &light).tangent, direction);
+            let view_direction = ViewDirection { direction, cosine: direction.z };
+            assert_eq!(TangentView::under_headlight(view_direction, &light).tangent, direction);
         }
     }
 }

@@ -51,11 +51,11 @@ impl<'a, M: ShiftMap> Look<'a, M> {
         let normal: Vec3 = interpolate(corners.map(|i| mesh.normals[i]), b.weights);
         let tangent = interpolate(corners.map(|i| mesh.tangents[i].truncate()), b.weights);
         let light = tangent_light(normal, tangent, mesh.tangents[corners[0]].w, direction, facing);
-        let sight = ViewDirection { direction, cosine: normal.normalize_or_zero().dot(direction) };
+        let view_direction = ViewDirection { direction, cosine: normal.normalize_or_zero().dot(direction) };
 
         let along = |weights| -> Vec2 { interpolate(corners.map(|i| mesh.uvs[i]), weights) };
         let uv = along(b.weights);
-        let uv = uv + self.map.shift(uv, &TangentView::under_headlight(sight, &light));
+        let uv = uv + self.map.shift(uv, &TangentView::under_headlight(view_direction, &light));
         let lod = self.color.lod(along(b.per_x), along(b.per_y));
         let (color, normal) = (self.color.fetch(uv, lod), self.normal.fetch(uv, lod));
         HEADLIGHT_BRDF.light(&light, &MapValues::of(Vec3::from(color), Vec3::from(normal)))
