@@ -10,6 +10,7 @@
 //! views             what rendered views say: loss, gradients
 //! moving_points     points that follow them by Adam, while triangles keep their quality
 //! walls             thin walls whose sides crossed
+//! uncross           pulls them apart before anything else moves
 //! provisional       a texture that follows them, and is thrown away
 //! joint             the fit: vertices and a provisional texture, against rendered views
 //! stage             the stage of a bake: small textures and views, the fit, what moved
@@ -29,6 +30,7 @@ pub mod provisional;
 pub mod seen;
 pub mod stage;
 pub mod triangle_quality;
+pub mod uncross;
 pub mod views;
 pub mod walls;
 

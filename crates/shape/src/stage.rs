@@ -13,8 +13,10 @@
 use crate::joint::{ShapeOptions, Shaped, fit_shape};
 use crate::normals::turned_normals;
 use crate::outline::Outline;
+use crate::points::Points;
 use crate::provisional::Provisional;
 use crate::seen::{Seen, ShapeViews, smooth_references};
+use crate::uncross::uncrossed;
 use glam::{Mat3, Vec3, Vec4};
 use parbake_image::{FloatImage, MapKind, MapSet};
 use parbake_mesh::{TexelMap, face_outwards};
@@ -83,7 +85,16 @@ pub fn shape(
     plan: &ShapePlan,
     watcher: &dyn Watcher,
 ) -> Result<(ShapeReport, ShapeViews), PrepareError> {
-    let low = prepared(name, mesh, high, plan)?;
+    let mut low = prepared(name, mesh, high, plan)?;
+    // Textures of matte surfaces take the colours of either side.
+    if high.is_whole_material {
+        let LowPoly { placed, .. } = &low;
+        let points = Points::new(&placed.positions, &placed.normals, &placed.triangles);
+        if let Some(apart) = uncrossed(&points.rest, &points.triangles, &high.scene, &high.conventions.rig) {
+            move_vertices(mesh, placed, &points.vertices(&apart), &high.frame);
+            low = prepared(name, mesh, high, plan)?;
+        }
+    }
     let seen = shape_views(&low.placed, high, plan, watcher);
     let (placed, shaped) = fitted(low, high, &seen, plan, &Portion::new(watcher, LOOKING..1.0));
     move_vertices(mesh, &placed, &shaped.positions, &high.frame);

@@ -38,31 +38,55 @@ pub fn crossings(points: &[Vec3], triangles: &[[u32; 3]], cameras: &[Camera], si
 }
 
 fn seen_from(points: &[Vec3], triangles: &[[u32; 3]], camera: &Camera, size: usize) -> Crossings {
+    let mut found = Crossings::default();
+    for Crossing { triangles: [near, far], .. } in crossings_from(points, triangles, camera, size) {
+        found.pixels += 1;
+        found.points.extend([near, far].into_iter().flat_map(|triangle| triangles[triangle as usize]));
+    }
+    found
+}
+
+/// A pixel at which the wrong side of a wall is seen.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crossing {
+    /// Which pixel, row by row.
+    pub pixel: usize,
+    /// The triangle in front, whose back is seen, and the one behind it that should have covered it.
+    pub triangles: [u32; 2],
+    /// Barycentric weights of where the pixel's ray meets them.
+    pub weights: [[f32; 3]; 2],
+}
+
+/// The pixels of a picture of `size`² pixels at which walls have crossed, row by row.
+pub(crate) fn crossings_from(
+    points: &[Vec3],
+    triangles: &[[u32; 3]],
+    camera: &Camera,
+    size: usize,
+) -> Vec<Crossing> {
     let screen = ScreenTriangles::new(points, triangles, camera, size);
     let (mut front, mut behind) = (Visibility::default(), Visibility::default());
     rasterise(&screen, size, (0.0, 0.0), &mut front);
     rasterise_behind(&screen, size, (0.0, 0.0), &front, &mut behind);
     let corners = |triangle: u32| triangles[triangle as usize].map(|point| points[point as usize]);
-    let is_back = |triangle: u32| {
-        let [a, b, c] = corners(triangle);
-        (b - a).cross(c - a).dot(camera.view_direction(a)) < 0.0
-    };
-    let mut found = Crossings::default();
-    for (pixel, (&near, &far)) in front.triangle.iter().zip(&behind.triangle).enumerate() {
+    let is_back = |triangle: u32| is_back(corners(triangle), camera);
+    let crossing = |(pixel, (&near, &far)): (usize, (&u32, &u32))| {
         if near == NOTHING || far == NOTHING || !is_back(near) || is_back(far) {
-            continue;
+            return None;
         }
         let at = ((pixel % size) as f64 + 0.5, (pixel / size) as f64 + 0.5);
-        let [near_at, far_at] = [near, far].map(|triangle| -> Vec3 {
-            let weights = barycentrics(&screen.triangles[triangle as usize], at.0, at.1).weights;
-            interpolate(corners(triangle), weights)
-        });
-        if near_at.distance(far_at) < THICKEST {
-            found.pixels += 1;
-            found.points.extend([near, far].into_iter().flat_map(|triangle| triangles[triangle as usize]));
-        }
-    }
-    found
+        let weights = [near, far]
+            .map(|triangle| barycentrics(&screen.triangles[triangle as usize], at.0, at.1).weights);
+        let [near_at, far_at]: [Vec3; 2] =
+            [interpolate(corners(near), weights[0]), interpolate(corners(far), weights[1])];
+        (near_at.distance(far_at) < THICKEST).then_some(Crossing { pixel, triangles: [near, far], weights })
+    };
+    front.triangle.iter().zip(&behind.triangle).enumerate().filter_map(crossing).collect()
+}
+
+/// Whether a camera looks at the back of a triangle.
+pub(crate) fn is_back([a, b, c]: [Vec3; 3], camera: &Camera) -> bool {
+    (b - a).cross(c - a).dot(camera.view_direction(a)) < 0.0
 }
 
 #[cfg(test)]

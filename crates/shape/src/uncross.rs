@@ -1,0 +1,179 @@
+//! Thin walls whose sides cross already are pulled apart before vertices follow pictures: few triangles over a
+//! bend of a chair's arm lie partly below those of its underside, which then shows as a dark patch.
+//!
+//! ```text
+//! views ─ pixels at which a wall shows the wrong side (walls.rs) and the high-poly its front ─┐
+//!   └──────────── both sides move apart along their common normal, until none is left ────────┘
+//! ```
+//!
+//! Whether it is a fault is for the high-poly to say: foliage shows backs with fronts close behind them, and is meant to.
+//!
+//! Contract: all is in the common frame. Points that no such pixel asks to move stay to the bit, and triangles stay sane
+//! (`triangle_quality.rs`). Deterministic.
+
+use crate::triangle_quality::TriangleQuality;
+use crate::walls::{Crossing, crossings_from, is_back};
+use glam::Vec3;
+use parbake_render::camera::{Camera, fibonacci_sphere};
+use parbake_render::interpolate::interpolate;
+use parbake_render::on_screen::Raster;
+use parbake_render::raster::{NOTHING, Visibility};
+use parbake_render::scene::Scene;
+use parbake_views::pool::Rig;
+use rayon::prelude::*;
+
+/// Views that are looked at, and pixels along a side of each.
+const VIEWS: usize = 64;
+const PIXELS: usize = 256;
+/// Steps at most.
+const STEPS: usize = 16;
+/// How far the sides of a wall are to be apart, in the common frame: enough for the depth buffers of viewers.
+const APART: f32 = 2e-3;
+/// Part of the pixels with wrong sides that have to be gone for the points to move.
+const WORTH_IT: f64 = 0.5;
+
+/// The points of a mesh with the sides of its walls in order, as `high` shows them from the distance of `rig`; none where
+/// they are in order, or cannot be brought into it.
+pub fn uncrossed(points: &[Vec3], triangles: &[[u32; 3]], high: &Scene, rig: &Rig) -> Option<Vec<Vec3>> {
+    let camera = |direction| Camera::towards_origin(direction, rig.radius, rig.projection);
+    let cameras: Vec<Camera> = fibonacci_sphere(VIEWS, 0.0).into_iter().map(camera).collect();
+    let looks = |at: &[Vec3]| -> Vec<Vec<Crossing>> {
+        cameras.par_iter().map(|camera| crossings_from(at, triangles, camera, PIXELS)).collect()
+    };
+    let mut seen = looks(points);
+    // Only views that may show a fault need the high-poly's.
+    let fronts: Vec<Vec<bool>> = (cameras.par_iter().zip(&seen))
+        .map(|(camera, found)| if found.is_empty() { Vec::new() } else { fronts(high, camera) })
+        .collect();
+    let faults = |mut seen: Vec<Vec<Crossing>>| {
+        for (found, fronts) in seen.iter_mut().zip(&fronts) {
+            found.retain(|own| fronts.get(own.pixel).is_some_and(|is_front| *is_front));
+        }
+        seen.into_iter().flatten().collect::<Vec<Crossing>>()
+    };
+    let mut wrong = faults(std::mem::take(&mut seen));
+    let first = wrong.len();
+    let quality = TriangleQuality::new(points, triangles);
+    let mut at = points.to_vec();
+    let mut best = (first, None);
+    for _ in 0..STEPS {
+        if wrong.is_empty() {
+            break;
+        }
+        let mut next = pulled_apart(&at, triangles, &wrong);
+        quality.revert(&at, &mut next);
+        at = next;
+        wrong = faults(looks(&at));
+        if wrong.len() < best.0 {
+            best = (wrong.len(), Some(at.clone()));
+        }
+    }
+    best.1.filter(|_| best.0 as f64 <= (1.0 - WORTH_IT) * first as f64)
+}
+
+/// The pixels at which a scene's front is seen.
+fn fronts(scene: &Scene, camera: &Camera) -> Vec<bool> {
+    let mut seen = Visibility::default();
+    scene.on_screen(camera, PIXELS).rasterise(PIXELS, (0.0, 0.0), None, &mut seen);
+    let is_front =
+        |&triangle: &u32| triangle != NOTHING && !is_back(scene.mesh().corners(triangle as usize), camera);
+    seen.triangle.iter().map(is_front).collect()
+}
+
+/// The points after a step: the corners of both triangles of each pixel move apart by half of what is asked for, each by the mean of
+/// what its pixels ask, weighed by their barycentric weights.
+fn pulled_apart(at: &[Vec3], triangles: &[[u32; 3]], wrong: &[Crossing]) -> Vec<Vec3> {
+    let mut sums = vec![(Vec3::ZERO, 0.0f32); at.len()];
+    for own in wrong {
+        let [near, far] = own.triangles.map(|triangle| triangles[triangle as usize]);
+        let corners = |triangle: [u32; 3]| triangle.map(|point| at[point as usize]);
+        let normal = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).normalize_or_zero();
+        // Out of the far triangle's front, into the near one's back.
+        let axis = (normal(corners(far)) - normal(corners(near))).normalize_or_zero();
+        let [near_at, far_at]: [Vec3; 2] =
+            [interpolate(corners(near), own.weights[0]), interpolate(corners(far), own.weights[1])];
+        let way = 0.5 * ((near_at - far_at).dot(axis).max(0.0) + APART) * axis;
+        for (triangle, weights, way) in [(near, own.weights[0], -way), (far, own.weights[1], way)] {
+            for (point, weight) in triangle.into_iter().zip(weights) {
+                let (sum, weights) = &mut sums[point as usize];
+                *sum += weight * way;
+                *weights += weight;
+            }
+        }
+    }
+    let moved =
+        |(at, (sum, weights)): (&Vec3, (Vec3, f32))| if weights > 0.0 { *at + sum / weights } else { *at };
+    at.iter().zip(sums).map(moved).collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use parbake_model::{Material, Mesh};
+    use parbake_render::camera::Projection;
+    use parbake_render::interpretation::Interpretation;
+
+    const RIG: Rig = Rig { radius: 3.5, projection: Projection::Perspective(0.4) };
+
+    /// A board that is bent along its middle by this much, closed but for its rims; its sides, cut into `cells` across the
+    /// bend, are this far apart.
+    fn board(cells: [usize; 2], apart: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+        let (mut points, mut triangles) = (Vec::new(), Vec::new());
+        for (side, cells) in cells.into_iter().enumerate() {
+            let first = points.len() as u32;
+            for column in 0..=cells {
+                let x = 1.8 * (column as f32 / cells as f32 - 0.5);
+                let z = 0.05 * (1.0 - (x / 0.9).powi(2)) + if side == 0 { 0.5 * apart } else { -0.5 * apart };
+                points.extend([Vec3::new(x, -0.4, z), Vec3::new(x, 0.4, z)]);
+            }
+            for column in 0..cells as u32 {
+                let [a, b, c, d] = [0, 1, 2, 3].map(|k| first + 2 * column + k);
+                triangles.extend(if side == 0 { [[a, c, b], [b, c, d]] } else { [[a, b, c], [b, d, c]] });
+            }
+        }
+        (points, triangles)
+    }
+
+    fn scene((points, triangles): (Vec<Vec3>, Vec<[u32; 3]>)) -> Scene {
+        let mesh = Mesh {
+            normals: vec![Vec3::Z; points.len()],
+            triangle_materials: vec![0; triangles.len()],
+            positions: points,
+            triangles,
+            ..Mesh::default()
+        };
+        Scene::new(mesh, &[Material::default()], &[], Interpretation::default())
+    }
+
+    fn wrong_pixels((points, triangles): &(Vec<Vec3>, Vec<[u32; 3]>)) -> usize {
+        let cameras = fibonacci_sphere(20, 0.7).into_iter();
+        let camera = |direction| Camera::towards_origin(direction, RIG.radius, RIG.projection);
+        cameras.map(|d| crossings_from(points, triangles, &camera(d), 128).len()).sum()
+    }
+
+    /// Protects clean seats and arms: a bend whose upper side has fewer triangles than its underside shows none of it
+    /// any more, and the rims stay together.
+    #[test]
+    fn the_underside_of_a_bend_stays_below() {
+        let high = scene(board([32, 32], 0.01));
+        let low = board([2, 8], 0.01);
+        let before = wrong_pixels(&low);
+        assert!(before > 500, "{before}");
+        let apart = uncrossed(&low.0, &low.1, &high, &RIG).unwrap();
+        let farthest = apart.iter().zip(&low.0).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        assert!(farthest < 0.03, "{farthest}");
+        let after = wrong_pixels(&(apart, low.1));
+        assert!(20 * after < before, "{before} {after}");
+    }
+
+    /// Protects what is right, and what is meant to show its back: leaves with fronts close behind.
+    #[test]
+    fn sound_walls_and_leaves_stay() {
+        let sound = board([16, 16], 0.01);
+        assert_eq!(uncrossed(&sound.0, &sound.1, &scene(sound.clone()), &RIG), None);
+        let inside_out = board([8, 8], -0.01);
+        assert!(wrong_pixels(&inside_out) > 500);
+        assert_eq!(uncrossed(&inside_out.0, &inside_out.1, &scene(inside_out.clone()), &RIG), None);
+    }
+}
