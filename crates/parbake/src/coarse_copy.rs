@@ -10,6 +10,7 @@
 //!
 //! Contract: materials stay as they are, and a rig comes along. Deterministic.
 
+use crate::bake::RIG;
 use crate::models::with_tangents;
 use parbake_evaluate::EvaluateError;
 use parbake_evaluate::screen_size::ScreenComparison;
@@ -21,12 +22,19 @@ use parbake_mesh::rigs::transferred;
 use parbake_mesh::simplify::{SimplifyOptions, simplify};
 use parbake_model::{Mesh, Model};
 use parbake_progress::{Message, Stage, Watcher};
+use parbake_render::interpretation::Interpretation;
+use parbake_shape::stage::move_vertices;
+use parbake_shape::uncross::with_sides_in_order;
+use parbake_views::frame::{common_frame, scene};
 use std::cell::Cell;
 
 /// Pixels that a model spans in the pictures by which copies are compared.
 const PIXELS: f64 = 256.0;
 /// Texels along a side of the maps that these pictures show, at most: four for each pixel.
 const TEXELS: usize = 1024;
+
+/// Triangles up to which sides of walls are looked after; more are too small to reach through a wall.
+const MOST_CROSSED: usize = 20_000;
 
 /// A coarser copy of about this many triangles (at least 1) with the closest surface, whatever it looks like; with tangents
 /// as [`with_tangents`] makes them.
@@ -82,14 +90,33 @@ fn closest_in_pictures(
     };
     let best = best_collapsed(&parted.mesh, triangles, false, &|| watcher.stopped(), judged)?;
     let other = by_shape(&parted.mesh, triangles);
-    match best {
-        None => Ok(other),
-        Some((mesh, _)) if other.triangles.len() > triangles => Ok(mesh),
-        Some((mesh, most)) => {
+    let (mesh, psnr) = match best {
+        None => return Ok(other),
+        Some(best) if other.triangles.len() > triangles => best,
+        Some(best) => {
             let (other, psnr) = judged(other)?;
-            Ok(if psnr > most { other } else { mesh })
+            if psnr > best.1 { (other, psnr) } else { best }
+        }
+    };
+    if let Some(apart) = with_sides_apart(model, &mesh) {
+        let (apart, own) = judged(apart)?;
+        if own > psnr {
+            return Ok(apart);
         }
     }
+    Ok(mesh)
+}
+
+/// The copy with thin walls pulled apart whose sides have crossed; none where all are in order.
+fn with_sides_apart(model: &Model, copy: &Mesh) -> Option<Mesh> {
+    let frame = common_frame(model).ok().filter(|_| copy.triangles.len() <= MOST_CROSSED)?;
+    let mut placed = copy.clone();
+    frame.apply(&mut placed);
+    let high = || scene(model, &frame, Interpretation::default());
+    let positions = with_sides_in_order(&placed, high, &RIG)?;
+    let mut apart = copy.clone();
+    move_vertices(&mut apart, &placed, &positions, &frame);
+    Some(apart)
 }
 
 fn by_shape(mesh: &Mesh, triangles: usize) -> Mesh {

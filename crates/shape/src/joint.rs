@@ -198,6 +198,20 @@ const LEAST_GAP: f64 = 0.02;
 /// 0.25 dB by moving.
 const CLOSE_ENOUGH: f64 = 0.08;
 
+/// What pictures of a mesh with this texture lack of the high-poly's, before anything moves: the mean squared difference in the
+/// views whose outlines are measured.
+pub fn picture_loss(
+    mesh: &Mesh,
+    texture: &Provisional,
+    seen: &ShapeViews,
+    display: Display,
+    options: &ShapeOptions,
+) -> f64 {
+    let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
+    let views = seen.fitted.views(display, options.coverage, options.background);
+    Fit::new(mesh, &points, views).picture_loss(&points.rest, texture, &seen.fitted.measured())
+}
+
 /// Fits the positions of a mesh to what was seen of the high-poly.
 pub fn fit_shape(
     mesh: &Mesh,

@@ -10,13 +10,12 @@
 //! order, and so do their corners' texture coordinates. Vertices are split where a normal would end up on its
 //! face's back.
 
-use crate::joint::{ShapeOptions, Shaped, fit_shape};
+use crate::joint::{ShapeOptions, Shaped, fit_shape, picture_loss};
 use crate::normals::turned_normals;
 use crate::outline::Outline;
-use crate::points::Points;
 use crate::provisional::Provisional;
 use crate::seen::{Seen, ShapeViews, smooth_references};
-use crate::uncross::uncrossed;
+use crate::uncross::with_sides_in_order;
 use glam::{Mat3, Vec3, Vec4};
 use parbake_image::{FloatImage, MapKind, MapSet};
 use parbake_mesh::{TexelMap, face_outwards};
@@ -70,6 +69,9 @@ const CHECKED: usize = 24;
 const OF_CHECKS: u64 = 0x5eed_c4ec;
 /// Distance between outlines, in pixels, that views show well enough to move vertices by.
 const SHOWN: f32 = 0.25;
+/// Losses of pictures with the sides of walls in order, as shares of those before, below which they stay so: small pictures hardly show
+/// patches that are plain in large ones. A chair at 1.003 gains 1.6 dB, a jet at 1.03 loses 0.5, a car at 1.23 loses 1.2.
+const NO_WORSE: f64 = 1.01;
 /// Share of the time that the pictures of the high-poly take.
 const LOOKING: f64 = 0.2;
 
@@ -85,18 +87,25 @@ pub fn shape(
     plan: &ShapePlan,
     watcher: &dyn Watcher,
 ) -> Result<(ShapeReport, ShapeViews), PrepareError> {
-    let mut low = prepared(name, mesh, high, plan)?;
+    let (mut placed, mut start) = textured(prepared(name, mesh, high, plan)?, high);
+    let seen = shape_views(&placed, high, plan, watcher);
     // Textures of matte surfaces take the colours of either side.
-    if high.is_whole_material {
-        let LowPoly { placed, .. } = &low;
-        let points = Points::new(&placed.positions, &placed.normals, &placed.triangles);
-        if let Some(apart) = uncrossed(&points.rest, &points.triangles, &high.scene, &high.conventions.rig) {
-            move_vertices(mesh, placed, &points.vertices(&apart), &high.frame);
-            low = prepared(name, mesh, high, plan)?;
+    let apart = match high.is_whole_material {
+        true => with_sides_in_order(&placed, || &high.scene, &high.conventions.rig),
+        false => None,
+    };
+    if let Some(apart) = apart {
+        let mut other = mesh.clone();
+        move_vertices(&mut other, &placed, &apart, &high.frame);
+        let (own, texture) = textured(prepared(name, &other, high, plan)?, high);
+        let loss = |mesh: &Mesh, texture: &Provisional| {
+            picture_loss(mesh, texture, &seen, high.conventions.display, &plan.fit)
+        };
+        if loss(&own, &texture) < NO_WORSE * loss(&placed, &start) {
+            (*mesh, placed, start) = (other, own, texture);
         }
     }
-    let seen = shape_views(&low.placed, high, plan, watcher);
-    let (placed, shaped) = fitted(low, high, &seen, plan, &Portion::new(watcher, LOOKING..1.0));
+    let shaped = fitted(&placed, start, high, &seen, plan, &Portion::new(watcher, LOOKING..1.0));
     move_vertices(mesh, &placed, &shaped.positions, &high.frame);
     Ok((report(&shaped), seen))
 }
@@ -134,8 +143,8 @@ pub fn grow_for_cutout(
     plan: &ShapePlan,
     watcher: &dyn Watcher,
 ) -> Result<ShapeReport, PrepareError> {
-    let low = prepared(name, mesh, high, plan)?;
-    let (placed, shaped) = fitted(low, high, seen, plan, watcher);
+    let (placed, start) = textured(prepared(name, mesh, high, plan)?, high);
+    let shaped = fitted(&placed, start, high, seen, plan, watcher);
     let ways = shaped.positions.iter().zip(&placed.positions).map(|(after, before)| *after - *before);
     // Copies for tangents are at the end, and of what is here.
     let offsets: Vec<Vec3> = ways.take(mesh.positions.len()).map(|way| way / high.frame.scale).collect();
@@ -157,21 +166,25 @@ fn prepared(name: &str, mesh: &Mesh, high: &HighPoly, plan: &ShapePlan) -> Resul
     LowPoly::new(&model, &high.frame, plan.texture_size)
 }
 
-/// The low-poly in the common frame, and where its vertices are to go.
+/// The low-poly in the common frame, with the high-poly's maps as a small texture.
+fn textured(low: LowPoly, high: &HighPoly) -> (Mesh, Provisional) {
+    let start = project(&low, high);
+    let LowPoly { placed, map, .. } = low;
+    let start = provisional(start.maps, &placed, &map);
+    (placed, start)
+}
+
+/// Where the vertices of a low-poly are to go.
 fn fitted(
-    low: LowPoly,
+    placed: &Mesh,
+    start: Provisional,
     high: &HighPoly,
     seen: &ShapeViews,
     plan: &ShapePlan,
     watcher: &dyn Watcher,
-) -> (Mesh, Shaped) {
-    let start = project(&low, high);
-    let LowPoly { placed, map, .. } = low;
-    let start = provisional(start.maps, &placed, &map);
-    let display = high.conventions.display;
+) -> Shaped {
     let fit = ShapeOptions { keeps_sides: high.is_whole_material, ..plan.fit };
-    let shaped = fit_shape(&placed, start, seen, display, &fit, watcher);
-    (placed, shaped)
+    fit_shape(placed, start, seen, high.conventions.display, &fit, watcher)
 }
 
 fn report(shaped: &Shaped) -> ShapeReport {
@@ -187,7 +200,7 @@ fn report(shaped: &Shaped) -> ShapeReport {
 
 /// Moves a mesh as its copy in the common frame has moved, its normals with it; vertices are split
 /// where a normal would end up on its face's back.
-pub(crate) fn move_vertices(mesh: &mut Mesh, placed: &Mesh, positions: &[Vec3], frame: &Placement) {
+pub fn move_vertices(mesh: &mut Mesh, placed: &Mesh, positions: &[Vec3], frame: &Placement) {
     for ((written, before), after) in mesh.positions.iter_mut().zip(&placed.positions).zip(positions) {
         *written += (*after - *before) / frame.scale;
     }

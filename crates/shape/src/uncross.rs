@@ -2,8 +2,8 @@
 //! bend of a chair's arm lie partly below those of its underside, which then shows as a dark patch.
 //!
 //! ```text
-//! views ─ pixels at which a wall shows the wrong side (walls.rs) and the high-poly its front ─┐
-//!   └──────────── both sides move apart along their common normal, until none is left ────────┘
+//! views ─ pixels at which a wall shows the wrong side (walls.rs) and the high-poly the right one ─┐
+//!   └──────────── both sides move apart along their common normal, until none is left ────────────┘
 //! ```
 //!
 //! Whether it is a fault is for the high-poly to say: foliage shows backs with fronts close behind them, and is meant to.
@@ -11,16 +11,19 @@
 //! Contract: all is in the common frame. Points that no such pixel asks to move stay to the bit, and triangles stay sane
 //! (`triangle_quality.rs`). Deterministic.
 
+use crate::points::Points;
 use crate::triangle_quality::TriangleQuality;
-use crate::walls::{Crossing, crossings_from, is_back};
+use crate::walls::{Crossing, THICKEST, crossings_from, is_back};
 use glam::Vec3;
+use parbake_model::Mesh;
 use parbake_render::camera::{Camera, fibonacci_sphere};
-use parbake_render::interpolate::interpolate;
+use parbake_render::interpolate::{barycentrics, interpolate};
 use parbake_render::on_screen::Raster;
 use parbake_render::raster::{NOTHING, Visibility};
 use parbake_render::scene::Scene;
 use parbake_views::pool::Rig;
 use rayon::prelude::*;
+use std::borrow::Borrow;
 
 /// Views that are looked at, and pixels along a side of each.
 const VIEWS: usize = 64;
@@ -29,29 +32,56 @@ const PIXELS: usize = 256;
 const STEPS: usize = 16;
 /// How far the sides of a wall are to be apart, in the common frame: enough for the depth buffers of viewers.
 const APART: f32 = 2e-3;
+/// Cosine between the normals of a wall's sides at most.
+const OPPOSITE: f32 = -0.5;
 /// Part of the pixels with wrong sides that have to be gone for the points to move.
 const WORTH_IT: f64 = 0.5;
 
-/// The points of a mesh with the sides of its walls in order, as `high` shows them from the distance of `rig`; none where
-/// they are in order, or cannot be brought into it.
-pub fn uncrossed(points: &[Vec3], triangles: &[[u32; 3]], high: &Scene, rig: &Rig) -> Option<Vec<Vec3>> {
+/// The vertices of a mesh with the sides of its walls in order, as the scene of the high-poly shows them from the distance of
+/// `rig`; none where they are in order, or cannot be brought into it. `high` is asked for only where sides may have crossed.
+pub fn with_sides_in_order<S: Borrow<Scene>>(
+    mesh: &Mesh,
+    high: impl FnOnce() -> S,
+    rig: &Rig,
+) -> Option<Vec<Vec3>> {
+    let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
+    let apart = uncrossed(&points.rest, &points.triangles, high, rig)?;
+    Some(points.vertices(&apart))
+}
+
+fn uncrossed<S: Borrow<Scene>>(
+    points: &[Vec3],
+    triangles: &[[u32; 3]],
+    high: impl FnOnce() -> S,
+    rig: &Rig,
+) -> Option<Vec<Vec3>> {
     let camera = |direction| Camera::towards_origin(direction, rig.radius, rig.projection);
     let cameras: Vec<Camera> = fibonacci_sphere(VIEWS, 0.0).into_iter().map(camera).collect();
     let looks = |at: &[Vec3]| -> Vec<Vec<Crossing>> {
         cameras.par_iter().map(|camera| crossings_from(at, triangles, camera, PIXELS)).collect()
     };
-    let mut seen = looks(points);
+    let seen = looks(points);
+    if seen.iter().all(Vec::is_empty) {
+        return None;
+    }
+    let high = high();
+    let high: &Scene = high.borrow();
     // Only views that may show a fault need the high-poly's.
-    let fronts: Vec<Vec<bool>> = (cameras.par_iter().zip(&seen))
+    let fronts: Vec<Vec<Option<Vec3>>> = (cameras.par_iter().zip(&seen))
         .map(|(camera, found)| if found.is_empty() { Vec::new() } else { fronts(high, camera) })
         .collect();
-    let faults = |mut seen: Vec<Vec<Crossing>>| {
-        for (found, fronts) in seen.iter_mut().zip(&fronts) {
-            found.retain(|own| fronts.get(own.pixel).is_some_and(|is_front| *is_front));
-        }
-        seen.into_iter().flatten().collect::<Vec<Crossing>>()
+    let faults = |at: &[Vec3], seen: Vec<Vec<Crossing>>| -> Vec<Crossing> {
+        let is_fault = |own: &Crossing, fronts: &[Option<Vec3>]| {
+            let [near, far] = own.triangles.map(|t| triangles[t as usize].map(|point| at[point as usize]));
+            let far_at: Vec3 = interpolate(far, own.weights[1]);
+            let is_shown = |front: &Vec3| front.distance(far_at) < THICKEST;
+            normal(near).dot(normal(far)) < OPPOSITE
+                && fronts.get(own.pixel).is_some_and(|front| front.as_ref().is_some_and(is_shown))
+        };
+        let each = seen.into_iter().zip(&fronts);
+        each.flat_map(|(found, fronts)| found.into_iter().filter(|own| is_fault(own, fronts))).collect()
     };
-    let mut wrong = faults(std::mem::take(&mut seen));
+    let mut wrong = faults(points, seen);
     let first = wrong.len();
     let quality = TriangleQuality::new(points, triangles);
     let mut at = points.to_vec();
@@ -63,7 +93,7 @@ pub fn uncrossed(points: &[Vec3], triangles: &[[u32; 3]], high: &Scene, rig: &Ri
         let mut next = pulled_apart(&at, triangles, &wrong);
         quality.revert(&at, &mut next);
         at = next;
-        wrong = faults(looks(&at));
+        wrong = faults(&at, looks(&at));
         if wrong.len() < best.0 {
             best = (wrong.len(), Some(at.clone()));
         }
@@ -71,13 +101,22 @@ pub fn uncrossed(points: &[Vec3], triangles: &[[u32; 3]], high: &Scene, rig: &Ri
     best.1.filter(|_| best.0 as f64 <= (1.0 - WORTH_IT) * first as f64)
 }
 
-/// The pixels at which a scene's front is seen.
-fn fronts(scene: &Scene, camera: &Camera) -> Vec<bool> {
+/// What is seen of a scene's front at each pixel.
+fn fronts(scene: &Scene, camera: &Camera) -> Vec<Option<Vec3>> {
     let mut seen = Visibility::default();
-    scene.on_screen(camera, PIXELS).rasterise(PIXELS, (0.0, 0.0), None, &mut seen);
-    let is_front =
-        |&triangle: &u32| triangle != NOTHING && !is_back(scene.mesh().corners(triangle as usize), camera);
-    seen.triangle.iter().map(is_front).collect()
+    let screen = scene.on_screen(camera, PIXELS);
+    screen.rasterise(PIXELS, (0.0, 0.0), None, &mut seen);
+    let front = |(pixel, &triangle): (usize, &u32)| {
+        let corners = (triangle != NOTHING).then(|| scene.mesh().corners(triangle as usize))?;
+        let at = ((pixel % PIXELS) as f64 + 0.5, (pixel / PIXELS) as f64 + 0.5);
+        let weights = || barycentrics(&screen.triangle(triangle as usize), at.0, at.1).weights;
+        (!is_back(corners, camera)).then(|| interpolate(corners, weights()))
+    };
+    seen.triangle.iter().enumerate().map(front).collect()
+}
+
+fn normal([a, b, c]: [Vec3; 3]) -> Vec3 {
+    (b - a).cross(c - a).normalize_or_zero()
 }
 
 /// The points after a step: the corners of both triangles of each pixel move apart by half of what is asked for, each by the mean of
@@ -87,7 +126,6 @@ fn pulled_apart(at: &[Vec3], triangles: &[[u32; 3]], wrong: &[Crossing]) -> Vec<
     for own in wrong {
         let [near, far] = own.triangles.map(|triangle| triangles[triangle as usize]);
         let corners = |triangle: [u32; 3]| triangle.map(|point| at[point as usize]);
-        let normal = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).normalize_or_zero();
         // Out of the far triangle's front, into the near one's back.
         let axis = (normal(corners(far)) - normal(corners(near))).normalize_or_zero();
         let [near_at, far_at]: [Vec3; 2] =
@@ -110,7 +148,7 @@ fn pulled_apart(at: &[Vec3], triangles: &[[u32; 3]], wrong: &[Crossing]) -> Vec<
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use parbake_model::{Material, Mesh};
+    use parbake_model::Material;
     use parbake_render::camera::Projection;
     use parbake_render::interpretation::Interpretation;
 
@@ -160,7 +198,7 @@ mod tests {
         let low = board([2, 8], 0.01);
         let before = wrong_pixels(&low);
         assert!(before > 500, "{before}");
-        let apart = uncrossed(&low.0, &low.1, &high, &RIG).unwrap();
+        let apart = uncrossed(&low.0, &low.1, || &high, &RIG).unwrap();
         let farthest = apart.iter().zip(&low.0).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
         assert!(farthest < 0.03, "{farthest}");
         let after = wrong_pixels(&(apart, low.1));
@@ -171,9 +209,9 @@ mod tests {
     #[test]
     fn sound_walls_and_leaves_stay() {
         let sound = board([16, 16], 0.01);
-        assert_eq!(uncrossed(&sound.0, &sound.1, &scene(sound.clone()), &RIG), None);
+        assert_eq!(uncrossed(&sound.0, &sound.1, || scene(sound.clone()), &RIG), None);
         let inside_out = board([8, 8], -0.01);
         assert!(wrong_pixels(&inside_out) > 500);
-        assert_eq!(uncrossed(&inside_out.0, &inside_out.1, &scene(inside_out.clone()), &RIG), None);
+        assert_eq!(uncrossed(&inside_out.0, &inside_out.1, || scene(inside_out.clone()), &RIG), None);
     }
 }

@@ -15,7 +15,7 @@ use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise, ra
 use rayon::prelude::*;
 
 /// Sides of a wall are at most this far apart, in the common frame, in which a model is 2 long.
-const THICKEST: f32 = 0.03;
+pub(crate) const THICKEST: f32 = 0.03;
 
 /// What views see of crossings.
 #[derive(Clone, Debug, Default, PartialEq)]
