@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Triangles keep their shapes in the texture, and tangent frames with them. They are so small there that viewers read no mip level but the
-//! first.
+//! first, as long as a part covers more pixels than the texels it has.
 //!
 //! Contract: coordinates of all other triangles stay to the bit.
 

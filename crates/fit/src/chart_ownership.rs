@@ -48,7 +48,7 @@ impl ChartOwnership {
 
 /// By how much a texel's coefficients shrink when a shift of theirs crosses a border.
 const SHRINK: f32 = 0.85;
-/// Rounds at most: after these a shift is gone.
+/// Rounds at most: after these a shift is less than 1 % of what it was.
 const ROUNDS: usize = 32;
 
 /// Shrinks coefficients until no shift crosses a border, but for pixels that lie on one.

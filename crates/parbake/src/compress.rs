@@ -143,11 +143,10 @@ fn plain(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<
     let own = OwnSurface { model, frame: &frame, stored, signal, options };
     clock.lap(Stage::Prepare);
 
-    let apart = with_plain_parts_apart(model, options.texture_size);
-    let is_apart = apart.is_some();
-    let delivered = apart.map_or(Ok(delivered), |apart| repair_uvs(&apart, &as_it_is))?;
-    let delivered = in_the_square(delivered, slack)
-        .map(|delivered| own.textured(own.unmoved(delivered, &as_it_is, watcher)));
+    let kept_as_it_is = |kept: RepairedLowPoly| {
+        in_the_square(kept, slack).map(|kept| own.textured(own.unmoved(kept, &as_it_is, watcher)))
+    };
+    let delivered = kept_as_it_is(delivered);
     clock.lap(Stage::Solve);
     let asked = options.uv_stage_for(Work::Compress);
     let repaired = repair_uvs(model, &asked)?;
@@ -169,7 +168,13 @@ fn plain(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<
             written = moved;
         }
     }
-    if let Some(kept) = &delivered
+    let apart =
+        kept::may_be_kept(options).then(|| with_plain_parts_apart(model, options.texture_size)).flatten();
+    let moved_apart = match &apart {
+        Some(apart) => kept_as_it_is(repair_uvs(apart, &as_it_is)?),
+        None => None,
+    };
+    if let Some(kept) = moved_apart.as_ref().or(delivered.as_ref())
         && kept::may_be_kept(options)
         && kept.low.model.mesh.uvs != written.low.model.mesh.uvs
         && !watcher.stopped()
@@ -177,7 +182,7 @@ fn plain(model: &Model, options: &BakeOptions, watcher: &dyn Watcher) -> Result<
         let finished = |of: &Solved| own.finished(of.low.model.clone(), &of.solved);
         if let Some(lost) = kept::lost(model, &finished(kept), &finished(&written), options)? {
             written = kept.clone();
-            written.low.report.repaired.extend(kept::sentences(model, lost, is_apart));
+            written.low.report.repaired.extend(kept::sentences(model, lost, apart.as_ref()));
         }
     }
     clock.lap(Stage::Solve);

@@ -198,6 +198,42 @@ fn what_is_shared_is_kept_where_it_shows_more() {
     assert!(own.report.uv.is_bijective());
 }
 
+/// Protects drawings that are kept from materials without textures whose coordinates lie on them: those get texels of their own,
+/// with colours alone and with whole materials, but not where coordinates are to stay.
+#[test]
+fn plain_materials_leave_a_kept_drawing() {
+    let mut mesh = Mesh::default();
+    for i in 0..13 {
+        let first = mesh.positions.len();
+        add_box(&mut mesh, 1.0, 0.1);
+        mesh.positions[first..].iter_mut().for_each(|p| p.x += 3.0 * i as f32);
+    }
+    mesh.triangle_materials[12 * 12..].fill(1);
+    let drawn = mesh.uvs.len() - 24;
+    for roughness in [1.0, 0.6] {
+        let mut model = noisy(mesh.clone());
+        model.materials[0].roughness = roughness;
+        let red = Material { base_color: [1.0, 0.0, 0.0, 1.0], roughness, ..Material::default() };
+        model.materials.push(red);
+        let preset = crate::options::Preset::Fast;
+        let options = BakeOptions { texture_size: 128, uv_steps: Some(1), preset, ..small() };
+        let baked = compress(&model, &options, &()).expect("boxes can be compressed");
+        let told = baked.report.warnings.join(" ");
+        assert!(told.contains("materials without textures") && told.contains("lie on copies"), "{told}");
+        let uvs = &baked.model.mesh.uvs;
+        assert_eq!(uvs[..drawn], mesh.uvs[..drawn]);
+        let image = &baked.model.images[0];
+        for uv in &uvs[drawn..] {
+            let [x, y] = (*uv * 128.0).floor().to_array().map(|at| at as usize);
+            let [r, g, b, _] = image.pixels[y * image.width + x];
+            assert!(r > 250 && g < 5 && b < 5, "{roughness}: {r} {g} {b} at {uv}");
+        }
+        let options = BakeOptions { uv: UvMode::Keep, ..options };
+        let baked = compress(&model, &options, &()).expect("boxes can be compressed");
+        assert_eq!(baked.model.mesh.uvs, mesh.uvs);
+    }
+}
+
 /// Protects textures that repeat: a chart longer than the texture is kept where cutting it up shows less.
 #[test]
 fn what_repeats_is_kept_where_it_shows_more() {

@@ -13,9 +13,9 @@ use parbake_atlas::sharing;
 use parbake_evaluate::evaluate::{Detail, evaluate_each};
 use parbake_evaluate::options::EvaluateOptions;
 use parbake_mesh::material_uvs;
-use parbake_model::{Material, Mesh, Model};
+use parbake_model::{Material, Mesh, Model, TextureSlot};
 use parbake_progress::{Message, Watcher, WithoutWarnings};
-use parbake_uv::surface::with_plain_parts_apart;
+use parbake_uv::surface::{drawn_part, has_textures, with_plain_parts_apart};
 use parbake_views::PrepareError;
 
 /// Decibels that coordinates which are sound may cost.
@@ -58,14 +58,20 @@ pub(crate) fn lost(
     Ok((lost > MOST_LOST).then_some(lost))
 }
 
-/// What the user is told of it; `apart` says whether materials without textures were moved.
-pub(crate) fn sentences(model: &Model, lost: f64, apart: bool) -> Vec<String> {
-    let but = if apart { ", but for materials without textures, which got a few texels each" } else { "" };
+/// What the user is told of it; `apart` is the model in which materials without textures were moved, where they were.
+pub(crate) fn sentences(model: &Model, lost: f64, apart: Option<&Model>) -> Vec<String> {
+    let but = if apart.is_some() {
+        ", but for materials without textures, which got a few texels each"
+    } else {
+        ""
+    };
     let mut sentences = vec![format!(
         "Texture coordinates were kept as they are{but}: the best layout without shared texels shows {lost:.1} dB less. \
          --uv repair or --gutter TEXELS forces such a layout."
     )];
-    sentences.extend(sharing(&model.mesh).sentence());
+    // What was moved no longer shares texels with anything else.
+    let drawn = apart.map_or_else(|| model.mesh.clone(), drawn_part);
+    sentences.extend(sharing(&drawn).sentence());
     sentences
 }
 
@@ -101,7 +107,6 @@ pub(crate) fn weighed(
         let time_budget = options.time_budget.map(|s| (s - begin.elapsed().as_secs_f64()).max(0.0));
         let own = BakeOptions { uv: UvMode::Keep, time_budget, ..options.clone() };
         let apart = with_plain_parts_apart(model, options.texture_size);
-        let is_apart = apart.is_some();
         let low = apart.as_ref().unwrap_or(model);
         // What is left may not be enough for another bake, and one that was stopped is no fair match.
         let kept = match check_budget(&own).is_ok().then(|| bake(low, &own, &quiet)) {
@@ -112,8 +117,9 @@ pub(crate) fn weighed(
         let lost = kept.as_ref().map(|kept| lost(model, &kept.model, &found.model, options)).transpose()?;
         if let (Some(mut kept), Some(lost)) = (kept, lost.flatten()) {
             kept.report.options = options.clone();
-            let told =
-                sentences(model, lost, is_apart).into_iter().map(|text| format!("{}: {text}", model.name));
+            let told = sentences(model, lost, apart.as_ref())
+                .into_iter()
+                .map(|text| format!("{}: {text}", model.name));
             kept.report.warnings.splice(0..0, told);
             found = kept;
         }
@@ -123,12 +129,18 @@ pub(crate) fn weighed(
     Ok(found)
 }
 
-/// The bake without tangents where the model has none and kept its coordinates: each viewer then makes up the same ones
-/// for both. glTF asks for MikkTSpace, whose normals are smooth where those of viewers with tangents of each triangle are not.
+/// The bake without tangents where the model has none and kept the coordinates that its normal maps are read by: each viewer then
+/// makes up the same ones for both. glTF asks for MikkTSpace's, which turn smoothly; some viewers take those of each triangle.
 pub(crate) fn with_own_tangents(model: &Model, mut baked: Baked) -> Baked {
     let own = material_uvs(&model.mesh, &model.materials);
-    let has_textures = |m: &Material| m.all_texture_slots().next().is_some();
     let is_drawn: Vec<bool> = model.materials.iter().map(has_textures).collect();
+    // Coordinates of the bake are those of base colours.
+    let reads_alike = |material: &Material| {
+        let of = |slot: TextureSlot| (slot.uv_set, slot.transform);
+        let color = material.base_color_texture.map(of).unwrap_or_default();
+        let coat = material.extensions.clearcoat.and_then(|coat| coat.normal_texture);
+        [material.normal_texture, coat].into_iter().flatten().all(|slot| of(slot) == color)
+    };
     let is_kept = |of: &Mesh| {
         let mesh = &model.mesh;
         let mut pairs = mesh.triangles.iter().zip(&of.triangles).zip(&mesh.triangle_materials);
@@ -136,7 +148,7 @@ pub(crate) fn with_own_tangents(model: &Model, mut baked: Baked) -> Baked {
         mesh.triangles.len() == of.triangles.len()
             && pairs.all(|((a, b), &m)| !is_drawn[m as usize] || (0..3).all(|k| same((a[k], b[k]))))
     };
-    if model.mesh.tangents.is_empty() {
+    if model.mesh.tangents.is_empty() && model.materials.iter().all(reads_alike) {
         for of in [&mut baked.model, &mut baked.ray_cast] {
             if is_kept(&of.mesh) {
                 of.mesh.tangents.clear();
@@ -159,7 +171,7 @@ mod tests {
     #[test]
     fn tangents_come_with_new_coordinates() {
         let (_, low) = crate::demo_pair();
-        let normals = Some(parbake_model::TextureSlot::default());
+        let normals = Some(TextureSlot::default());
         let drawn = Material { normal_texture: normals, ..Material::default() };
         let model = Model { materials: vec![drawn], ..low };
         let options = BakeOptions {
@@ -178,6 +190,10 @@ mod tests {
         let mut moved = baked.clone();
         moved.model.mesh.uvs[0].x += 0.01;
         assert_eq!(with_own_tangents(&model, moved.clone()).model, moved.model);
+        // Tangents of other coordinates would not fit what was baked.
+        let mut elsewhere = model.clone();
+        elsewhere.materials[0].normal_texture = Some(TextureSlot { uv_set: 1, ..TextureSlot::default() });
+        assert_eq!(with_own_tangents(&elsewhere, baked.clone()).model, baked.model);
         let mut with_tangents = model;
         with_tangents.mesh.tangents = vec![parbake_model::glam::Vec4::X; with_tangents.mesh.positions.len()];
         assert_eq!(with_own_tangents(&with_tangents, baked.clone()).model, baked.model);

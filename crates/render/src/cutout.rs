@@ -49,7 +49,7 @@ impl CutoutCoefficients {
         taps(uv, self.width, self.height, self.wrap)
     }
 
-    /// `Σ_k O_k(t) Y_k(d)`; `direction` as [`view_direction`](crate::directions::sight) has it.
+    /// `Σ_k O_k(t) Y_k(d)`; `direction` as [`view_direction`](crate::directions::view_direction) has it.
     #[inline]
     pub fn opacity(&self, uv: Vec2, direction: Vec3) -> f32 {
         let at = self.taps(uv);

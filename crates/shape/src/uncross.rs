@@ -6,7 +6,8 @@
 //!   └──────────── both sides move apart along their common normal, until none is left ────────────┘
 //! ```
 //!
-//! Whether it is a fault is for the high-poly to say: foliage shows backs with fronts close behind them, and is meant to.
+//! Whether it is a fault is for the high-poly to say: foliage shows backs with fronts close behind them, and is meant to. All of its
+//! triangles count as opaque.
 //!
 //! Contract: all is in the common frame. Points that no such pixel asks to move stay to the bit, and triangles stay sane
 //! (`triangle_quality.rs`). Deterministic.
@@ -16,6 +17,7 @@ use crate::triangle_quality::TriangleQuality;
 use crate::walls::{Crossing, THICKEST, crossings_from, is_back};
 use glam::Vec3;
 use parbake_model::Mesh;
+use parbake_progress::Watcher;
 use parbake_render::camera::{Camera, fibonacci_sphere};
 use parbake_render::interpolate::{barycentrics, interpolate};
 use parbake_render::on_screen::Raster;
@@ -25,6 +27,8 @@ use parbake_views::pool::Rig;
 use rayon::prelude::*;
 use std::borrow::Borrow;
 
+/// More triangles are too small to reach through a wall.
+const MOST_TRIANGLES: usize = 20_000;
 /// Views that are looked at, and pixels along a side of each.
 const VIEWS: usize = 64;
 const PIXELS: usize = 256;
@@ -38,14 +42,19 @@ const OPPOSITE: f32 = -0.5;
 const WORTH_IT: f64 = 0.5;
 
 /// The vertices of a mesh with the sides of its walls in order, as the scene of the high-poly shows them from the distance of
-/// `rig`; none where they are in order, or cannot be brought into it. `high` is asked for only where sides may have crossed.
+/// `rig`; none where they are in order, or cannot be brought into it, or where there are more triangles than are looked at. `high` is
+/// asked for only where sides may have crossed. The mesh has a normal at each vertex. A watcher that says stop is heeded between steps.
 pub fn with_sides_in_order<S: Borrow<Scene>>(
     mesh: &Mesh,
     high: impl FnOnce() -> S,
     rig: &Rig,
+    watcher: &dyn Watcher,
 ) -> Option<Vec<Vec3>> {
+    if mesh.triangles.len() > MOST_TRIANGLES || watcher.stopped() {
+        return None;
+    }
     let points = Points::new(&mesh.positions, &mesh.normals, &mesh.triangles);
-    let apart = uncrossed(&points.rest, &points.triangles, high, rig)?;
+    let apart = uncrossed(&points.rest, &points.triangles, high, rig, watcher)?;
     Some(points.vertices(&apart))
 }
 
@@ -54,6 +63,7 @@ fn uncrossed<S: Borrow<Scene>>(
     triangles: &[[u32; 3]],
     high: impl FnOnce() -> S,
     rig: &Rig,
+    watcher: &dyn Watcher,
 ) -> Option<Vec<Vec3>> {
     let camera = |direction| Camera::towards_origin(direction, rig.radius, rig.projection);
     let cameras: Vec<Camera> = fibonacci_sphere(VIEWS, 0.0).into_iter().map(camera).collect();
@@ -87,7 +97,7 @@ fn uncrossed<S: Borrow<Scene>>(
     let mut at = points.to_vec();
     let mut best = (first, None);
     for _ in 0..STEPS {
-        if wrong.is_empty() {
+        if wrong.is_empty() || watcher.stopped() {
             break;
         }
         let mut next = pulled_apart(&at, triangles, &wrong);
@@ -198,7 +208,7 @@ mod tests {
         let low = board([2, 8], 0.01);
         let before = wrong_pixels(&low);
         assert!(before > 500, "{before}");
-        let apart = uncrossed(&low.0, &low.1, || &high, &RIG).unwrap();
+        let apart = uncrossed(&low.0, &low.1, || &high, &RIG, &()).unwrap();
         let farthest = apart.iter().zip(&low.0).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
         assert!(farthest < 0.03, "{farthest}");
         let after = wrong_pixels(&(apart, low.1));
@@ -209,9 +219,9 @@ mod tests {
     #[test]
     fn sound_walls_and_leaves_stay() {
         let sound = board([16, 16], 0.01);
-        assert_eq!(uncrossed(&sound.0, &sound.1, || scene(sound.clone()), &RIG), None);
+        assert_eq!(uncrossed(&sound.0, &sound.1, || scene(sound.clone()), &RIG, &()), None);
         let inside_out = board([8, 8], -0.01);
         assert!(wrong_pixels(&inside_out) > 500);
-        assert_eq!(uncrossed(&inside_out.0, &inside_out.1, || scene(inside_out.clone()), &RIG), None);
+        assert_eq!(uncrossed(&inside_out.0, &inside_out.1, || scene(inside_out.clone()), &RIG, &()), None);
     }
 }

@@ -21,7 +21,7 @@ mod steps;
 mod surface_samples;
 mod surface_texture;
 
-pub use plain_parts::with_plain_parts_apart;
+pub use plain_parts::{drawn_part, has_textures, with_plain_parts_apart};
 pub use surface_samples::Source;
 pub use surface_texture::{SurfaceSamples, SurfaceTexture};
 

@@ -2,16 +2,30 @@
 
 use parbake_atlas::with_own_squares;
 use parbake_mesh::material_uvs;
-use parbake_model::{Material, Model, UvTransform};
+use parbake_model::{Material, Mesh, Model, UvTransform};
 
-/// The model with texture coordinates as its materials read them, in which each material without textures has a square of a few
-/// texels that no other triangle lies on. Its materials no longer move coordinates.
+/// Whether a material has textures, whichever they are.
+pub fn has_textures(material: &Material) -> bool {
+    material.all_texture_slots().next().is_some() || material.parallax.is_some()
+}
+
+/// The triangles of a model whose materials have textures.
+pub fn drawn_part(model: &Model) -> Mesh {
+    let mut mesh = model.mesh.clone();
+    let is_drawn = |own: &u32| model.materials.get(*own as usize).is_some_and(has_textures);
+    let mut kept = model.mesh.triangle_materials.iter().map(is_drawn);
+    mesh.triangles.retain(|_| kept.next().unwrap_or(false));
+    mesh.triangle_materials.retain(|own| is_drawn(own));
+    mesh
+}
+
+/// The model without images, with the texture coordinates by which its materials read base colours, in which each material
+/// without textures has a square of a few texels that no other triangle lies on. Base colours are no longer moved by materials.
 ///
 /// None where no material is without textures, where vertices have colours, and where there is no room.
 pub fn with_plain_parts_apart(model: &Model, texture_size: usize) -> Option<Model> {
     let mesh = &model.mesh;
-    let is_plain =
-        |material: &Material| material.all_texture_slots().next().is_none() && material.parallax.is_none();
+    let is_plain = |material: &Material| !has_textures(material);
     if !mesh.colors.is_empty() || !model.materials.iter().any(is_plain) {
         return None;
     }
@@ -26,9 +40,18 @@ pub fn with_plain_parts_apart(model: &Model, texture_size: usize) -> Option<Mode
     }
     let groups: Vec<Option<usize>> =
         mesh.triangle_materials.iter().map(|&own| group_of[own as usize]).collect();
-    let mut apart = model.clone();
-    apart.mesh.uvs = material_uvs(mesh, &model.materials);
-    apart.mesh.uvs = with_own_squares(&apart.mesh, &groups, texture_size)?;
+    let read = Mesh { uvs: material_uvs(mesh, &model.materials), ..mesh.clone() };
+    let uvs = with_own_squares(&read, &groups, texture_size)?;
+    let mut apart = Model {
+        name: model.name.clone(),
+        mesh: Mesh { uvs, ..read },
+        materials: model.materials.clone(),
+        images: Vec::new(),
+        rig: model.rig.clone(),
+        nodes: model.nodes.clone(),
+        painted: model.painted.clone(),
+        parts: model.parts.clone(),
+    };
     for slot in apart.materials.iter_mut().filter_map(|material| material.base_color_texture.as_mut()) {
         (slot.uv_set, slot.transform) = (0, UvTransform::default());
     }
@@ -39,8 +62,8 @@ pub fn with_plain_parts_apart(model: &Model, texture_size: usize) -> Option<Mode
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use parbake_model::TextureSlot;
     use parbake_model::glam::{Vec2, Vec3, vec2};
-    use parbake_model::{Mesh, TextureSlot};
 
     /// Protects texels of a drawing that a material without textures would lie on, and where that drawing is read.
     #[test]
