@@ -41,7 +41,7 @@ use std::time::Instant;
 
 /// The training cameras: the paper's distance, and the field of view at which a
 /// model fills most of the picture.
-pub(crate) const RIG: Rig = Rig { radius: 3.5, projection: Projection::Perspective(0.4) };
+const RIG: Rig = Rig { radius: 3.5, projection: Projection::Perspective(0.4) };
 
 /// A finished bake.
 #[derive(Clone, Debug)]

@@ -3,32 +3,24 @@
 //!
 //! ```text
 //! model ─┬ edges collapse in several ways, attributes follow (levels/collapses.rs) ─┬ the one with the closest pictures
-//!        └ the copy whose surface is closest (mesh/simplify.rs) ─────────────────┬──┘
-//!                     the same with thin walls pulled apart (shape/uncross.rs) ──┘
+//!        └ the copy whose surface is closest (mesh/simplify.rs) ────────────────────┘
 //! ```
 //!
 //! A close surface may still look wrong: rounded edges and stretched textures do not change it.
 //!
 //! Contract: materials stay as they are, and a rig comes along. Deterministic.
 
-use crate::bake::RIG;
 use crate::models::with_tangents;
 use parbake_evaluate::EvaluateError;
 use parbake_evaluate::screen_size::ScreenComparison;
 use parbake_levels::collapses::{FIRST_WAYS, best_collapsed};
 use parbake_levels::face_frames::with_face_tangents;
 use parbake_levels::maps::with_maps_at_most;
-use parbake_mesh::ensure_normals;
 use parbake_mesh::parts::{parts_of_materials, with_parted_materials};
 use parbake_mesh::rigs::transferred;
 use parbake_mesh::simplify::{SimplifyOptions, simplify};
-use parbake_model::{Material, Mesh, Model};
+use parbake_model::{Mesh, Model};
 use parbake_progress::{Message, Stage, Watcher};
-use parbake_render::interpretation::Interpretation;
-use parbake_render::scene::Scene;
-use parbake_shape::stage::move_vertices;
-use parbake_shape::uncross::with_sides_in_order;
-use parbake_views::frame::common_frame;
 use std::cell::Cell;
 
 /// Pixels that a model spans in the pictures by which copies are compared.
@@ -84,45 +76,20 @@ fn closest_in_pictures(
         watcher.message(Message::Progress {
             stage: Stage::Simplify,
             done: tried.get(),
-            total: FIRST_WAYS + 2,
+            total: FIRST_WAYS + 1,
         });
         Ok((coarse.mesh, psnr))
     };
     let best = best_collapsed(&parted.mesh, triangles, false, &|| watcher.stopped(), judged)?;
     let other = by_shape(&parted.mesh, triangles);
-    let (mesh, psnr) = match best {
-        None => return Ok(other),
-        Some(best) if other.triangles.len() > triangles => best,
-        Some(best) => {
+    match best {
+        None => Ok(other),
+        Some((mesh, _)) if other.triangles.len() > triangles => Ok(mesh),
+        Some((mesh, most)) => {
             let (other, psnr) = judged(other)?;
-            if psnr > best.1 { (other, psnr) } else { best }
-        }
-    };
-    if let Some(apart) = with_sides_apart(model, &mesh, watcher) {
-        let (apart, own) = judged(apart)?;
-        if own > psnr {
-            return Ok(apart);
+            Ok(if psnr > most { other } else { mesh })
         }
     }
-    Ok(mesh)
-}
-
-/// The copy with thin walls pulled apart whose sides have crossed; none where all are in order, or where it has no normals.
-fn with_sides_apart(model: &Model, copy: &Mesh, watcher: &dyn Watcher) -> Option<Mesh> {
-    let frame = common_frame(model).ok().filter(|_| copy.normals.len() == copy.positions.len())?;
-    let mut placed = copy.clone();
-    frame.apply(&mut placed);
-    let high = || {
-        let mut bare = model.mesh.clone();
-        ensure_normals(&mut bare);
-        frame.apply(&mut bare);
-        bare.triangle_materials.fill(0);
-        Scene::new(bare, &[Material::default()], &[], Interpretation::default())
-    };
-    let positions = with_sides_in_order(&placed, high, &RIG, watcher)?;
-    let mut apart = Mesh { tangents: Vec::new(), ..copy.clone() };
-    move_vertices(&mut apart, &placed, &positions, &frame);
-    Some(apart)
 }
 
 fn by_shape(mesh: &Mesh, triangles: usize) -> Mesh {
@@ -148,7 +115,7 @@ mod tests {
     use super::*;
     use crate::models::demo_pair;
     use parbake_model::glam::{Vec3, vec2, vec4};
-    use parbake_model::{MaterialExtensions, TextureSlot, Transmission};
+    use parbake_model::{Material, MaterialExtensions, TextureSlot, Transmission};
 
     /// Protects materials and what viewers need to show them.
     #[test]
@@ -218,42 +185,5 @@ mod tests {
         point.mesh.positions.fill(Vec3::ONE);
         let coarse = simplified_by_pictures(&point, 10, &());
         assert_eq!(coarse.mesh.triangles.len(), point.mesh.triangles.len());
-    }
-
-    /// A strip of this many cells across a bend, closed but for its rims; its sides are apart by a hundredth of its length.
-    fn bent_board(cells: [u32; 2]) -> Model {
-        let mut mesh = Mesh::default();
-        for (side, cells) in cells.into_iter().enumerate() {
-            let (first, up) = (mesh.positions.len() as u32, if side == 0 { 1.0 } else { -1.0 });
-            for column in 0..=cells {
-                let x = column as f32 / cells as f32 - 0.5;
-                let z = 0.03 - 0.12 * x * x + 0.0025 * up;
-                mesh.positions.extend([Vec3::new(x, -0.2, z), Vec3::new(x, 0.2, z)]);
-                mesh.normals.extend([Vec3::Z * up; 2]);
-            }
-            for column in 0..cells {
-                let [a, b, c, d] = [0, 1, 2, 3].map(|k| first + 2 * column + k);
-                mesh.triangles.extend(if side == 0 {
-                    [[a, c, b], [b, c, d]]
-                } else {
-                    [[a, b, c], [b, d, c]]
-                });
-            }
-        }
-        mesh.triangle_materials = vec![0; mesh.triangles.len()];
-        Model { mesh, materials: vec![Material::default()], ..Model::default() }
-    }
-
-    /// Protects copies whose walls crossed: their sides move apart and tangents of before go; and models without normals.
-    #[test]
-    fn walls_of_copies_are_pulled_apart() {
-        let model = bent_board([32, 32]);
-        let mut copy = bent_board([2, 8]).mesh;
-        copy.tangents = vec![vec4(1.0, 0.0, 0.0, 1.0); copy.positions.len()];
-        let apart = with_sides_apart(&model, &copy, &()).unwrap();
-        assert!(apart.positions != copy.positions && apart.tangents.is_empty());
-        assert_eq!(with_sides_apart(&model, &model.mesh, &()), None);
-        copy.normals.clear();
-        assert_eq!(with_sides_apart(&model, &copy, &()), None);
     }
 }

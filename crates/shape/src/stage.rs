@@ -91,7 +91,7 @@ pub fn shape(
     let seen = shape_views(&placed, high, plan, watcher);
     // Textures of matte surfaces take the colours of either side.
     let apart = match high.is_whole_material {
-        true => with_sides_in_order(&placed, || &high.scene, &high.conventions.rig, watcher),
+        true => with_sides_in_order(&placed, &high.scene, &high.conventions.rig, watcher),
         false => None,
     };
     if let Some(apart) = apart {
@@ -200,7 +200,7 @@ fn report(shaped: &Shaped) -> ShapeReport {
 
 /// Moves a mesh as its copy in the common frame has moved, its normals with it; vertices are split
 /// where a normal would end up on its face's back.
-pub fn move_vertices(mesh: &mut Mesh, placed: &Mesh, positions: &[Vec3], frame: &Placement) {
+pub(crate) fn move_vertices(mesh: &mut Mesh, placed: &Mesh, positions: &[Vec3], frame: &Placement) {
     for ((written, before), after) in mesh.positions.iter_mut().zip(&placed.positions).zip(positions) {
         *written += (*after - *before) / frame.scale;
     }

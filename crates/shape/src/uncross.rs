@@ -25,7 +25,6 @@ use parbake_render::raster::{NOTHING, Visibility};
 use parbake_render::scene::Scene;
 use parbake_views::pool::Rig;
 use rayon::prelude::*;
-use std::borrow::Borrow;
 
 /// More triangles are too small to reach through a wall.
 const MOST_TRIANGLES: usize = 20_000;
@@ -42,14 +41,8 @@ const OPPOSITE: f32 = -0.5;
 const WORTH_IT: f64 = 0.5;
 
 /// The vertices of a mesh with the sides of its walls in order, as the scene of the high-poly shows them from the distance of
-/// `rig`; none where they are in order, or cannot be brought into it, or where there are more triangles than are looked at. `high` is
-/// asked for only where sides may have crossed. The mesh has a normal at each vertex. A watcher that says stop is heeded between steps.
-pub fn with_sides_in_order<S: Borrow<Scene>>(
-    mesh: &Mesh,
-    high: impl FnOnce() -> S,
-    rig: &Rig,
-    watcher: &dyn Watcher,
-) -> Option<Vec<Vec3>> {
+/// `rig`; none where they are in order, or cannot be brought into it, or where there are more triangles than are looked at. The mesh has a normal at each vertex. A watcher that says stop is heeded between steps.
+pub fn with_sides_in_order(mesh: &Mesh, high: &Scene, rig: &Rig, watcher: &dyn Watcher) -> Option<Vec<Vec3>> {
     if mesh.triangles.len() > MOST_TRIANGLES || watcher.stopped() {
         return None;
     }
@@ -58,10 +51,10 @@ pub fn with_sides_in_order<S: Borrow<Scene>>(
     Some(points.vertices(&apart))
 }
 
-fn uncrossed<S: Borrow<Scene>>(
+fn uncrossed(
     points: &[Vec3],
     triangles: &[[u32; 3]],
-    high: impl FnOnce() -> S,
+    high: &Scene,
     rig: &Rig,
     watcher: &dyn Watcher,
 ) -> Option<Vec<Vec3>> {
@@ -74,8 +67,6 @@ fn uncrossed<S: Borrow<Scene>>(
     if seen.iter().all(Vec::is_empty) {
         return None;
     }
-    let high = high();
-    let high: &Scene = high.borrow();
     // Only views that may show a fault need the high-poly's.
     let fronts: Vec<Vec<Option<Vec3>>> = (cameras.par_iter().zip(&seen))
         .map(|(camera, found)| if found.is_empty() { Vec::new() } else { fronts(high, camera) })
@@ -208,7 +199,7 @@ mod tests {
         let low = board([2, 8], 0.01);
         let before = wrong_pixels(&low);
         assert!(before > 500, "{before}");
-        let apart = uncrossed(&low.0, &low.1, || &high, &RIG, &()).unwrap();
+        let apart = uncrossed(&low.0, &low.1, &high, &RIG, &()).unwrap();
         let farthest = apart.iter().zip(&low.0).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
         assert!(farthest < 0.03, "{farthest}");
         let after = wrong_pixels(&(apart, low.1));
@@ -219,9 +210,9 @@ mod tests {
     #[test]
     fn sound_walls_and_leaves_stay() {
         let sound = board([16, 16], 0.01);
-        assert_eq!(uncrossed(&sound.0, &sound.1, || scene(sound.clone()), &RIG, &()), None);
+        assert_eq!(uncrossed(&sound.0, &sound.1, &scene(sound.clone()), &RIG, &()), None);
         let inside_out = board([8, 8], -0.01);
         assert!(wrong_pixels(&inside_out) > 500);
-        assert_eq!(uncrossed(&inside_out.0, &inside_out.1, || scene(inside_out.clone()), &RIG, &()), None);
+        assert_eq!(uncrossed(&inside_out.0, &inside_out.1, &scene(inside_out.clone()), &RIG, &()), None);
     }
 }
