@@ -41,7 +41,8 @@ const OPPOSITE: f32 = -0.5;
 const WORTH_IT: f64 = 0.5;
 
 /// The vertices of a mesh with the sides of its walls in order, as the scene of the high-poly shows them from the distance of
-/// `rig`; none where they are in order, or cannot be brought into it, or where there are more triangles than are looked at. The mesh has a normal at each vertex. A watcher that says stop is heeded between steps.
+/// `rig`; none where they are in order, or cannot be brought into it, or where there are more than
+/// 20,000 triangles. The mesh has a normal at each vertex. A watcher that says stop is heeded between steps.
 pub fn with_sides_in_order(mesh: &Mesh, high: &Scene, rig: &Rig, watcher: &dyn Watcher) -> Option<Vec<Vec3>> {
     if mesh.triangles.len() > MOST_TRIANGLES || watcher.stopped() {
         return None;
@@ -121,7 +122,7 @@ fn normal([a, b, c]: [Vec3; 3]) -> Vec3 {
 }
 
 /// The points after a step: the corners of both triangles of each pixel move apart by half of what is asked for, each by the mean of
-/// what its pixels ask, weighed by their barycentric weights.
+/// what its pixels ask, weighted by their barycentric weights.
 fn pulled_apart(at: &[Vec3], triangles: &[[u32; 3]], wrong: &[Crossing]) -> Vec<Vec3> {
     let mut sums = vec![(Vec3::ZERO, 0.0f32); at.len()];
     for own in wrong {
