@@ -11,7 +11,7 @@
 
 use crate::FloatImage;
 use parbake_model::Wrap;
-use parbake_model::glam::Vec2;
+use parbake_model::glam::{Vec2, Vec4};
 
 /// The four texels that a bilinear fetch blends, in the order (x0,y0), (x1,y0),
 /// (x0,y1), (x1,y1).
@@ -81,10 +81,28 @@ impl<const C: usize> FloatImage<[f32; C]> {
         [texel(a), texel(b), texel(c), texel(d)]
     }
 
+    /// The texels of a fetch as four lanes each, of which the last holds what follows in memory; none where nothing follows,
+    /// and where texels are not of three channels.
+    #[inline(always)]
+    fn four_wide(&self, taps: &Taps) -> Option<[Vec4; 4]> {
+        if C != 3 {
+            return None;
+        }
+        let channels = self.texels.as_flattened();
+        let texel = |i: u32| Some(Vec4::from_array(*channels.get(3 * i as usize..)?.first_chunk()?));
+        let [a, b, c, d] = taps.index;
+        Some([texel(a)?, texel(b)?, texel(c)?, texel(d)?])
+    }
+
     /// The blend of four texels.
     #[inline]
     pub fn fetch(&self, taps: &Taps) -> [f32; C] {
         let w = taps.weights();
+        // One register a texel instead of three, in the same order of sums.
+        if let Some([a, b, c, d]) = self.four_wide(taps) {
+            let blend = a * w[0] + b * w[1] + c * w[2] + d * w[3];
+            return std::array::from_fn(|k| blend[k]);
+        }
         let [a, b, c, d] = self.four(taps);
         std::array::from_fn(|k| a[k] * w[0] + b[k] * w[1] + c[k] * w[2] + d[k] * w[3])
     }

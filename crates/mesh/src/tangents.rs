@@ -11,10 +11,13 @@
 //! copies at the end.
 
 use crate::normals::ensure_normals;
+use crate::union_find::UnionFind;
 use crate::vertices::{any_orthogonal, push_copy};
+use crate::weld::{ordered_bits, weld_by};
 use mikktspace::Geometry;
 use parbake_model::Mesh;
 use parbake_model::glam::{Vec3, Vec4};
+use rayon::prelude::*;
 
 /// Fills `mesh.tangents`, and `mesh.normals` where there are none. Corners that
 /// MikkTSpace says nothing of (no texture coordinates, no area in space or
@@ -25,12 +28,15 @@ pub fn compute_tangents(mesh: &mut Mesh) {
         ensure_normals(mesh);
     }
     mesh.tangents.clear();
-    let corners = corner_tangents(mesh);
+    let corners = corner_tangents(mesh, PART);
     assign(mesh, &corners);
 }
 
-/// One tangent for each corner of each triangle, where there is one.
-fn corner_tangents(mesh: &Mesh) -> Vec<[Option<Vec4>; 3]> {
+/// Triangles that are worked on together at least, if there are as many.
+const PART: usize = 4096;
+
+/// One tangent for each corner of each triangle, where there is one; at least `part` triangles are worked on together.
+fn corner_tangents(mesh: &Mesh, part: usize) -> Vec<[Option<Vec4>; 3]> {
     let mut tangents = vec![[None; 3]; mesh.triangles.len()];
     if mesh.uvs.len() != mesh.positions.len() {
         return tangents;
@@ -47,27 +53,73 @@ fn corner_tangents(mesh: &Mesh) -> Vec<[Option<Vec4>; 3]> {
         return tangents;
     }
     let largest = |values: &mut dyn Iterator<Item = f32>| values.fold(0.0, |m: f32, x| m.max(x.abs()));
-    let mut corners = Corners {
-        mesh,
-        position_scale: taming_scale(largest(&mut mesh.positions.iter().flat_map(|p| p.to_array()))),
-        uv_scale: taming_scale(largest(&mut mesh.uvs.iter().flat_map(|uv| uv.to_array()))),
-        solid: &solid,
-        tangents: &mut tangents,
-    };
+    let position_scale = taming_scale(largest(&mut mesh.positions.iter().flat_map(|p| p.to_array())));
+    let uv_scale = taming_scale(largest(&mut mesh.uvs.iter().flat_map(|uv| uv.to_array())));
     // It also walks round each vertex recursively, a stack frame per triangle.
     let frames = most_triangles_at_a_vertex(mesh) * 256;
-    if frames < 256 * 1024 {
-        mikktspace::generate_tangents(&mut corners);
-    } else {
-        std::thread::scope(|scope| {
-            let thread = std::thread::Builder::new().stack_size(4 * frames + 1024 * 1024);
-            // Without a thread there are no tangents but the fallback's.
-            let _ = thread
-                .spawn_scoped(scope, || mikktspace::generate_tangents(&mut corners))
-                .map(|handle| handle.join());
-        });
+    let of_part = |part: &Vec<u32>| -> Vec<[Option<Vec4>; 3]> {
+        let mut own = vec![[None; 3]; part.len()];
+        let mut corners = Corners { mesh, position_scale, uv_scale, solid: part, tangents: &mut own };
+        if frames < 256 * 1024 {
+            mikktspace::generate_tangents(&mut corners);
+        } else {
+            std::thread::scope(|scope| {
+                let thread = std::thread::Builder::new().stack_size(4 * frames + 1024 * 1024);
+                // Without a thread there are no tangents but the fallback's.
+                let _ = thread
+                    .spawn_scoped(scope, || mikktspace::generate_tangents(&mut corners))
+                    .map(|handle| handle.join());
+            });
+        }
+        own
+    };
+    let parts = independent_parts(mesh, &solid, part);
+    let each: Vec<_> = parts.par_iter().map(of_part).collect();
+    for (&triangle, corners) in parts.iter().flatten().zip(each.into_iter().flatten()) {
+        tangents[triangle as usize] = corners;
     }
     tangents
+}
+
+/// Triangles apart from each other to MikkTSpace, which looks only from a corner to others of the same position, normal and
+/// coordinate: each part, of `least` triangles or more, can be worked on alone. In each they keep their order.
+fn independent_parts(mesh: &Mesh, solid: &[u32], least: usize) -> Vec<Vec<u32>> {
+    if solid.len() < 2 * least {
+        return vec![solid.to_vec()];
+    }
+    let welded = weld_by(mesh.positions.len(), |i| {
+        let ([x, y, z], [a, b, c]) = (mesh.positions[i].to_array(), mesh.normals[i].to_array());
+        let [u, v] = mesh.uvs[i].to_array();
+        [x, y, z, a, b, c, u, v].map(ordered_bits)
+    });
+    let mut sets = UnionFind::new(mesh.positions.len());
+    for &triangle in solid {
+        let [a, b, c] = mesh.triangles[triangle as usize].map(|vertex| welded[vertex as usize]);
+        sets.union(a, b);
+        sets.union(b, c);
+    }
+    let of = |triangle: u32, sets: &mut UnionFind| {
+        sets.find(welded[mesh.triangles[triangle as usize][0] as usize])
+    };
+    let mut sizes = vec![0usize; mesh.positions.len()];
+    solid.iter().for_each(|&triangle| sizes[of(triangle, &mut sets) as usize] += 1);
+    // Sets are put together by where they begin, until a part is large enough.
+    let mut part_of = vec![u32::MAX; mesh.positions.len()];
+    let mut parts: Vec<Vec<u32>> = Vec::new();
+    let mut room = 0;
+    for &triangle in solid {
+        let set = of(triangle, &mut sets) as usize;
+        if part_of[set] == u32::MAX {
+            if room == 0 {
+                parts.push(Vec::new());
+                room = least;
+            }
+            part_of[set] = parts.len() as u32 - 1;
+            room = room.saturating_sub(sizes[set]);
+        }
+        parts[part_of[set] as usize].push(triangle);
+    }
+    parts
 }
 
 /// A power of two, which rounds nothing, that keeps products of three
@@ -93,6 +145,7 @@ struct Corners<'a> {
     uv_scale: f32,
     /// Triangles with three different corners.
     solid: &'a [u32],
+    /// Theirs, in the same order.
     tangents: &'a mut [[Option<Vec4>; 3]],
 }
 
@@ -143,7 +196,7 @@ impl Geometry for Corners<'_> {
         let no_area = (uvs[1] - uvs[0]).perp_dot(uvs[2] - uvs[0]) == 0.0;
         let sign = if preserves_orientation { 1.0 } else { -1.0 };
         let unit = Vec3::from(tangent).try_normalize().filter(|_| !(untouched && no_area));
-        self.tangents[self.solid[face] as usize][corner] = unit.map(|t| t.extend(sign));
+        self.tangents[face][corner] = unit.map(|t| t.extend(sign));
     }
 }
 

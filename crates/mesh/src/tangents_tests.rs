@@ -131,3 +131,29 @@ proptest! {
         }
     }
 }
+
+/// Protects large models, whose parts are worked on at the same time: tangents are those of all triangles at once, also where
+/// triangles meet only at vertices that are written twice.
+#[test]
+fn parts_have_the_tangents_of_the_whole() {
+    let mut m = Mesh::default();
+    let bump = |x: u32, y: u32, seed: u32| ((x * 7 + y * 13 + seed * 5) % 11) as f32 / 11.0;
+    for island in 0..6u32 {
+        for (row, column) in (0..4u32).flat_map(|row| (0..4u32).map(move |column| (row, column))) {
+            let corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(x, y)| (column + x, row + y));
+            let first = m.positions.len() as u32;
+            for (x, y) in corners {
+                let at = Vec3::new(x as f32 + 6.0 * island as f32, y as f32, bump(x, y, island));
+                m.positions.push(at);
+                m.normals.push(Vec3::new(bump(y, x, island) - 0.5, 0.3 * bump(x, y, 3), 1.0).normalize());
+                m.uvs.push(Vec2::new(x as f32 + bump(x, y, 1), y as f32 + bump(y, x, 2)));
+            }
+            m.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        }
+    }
+    m.triangle_materials = vec![0; m.triangles.len()];
+    let solid: Vec<u32> = (0..m.triangles.len() as u32).collect();
+    let parts = independent_parts(&m, &solid, 40);
+    assert_eq!(parts.iter().map(Vec::len).collect::<Vec<_>>(), [64, 64, 64]);
+    assert_eq!(corner_tangents(&m, 40), corner_tangents(&m, usize::MAX / 2));
+}

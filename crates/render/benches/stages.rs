@@ -24,7 +24,7 @@ use parbake_render::cutout::CutoutCoefficients;
 use parbake_render::directions::ViewDirection;
 use parbake_render::edges::EdgeAdjacency;
 use parbake_render::frame::{TangentLight, tangent_light, tangent_light_adjoint};
-use parbake_render::gradient_pixels::GradientPixels;
+use parbake_render::gradient_pixels::{GradientPixels, ShadedPixels};
 use parbake_render::interpolate::{
     Barycentrics, barycentrics, barycentrics_adjoint, footprint_adjoint, interpolate,
 };
@@ -116,7 +116,7 @@ impl Bench {
             edges: EdgeAdjacency::new(&positions, &triangles),
             color: texture(|u, v| [0.5 + 0.4 * (60.0 * u).sin(), 0.5 + 0.4 * (45.0 * v).cos(), u * v]),
             normal: texture(|u, v| [0.2 * (80.0 * u).sin(), 0.2 * (70.0 * v).sin(), 0.95]),
-            reference: Reference::new(wanted, SIZE, &composer),
+            reference: Reference { size: SIZE, pixels: wanted },
             picture,
             positions,
             normals,
@@ -523,7 +523,9 @@ fn loss_forward_and_adjoint(bencher: Bencher, image: ImageLoss) {
 fn compare_picture(bencher: Bencher, image: ImageLoss) {
     let b = Bench::new();
     let comparison = Comparison { image, coverage: 1.0, ..Comparison::default() };
-    bencher.counter(b.pixels()).bench_local(|| compare(&b.picture, &b.composer, &b.reference, &comparison));
+    let shaded = ShadedPixels::all(SIZE);
+    let run = || compare(&b.picture, &b.composer, &b.reference, &comparison, &shaded);
+    bencher.counter(b.pixels()).bench_local(run);
 }
 
 /// Items are texels of the finest level.

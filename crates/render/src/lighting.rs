@@ -19,12 +19,15 @@ use std::f32::consts::PI;
 /// A soft lamp: `color · exp(sharpness (axis·ω − 1))`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftLight {
-    /// Unit vector to its middle.
-    pub axis: Vec3,
-    /// More is narrower; above 0.
-    pub sharpness: f32,
-    /// Linear radiance in its middle.
-    pub color: Vec3,
+    axis: Vec3,
+    sharpness: f32,
+    color: Vec3,
+    /// Of [`SoftLight::diffuse`]: what scales and is added to the fitted cosine, and its width.
+    scale: f32,
+    bias: f32,
+    width: f32,
+    /// `∫ exp(λ (μ·ω − 1)) dω`.
+    whole: f32,
 }
 
 /// A lamp so far away that its light is parallel.
@@ -53,22 +56,27 @@ fn integral<T: Real>(sharpness: T) -> T {
 }
 
 impl SoftLight {
+    /// A lamp about `axis`, a unit vector, with this linear radiance in its middle; the larger `sharpness`, which is above 0,
+    /// the narrower.
+    pub fn new(axis: Vec3, sharpness: f32, color: Vec3) -> Self {
+        let (once, twice) = ((-sharpness).exp(), (-2.0 * sharpness).exp());
+        let scale = 1.0 + 2.0 * twice - 1.0 / sharpness;
+        let bias = (once - twice) / sharpness - twice;
+        let width = (1.0 - scale).max(1e-6).sqrt();
+        Self { axis, sharpness, color, scale, bias, width, whole: integral(sharpness) }
+    }
+
     /// Irradiance over π for a surface whose normal has this cosine to the axis, as a share of the colour.
     fn diffuse<T: Real>(&self, cosine: T) -> T {
         const SHARE: f32 = 0.36;
-        let lambda = self.sharpness;
-        let (once, twice) = ((-lambda).exp(), (-2.0 * lambda).exp());
-        let scale = 1.0 + 2.0 * twice - 1.0 / lambda;
-        let bias = (once - twice) / lambda - twice;
-        let x = (1.0 - scale).max(1e-6).sqrt();
-        let (x0, x1) = (cosine * SHARE, x / (4.0 * SHARE));
+        let (x0, x1) = (cosine * SHARE, self.width / (4.0 * SHARE));
         let lit = if x0.value().abs() <= x1 {
             let n = x0 + x1;
-            n * n * (1.0 / x)
+            n * n * (1.0 / self.width)
         } else {
             cosine.at_least(0.0).at_most(1.0)
         };
-        (lit * scale + bias).at_least(0.0) * (integral::<f32>(lambda) / PI)
+        (lit * self.scale + self.bias).at_least(0.0) * (self.whole / PI)
     }
 
     /// Radiance about a direction with this cosine to the axis, smoothed by a lobe of this sharpness, as a share of
@@ -76,7 +84,7 @@ impl SoftLight {
     fn smoothed<T: Real>(&self, cosine: T, lobe: T) -> T {
         let own = T::constant(self.sharpness);
         let sharpness = lobe * own / (lobe + own);
-        (sharpness * (cosine + -1.0)).exp() * integral(own) / integral(sharpness)
+        (sharpness * (cosine + -1.0)).exp() * T::constant(self.whole) / integral(sharpness)
     }
 }
 
@@ -84,10 +92,8 @@ impl Lighting {
     /// The built-in light: that of a bright room with a window above, soft lamps on three sides, and one lamp far
     /// away. White matte surfaces are nowhere much brighter than white.
     pub fn studio() -> Self {
-        let soft = |axis: [f32; 3], sharpness, color: [f32; 3]| SoftLight {
-            axis: Vec3::from(axis).normalize(),
-            sharpness,
-            color: Vec3::from(color),
+        let soft = |axis: [f32; 3], sharpness, color: [f32; 3]| {
+            SoftLight::new(Vec3::from(axis).normalize(), sharpness, Vec3::from(color))
         };
         Self {
             ambient: Vec3::new(0.16, 0.165, 0.175),
@@ -142,7 +148,7 @@ mod tests {
     #[test]
     fn irradiance_matches_the_integral() {
         for sharpness in [2.0, 8.0, 30.0, 60.0] {
-            let light = SoftLight { axis: Vec3::Y, sharpness, color: Vec3::ONE };
+            let light = SoftLight::new(Vec3::Y, sharpness, Vec3::ONE);
             let peak = light.diffuse(1.0f32);
             for cosine in [-0.9f32, -0.3, 0.0, 0.2, 0.6, 1.0] {
                 let normal = Vec3::new((1.0 - cosine * cosine).sqrt(), cosine, 0.0);
@@ -157,7 +163,7 @@ mod tests {
     /// Protects mirrors: smooth ones show the lamp as it is, rough ones the same light spread out.
     #[test]
     fn smoothing_keeps_the_light() {
-        let light = SoftLight { axis: Vec3::Y, sharpness: 20.0, color: Vec3::ONE };
+        let light = SoftLight::new(Vec3::Y, 20.0, Vec3::ONE);
         assert!((light.smoothed(0.9f32, 1e6) - (20.0f32 * -0.1).exp()).abs() < 1e-3);
         let whole = integral::<f32>(20.0);
         for lobe in [0.5f32, 5.0, 100.0] {

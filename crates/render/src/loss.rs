@@ -10,9 +10,11 @@
 //! where both are clipped it is zero.
 //!
 //! Contract: values are sums over pixels in f64, row by row; the caller's
-//! normalisation is the mean over pixels (and channels).
+//! normalisation is the mean over pixels (and channels). Where only some pixels are shaded, values are estimates from those
+//! that the adjoint reads, and pixels that are not shaded have no gradient.
 
 use crate::background::Composer;
+use crate::gradient_pixels::ShadedPixels;
 use rayon::prelude::*;
 
 /// Added inside the logarithm of [`ImageLoss::LogL1`]: 1 % of full light.
@@ -66,26 +68,13 @@ pub fn coverage_loss(view: f32, reference: f32) -> (f32, f32) {
     (difference * difference, 2.0 * difference)
 }
 
-/// A reference picture as a view is compared with it.
+/// A picture that a view is compared with.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reference {
     /// Pixels along a side.
     pub size: usize,
-    /// size² display values in front of the background, and coverage.
+    /// size² pixels of premultiplied linear light and coverage.
     pub pixels: Vec<[f32; 4]>,
-}
-
-impl Reference {
-    /// Puts a premultiplied linear picture of size² pixels in front of a background.
-    pub fn new(mut pixels: Vec<[f32; 4]>, size: usize, composer: &Composer) -> Self {
-        pixels.par_chunks_mut(size.max(1)).enumerate().for_each(|(row, pixels)| {
-            for (column, pixel) in pixels.iter_mut().enumerate() {
-                let [r, g, b] = composer.forward(pixel, column, row).value;
-                *pixel = [r, g, b, pixel[3]];
-            }
-        });
-        Self { size, pixels }
-    }
 }
 
 /// What is compared, and how much each part counts.
@@ -116,13 +105,14 @@ impl LossValue {
     }
 }
 
-/// Composes a premultiplied linear picture, compares it, and returns the mean loss
-/// with its gradient with respect to the picture's pixels.
+/// Puts two premultiplied linear pictures in front of the same background, compares them where pixels are shaded, and
+/// returns the mean loss with its gradient with respect to the first picture's pixels.
 pub fn compare(
     rgba: &[[f32; 4]],
     composer: &Composer,
     reference: &Reference,
     comparison: &Comparison,
+    shaded: &ShadedPixels,
 ) -> (LossValue, Vec<[f32; 4]>) {
     let size = reference.size.max(1);
     let (per_value, per_pixel) = (1.0 / (3 * size * size) as f32, 1.0 / (size * size) as f32);
@@ -135,21 +125,23 @@ pub fn compare(
             for (column, (out, (rgba, wanted))) in
                 gradient.iter_mut().zip(rgba.iter().zip(reference)).enumerate()
             {
-                let composed = composer.forward(rgba, column, row);
                 // Equal pixels, as most of the background, have neither loss nor gradient.
-                if composed.value == wanted[..3] && rgba[3] == wanted[3] {
+                if rgba == wanted || !shaded.contains(column, row) {
                     continue;
                 }
+                let composed = composer.forward(rgba, column, row);
+                let shown = composer.forward(wanted, column, row).value;
+                let counts = shaded.loss_weight(column, row);
                 let share = if rgba[3] > wanted[3] { 1.0 - comparison.overhang_discount } else { 1.0 };
                 let mut to_value = [0.0; 3];
                 for k in 0..3 {
-                    let (value, slope) = comparison.image.with_derivative(composed.value[k], wanted[k]);
-                    sums[0] += f64::from(share * value);
+                    let (value, slope) = comparison.image.with_derivative(composed.value[k], shown[k]);
+                    sums[0] += f64::from(counts * share * value);
                     to_value[k] = slope * share * per_value;
                 }
                 *out = composer.adjoint(&composed, to_value, column, row);
                 let (value, slope) = coverage_loss(rgba[3], wanted[3]);
-                sums[1] += f64::from(share * value);
+                sums[1] += f64::from(counts * share * value);
                 out[3] += comparison.coverage * slope * share * per_pixel;
             }
             sums

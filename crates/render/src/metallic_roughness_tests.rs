@@ -112,7 +112,7 @@ fn direct_light_and_the_table_agree() {
 /// roughness spreads it; occlusion hides it; emission shines in the dark.
 #[test]
 fn materials_look_like_themselves() {
-    let lamp = SoftLight { axis: Vec3::Z, sharpness: 200.0, color: Vec3::splat(10.0) };
+    let lamp = SoftLight::new(Vec3::Z, 200.0, Vec3::splat(10.0));
     let brdf = MetallicRoughness { lighting: Lighting { soft: vec![lamp], ..Lighting::default() } };
     let gold = Vec3::new(1.0, 0.7, 0.3);
     let mirror = brdf.light(&facing(), &plain(gold, 0.05, 1.0));

@@ -1,6 +1,6 @@
 //! One whole differentiable view: from a textured surface to a loss and back.
 //!
-//! Forward: raster → the samples' way (`patch.rs`) → antialias → background and display
+//! Forward: raster → silhouettes → the samples' way (`patch.rs`) → antialias → background and display
 //! → loss. Adjoint: the same backwards, from the [`Tape`] that the forward pass left.
 //! Texels' gradients are left on the mip levels where the fetches were;
 //! `Pyramid::base_adjoint` carries them to level 0, once for many views.
@@ -12,7 +12,7 @@
 use crate::antialias::{BlendTape, Blends, find_blends};
 use crate::background::Composer;
 use crate::camera::Camera;
-use crate::gradient_pixels::GradientPixels;
+use crate::gradient_pixels::{GradientPixels, ShadedPixels};
 use crate::loss::{Comparison, LossValue, Reference, compare};
 use crate::parallax::ParallaxCoefficients;
 use crate::patch::{CornerGradients, Patch, ShiftUse};
@@ -38,17 +38,18 @@ pub struct View<'a> {
     /// Blend silhouettes: without it coverage has no gradient.
     pub antialias: bool,
     /// Pixels whose gradients the adjoint carries on to texels and vertices; those of blended edges' vertices are whole.
+    /// Only pixels that these need are shaded.
     pub gradient_pixels: GradientPixels,
 }
 
 /// What a forward pass leaves for the adjoint, and for the curious.
 #[derive(Clone, Debug, Default)]
 pub struct Tape {
-    /// Premultiplied linear light and coverage, size² pixels.
+    /// Premultiplied linear light and coverage, size² pixels; 0 where they were not shaded.
     pub rgba: Vec<[f32; 4]>,
     /// What each pixel sees.
     pub seen: Visibility,
-    /// Mean losses.
+    /// Mean losses, estimated from the pixels that the adjoint reads.
     pub loss: LossValue,
     screen: ScreenTriangles,
     blends: Blends,
@@ -147,10 +148,20 @@ pub fn forward(surface: &Surface, textures: &Textures, brdf: &impl Brdf, view: &
     let screen = ScreenTriangles::new(surface.positions, surface.triangles, view.camera, size);
     let mut seen = Visibility::default();
     rasterise(&screen, size, (0.0, 0.0), &mut seen);
+    let mut blends = Blends::default();
+    if view.antialias {
+        let (positions, triangles) = (surface.positions, surface.triangles);
+        blends = find_blends(&screen, &seen, surface.edges, positions, triangles, view.camera);
+    }
+    let shaded = ShadedPixels::new(view.gradient_pixels, &blends, size);
     let mut rgba = vec![[0.0; 4]; size * size];
     let rows = rgba.par_chunks_mut(size.max(1)).zip(seen.triangle.par_chunks(size.max(1)));
     rows.enumerate().for_each(|(row, (pixels, seen))| {
         for (t, columns) in runs(seen) {
+            let mut columns = columns.filter(|&column| shaded.contains(column, row)).peekable();
+            if columns.peek().is_none() {
+                continue;
+            }
             let patch = Patch::new(surface, t, &screen.triangles[t], view.camera, textures);
             for column in columns {
                 let at = (column as f64 + 0.5, row as f64 + 0.5);
@@ -158,13 +169,8 @@ pub fn forward(surface: &Surface, textures: &Textures, brdf: &impl Brdf, view: &
             }
         }
     });
-    let mut blends = Blends::default();
-    if view.antialias {
-        let (positions, triangles) = (surface.positions, surface.triangles);
-        blends = find_blends(&screen, &seen, surface.edges, positions, triangles, view.camera);
-    }
     let blend_tape = blends.forward(&mut rgba);
-    let (loss, gradient) = compare(&rgba, view.composer, view.reference, &view.comparison);
+    let (loss, gradient) = compare(&rgba, view.composer, view.reference, &view.comparison, &shaded);
     Tape { rgba, seen, loss, screen, blends, blend_tape, gradient }
 }
 

@@ -204,6 +204,37 @@ pub fn rasterise_behind(
     fill(screen, size, offset, seen, |sample, nearness| nearness < front.nearness[sample]);
 }
 
+/// The same at offset 0 for the samples that are wanted, of size² ones. What is seen elsewhere has no meaning; triangles
+/// that may reach no wanted sample are passed over.
+pub fn rasterise_behind_some(
+    screen: &ScreenTriangles,
+    size: usize,
+    front: &Visibility,
+    wanted: &[bool],
+    seen: &mut Visibility,
+) {
+    // How many are wanted above and to the left of each corner of a sample (Crow 1984).
+    let side = size + 1;
+    let mut above = vec![0u32; side * side];
+    for (row, wanted) in wanted.chunks(size.max(1)).enumerate() {
+        let mut before = 0;
+        for (column, &wanted) in wanted.iter().enumerate() {
+            before += u32::from(wanted);
+            above[(row + 1) * side + column + 1] = above[row * side + column + 1] + before;
+        }
+    }
+    seen.clear(size);
+    for (index, triangle) in screen.triangles.iter().enumerate() {
+        let Some(bounds) = samples_within(triangle.bounds, size, (0.0, 0.0)) else { continue };
+        let [left, right, top, bottom] = bounds.map(|bound| bound as usize);
+        let at = |row: usize, column: usize| above[row * side + column];
+        if at(bottom + 1, right + 1) + at(top, left) > at(top, right + 1) + at(bottom + 1, left) {
+            let passes = |sample: usize, nearness| nearness < front.nearness[sample];
+            draw::<false>(triangle, index as u32, size, (0.0, 0.0), seen, passes);
+        }
+    }
+}
+
 impl Visibility {
     /// `size`² samples at which nothing is seen.
     pub fn empty(size: usize) -> Self {
@@ -340,5 +371,29 @@ mod tests {
         let seen = see(&p, &[[0, 1, 2]], &camera(), 32);
         assert!(seen.triangle[..16 * 32].iter().all(|&t| t == NOTHING), "nothing above the horizon");
         assert!(seen.triangle[31 * 32..].iter().all(|&t| t == 0), "the floor fills the last row");
+    }
+
+    /// Protects the search for crossed walls: behind the samples that are wanted the same is seen as where all are.
+    #[test]
+    fn what_is_behind_some_samples_is_what_is_behind_all() {
+        let mut positions = Vec::new();
+        for i in 0..120u32 {
+            let at = |k: u32| ((i * 37 + k * 61) % 97) as f32 / 48.5 - 1.0;
+            let corner = Vec3::new(at(0), at(1), 0.5 * at(2));
+            positions.extend([corner, corner + Vec3::new(0.3, 0.1 * at(3), 0.2), corner + Vec3::Y * 0.3]);
+        }
+        let triangles: Vec<[u32; 3]> = (0..120).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let size = 48;
+        let screen = ScreenTriangles::new(&positions, &triangles, &camera(), size);
+        let [mut front, mut all, mut some] = [(); 3].map(|()| Visibility::default());
+        rasterise(&screen, size, (0.0, 0.0), &mut front);
+        rasterise_behind(&screen, size, (0.0, 0.0), &front, &mut all);
+        let wanted: Vec<bool> = front.triangle.iter().map(|&t| t < 9).collect();
+        rasterise_behind_some(&screen, size, &front, &wanted, &mut some);
+        let behind = |seen: &Visibility| -> Vec<u32> {
+            seen.triangle.iter().zip(&wanted).filter(|(_, wanted)| **wanted).map(|(&t, _)| t).collect()
+        };
+        assert!(behind(&all).iter().filter(|&&t| t != NOTHING).count() > 20);
+        assert_eq!(behind(&all), behind(&some));
     }
 }

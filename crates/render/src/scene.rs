@@ -342,6 +342,19 @@ impl Scene {
         values
     }
 
+    /// The opacity at one sample, as [`Scene::material`] has it beside the base colour.
+    pub fn opacity_at(
+        &self,
+        camera: &Camera,
+        on_screen: &ScreenTriangle,
+        triangle: usize,
+        at: (f64, f64),
+        footprint: f32,
+    ) -> f32 {
+        let seen = self.seen(camera, on_screen, triangle, at, footprint, &|_| false);
+        seen.values[MapKind::BaseColor].w
+    }
+
     /// What is seen at one sample. Maps that are not read are neutral, since each costs a fetch.
     pub(crate) fn seen(
         &self,
@@ -386,7 +399,8 @@ impl Scene {
         };
         let mut values = self.values(surface, textures, corners, b.weights, reads, &fetch);
         let (mut tangent, mut handedness) = (Vec3::ZERO, 1.0);
-        let normals = textures[MapKind::Normal as usize].as_ref().filter(|_| !mesh.tangents.is_empty());
+        let is_read = reads(MapKind::Normal) && !mesh.tangents.is_empty();
+        let normals = textures[MapKind::Normal as usize].as_ref().filter(|_| is_read);
         if normals.is_some() || surface.layers.is_some() && !mesh.tangents.is_empty() {
             tangent = interpolate(corners.map(|i| mesh.tangents[i].truncate()), b.weights);
             handedness = mesh.tangents[corners[0]].w;

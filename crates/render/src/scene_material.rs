@@ -200,6 +200,8 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
         let (solid, layers) = self.visible(band, rows.clone());
         let share = 1.0 / (self.supersample * self.supersample) as f32;
         let mut next = 0;
+        // Neighbouring samples mostly see the same triangle.
+        let mut last: Option<(u32, ScreenTriangle)> = None;
         for (sample, solid) in solid.into_iter().enumerate() {
             let from = next;
             next += layers[from..].iter().take_while(|layer| layer.sample == sample).count();
@@ -236,7 +238,10 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
             match solid {
                 Solid::Nothing => {}
                 Solid::Plain(triangle) => {
-                    add(triangle, &self.screen.triangle(triangle as usize), false, &mut passed);
+                    let known = last.filter(|(known, _)| *known == triangle);
+                    let (_, on_screen) = *last
+                        .insert(known.unwrap_or_else(|| (triangle, self.screen.triangle(triangle as usize))));
+                    add(triangle, &on_screen, false, &mut passed);
                 }
                 Solid::Special(special) => {
                     let special = &self.special[special];

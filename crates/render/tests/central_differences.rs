@@ -173,7 +173,7 @@ impl Scene {
             Textures::new(&color, self.lit.then_some(&normal)).with_parallax(self.parallax.as_ref());
         let display = Display { gain: 0.95, curve: Curve::Srgb };
         let composer = Composer::new(self.background.for_view(3), display, self.size);
-        let reference = Reference::new(self.reference.clone(), self.size, &composer);
+        let reference = Reference { size: self.size, pixels: self.reference.clone() };
         let view = View {
             camera: &self.camera,
             reference: &reference,
@@ -362,16 +362,20 @@ fn whole_view_without_antialiasing() {
     }
 }
 
-/// Protects a stochastic descent from a bias: gradients of a quarter of the pixels are those of all in the mean.
+/// Protects a stochastic descent from a bias: gradients and losses of a quarter of the pixels are those of all in the mean.
 #[test]
 fn quarters_of_the_pixels_agree_in_the_mean() {
     let s = scene(5, 48);
-    let all = s.run(true).1.unwrap();
+    let (tape, all) = s.run(true);
+    let all = all.unwrap();
+    let mut loss = 0.0;
     let largest = all.positions.iter().map(|g| g.abs().max_element()).fold(0.0, f32::max);
     let quarters = [0, 1, 2, 3].map(GradientPixels::Quarter);
     let mut mean = vec![Vec3::ZERO; all.positions.len()];
     for gradient_pixels in quarters {
-        let one = Scene { gradient_pixels, ..s.clone() }.run(true).1.unwrap();
+        let (quarter, one) = Scene { gradient_pixels, ..s.clone() }.run(true);
+        let one = one.unwrap();
+        loss += quarter.loss.total(&s.comparison) / quarters.len() as f64;
         assert_ne!(one.positions, all.positions);
         for (sum, own) in mean.iter_mut().zip(&one.positions) {
             *sum += *own / quarters.len() as f32;
@@ -380,6 +384,8 @@ fn quarters_of_the_pixels_agree_in_the_mean() {
     for (mean, all) in mean.iter().zip(&all.positions) {
         assert!((*mean - *all).abs().max_element() < 1e-4 * largest, "{mean} {all}");
     }
+    let whole = tape.loss.total(&s.comparison);
+    assert!((loss - whole).abs() < 1e-6 * whole, "{loss} {whole}");
 }
 
 /// Protects the silhouette's gradient: coverage alone, which nothing else moves.

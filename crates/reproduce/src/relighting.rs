@@ -70,7 +70,7 @@ pub fn random_light(number: usize) -> Lighting {
     let directional = DirectionalLight { direction: random.direction(), color: random.color() * 2.0 };
     let sharpness = 4.0 + 36.0 * random.next();
     // A soft lamp lights a surface that faces it about as much, whatever its width.
-    let soft = SoftLight { axis: random.direction(), sharpness, color: random.color() * (0.3 * sharpness) };
+    let soft = SoftLight::new(random.direction(), sharpness, random.color() * (0.3 * sharpness));
     Lighting { ambient: Vec3::splat(0.08), soft: vec![soft], directional: vec![directional] }
 }
 

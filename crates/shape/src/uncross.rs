@@ -61,17 +61,17 @@ fn uncrossed(
 ) -> Option<Vec<Vec3>> {
     let camera = |direction| Camera::towards_origin(direction, rig.radius, rig.projection);
     let cameras: Vec<Camera> = fibonacci_sphere(VIEWS, 0.0).into_iter().map(camera).collect();
-    let looks = |at: &[Vec3]| -> Vec<Vec<Crossing>> {
+    let looks = |at: &[Vec3], cameras: &[Camera]| -> Vec<Vec<Crossing>> {
         cameras.par_iter().map(|camera| crossings_from(at, triangles, camera, PIXELS)).collect()
     };
-    let seen = looks(points);
-    if seen.iter().all(Vec::is_empty) {
+    let seen = looks(points, &cameras);
+    // Only views that may show a fault are looked at again, and need the high-poly's.
+    let (cameras, seen): (Vec<Camera>, Vec<Vec<Crossing>>) =
+        cameras.into_iter().zip(seen).filter(|(_, found)| !found.is_empty()).unzip();
+    if seen.is_empty() {
         return None;
     }
-    // Only views that may show a fault need the high-poly's.
-    let fronts: Vec<Vec<Option<Vec3>>> = (cameras.par_iter().zip(&seen))
-        .map(|(camera, found)| if found.is_empty() { Vec::new() } else { fronts(high, camera) })
-        .collect();
+    let fronts: Vec<Vec<Option<Vec3>>> = cameras.par_iter().map(|camera| fronts(high, camera)).collect();
     let faults = |at: &[Vec3], seen: Vec<Vec<Crossing>>| -> Vec<Crossing> {
         let is_fault = |own: &Crossing, fronts: &[Option<Vec3>]| {
             let [near, far] = own.triangles.map(|t| triangles[t as usize].map(|point| at[point as usize]));
@@ -95,7 +95,7 @@ fn uncrossed(
         let mut next = pulled_apart(&at, triangles, &wrong);
         quality.revert(&at, &mut next);
         at = next;
-        wrong = faults(&at, looks(&at));
+        wrong = faults(&at, looks(&at, &cameras));
         if wrong.len() < best.0 {
             best = (wrong.len(), Some(at.clone()));
         }

@@ -33,7 +33,7 @@ pub struct Views<'a> {
 
 /// What some views say.
 pub struct Judgement {
-    /// Mean over the views.
+    /// Mean over the views, and over the pixels that gradients are of.
     pub loss: LossValue,
     /// Sum over the views.
     pub gradients: Gradients,
@@ -54,7 +54,7 @@ impl Views<'_> {
         sum
     }
 
-    /// Mean of the pictures' losses alone, which takes a third of the time.
+    /// Mean of the pictures' losses alone, over the pixels that gradients would be of: the same ones for every surface.
     pub fn picture_loss(&self, surface: &Surface, textures: &Textures, views: &[(usize, u64)]) -> f64 {
         let of = |&(index, seed): &(usize, u64)| {
             self.with_view(index, seed, |view| forward(surface, textures, &HEADLIGHT_BRDF, view).loss.image)
@@ -75,7 +75,7 @@ impl Views<'_> {
     fn with_view<T>(&self, index: usize, seed: u64, look: impl FnOnce(&View) -> T) -> T {
         let rendered = &self.references[index];
         let composer = Composer::new(self.background.for_view(seed), self.display, self.size);
-        let reference = Reference::new(rendered.linear(), self.size, &composer);
+        let reference = Reference { size: self.size, pixels: rendered.linear() };
         look(&View {
             camera: &rendered.view.camera,
             reference: &reference,

@@ -11,7 +11,7 @@
 use glam::Vec3;
 use parbake_render::camera::Camera;
 use parbake_render::interpolate::{barycentrics, interpolate};
-use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise, rasterise_behind};
+use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise, rasterise_behind_some};
 use rayon::prelude::*;
 
 /// Sides of a wall are at most this far apart, in the common frame, in which a model is 2 long.
@@ -67,11 +67,16 @@ pub(crate) fn crossings_from(
     let screen = ScreenTriangles::new(points, triangles, camera, size);
     let (mut front, mut behind) = (Visibility::default(), Visibility::default());
     rasterise(&screen, size, (0.0, 0.0), &mut front);
-    rasterise_behind(&screen, size, (0.0, 0.0), &front, &mut behind);
     let corners = |triangle: u32| triangles[triangle as usize].map(|point| points[point as usize]);
-    let is_back = |triangle: u32| is_back(corners(triangle), camera);
+    let backs: Vec<bool> = (0..triangles.len() as u32).map(|t| is_back(corners(t), camera)).collect();
+    let is_back = |triangle: u32| backs[triangle as usize];
+    let shows_back: Vec<bool> = front.triangle.iter().map(|&t| t != NOTHING && is_back(t)).collect();
+    if !shows_back.contains(&true) {
+        return Vec::new();
+    }
+    rasterise_behind_some(&screen, size, &front, &shows_back, &mut behind);
     let crossing = |(pixel, (&near, &far)): (usize, (&u32, &u32))| {
-        if near == NOTHING || far == NOTHING || !is_back(near) || is_back(far) {
+        if !shows_back[pixel] || far == NOTHING || is_back(far) {
             return None;
         }
         let at = ((pixel % size) as f64 + 0.5, (pixel / size) as f64 + 0.5);

@@ -97,8 +97,8 @@ impl MaterialSampler<'_> {
         match layer.mode {
             AlphaMode::Mask => rasterise_cut(&high.screen, size, jitter, &mut shown, |triangle, at| {
                 let own = high.triangle(triangle);
-                let values = scene.material(camera, &high.screen.triangle(triangle), own, at, footprint);
-                values[MapKind::BaseColor].w >= scene.alpha(own).1
+                let on_screen = high.screen.triangle(triangle);
+                scene.opacity_at(camera, &on_screen, own, at, footprint) >= scene.alpha(own).1
             }),
             _ => high.screen.rasterise(size, jitter, None, &mut shown),
         }
