@@ -276,6 +276,25 @@ mod tests {
         }
     }
 
+    /// Protects the way that reads three channels as four lanes: it blends the same numbers, also at the last texel, after which
+    /// there is no fourth.
+    #[test]
+    fn three_channels_are_read_alike() {
+        let texels: Vec<[f32; 3]> =
+            (0..12).map(|i| [noise(3 * i), noise(3 * i + 1), noise(3 * i + 2)]).collect();
+        let image = FloatImage { width: 4, height: 3, texels };
+        for i in 0..60 {
+            let uv = Vec2::new(noise(100 + i), noise(300 + i));
+            let taps = taps(uv, 4, 3, [Wrap::Repeat, Wrap::Clamp]);
+            let (w, four) = (taps.weights(), image.four(&taps));
+            let blend =
+                |k: usize| four[0][k] * w[0] + four[1][k] * w[1] + four[2][k] * w[2] + four[3][k] * w[3];
+            assert_eq!(image.fetch(&taps), [blend(0), blend(1), blend(2)]);
+        }
+        let last = taps(Vec2::new(0.99, 0.99), 4, 3, [Wrap::Clamp; 2]);
+        assert!(last.index.contains(&11) && image.four_wide(&last).is_none());
+    }
+
     /// Protects the three wrap modes at and far beyond the border.
     #[test]
     fn wrap_modes_follow_gltf() {

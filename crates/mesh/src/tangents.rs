@@ -16,7 +16,7 @@ use crate::vertices::{any_orthogonal, push_copy};
 use crate::weld::{ordered_bits, weld_by};
 use mikktspace::Geometry;
 use parbake_model::Mesh;
-use parbake_model::glam::{Vec3, Vec4};
+use parbake_model::glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 /// Fills `mesh.tangents`, and `mesh.normals` where there are none. Corners that
@@ -32,34 +32,36 @@ pub fn compute_tangents(mesh: &mut Mesh) {
     assign(mesh, &corners);
 }
 
-/// Triangles that are worked on together at least, if there are as many.
+/// Triangles that are worked on together, about.
 const PART: usize = 4096;
 
-/// One tangent for each corner of each triangle, where there is one; at least `part` triangles are worked on together.
+/// One tangent for each corner of each triangle, where there is one; about `part` triangles are worked on together.
 fn corner_tangents(mesh: &Mesh, part: usize) -> Vec<[Option<Vec4>; 3]> {
     let mut tangents = vec![[None; 3]; mesh.triangles.len()];
     if mesh.uvs.len() != mesh.positions.len() {
         return tangents;
     }
+    let tamed = Tamed::new(mesh);
     // The reference implementation searches all triangles for each degenerate
     // one, to copy a tangent from its vertex, which `assign` does at once.
     let solid: Vec<u32> = (0..mesh.triangles.len() as u32)
         .filter(|&t| {
-            let [a, b, c] = mesh.corners(t as usize);
+            let [a, b, c] = mesh.triangles[t as usize].map(|vertex| tamed.position(vertex as usize));
             a != b && b != c && c != a
         })
         .collect();
-    if solid.is_empty() {
-        return tangents;
-    }
-    let largest = |values: &mut dyn Iterator<Item = f32>| values.fold(0.0, |m: f32, x| m.max(x.abs()));
-    let position_scale = taming_scale(largest(&mut mesh.positions.iter().flat_map(|p| p.to_array())));
-    let uv_scale = taming_scale(largest(&mut mesh.uvs.iter().flat_map(|uv| uv.to_array())));
-    // It also walks round each vertex recursively, a stack frame per triangle.
-    let frames = most_triangles_at_a_vertex(mesh) * 256;
-    let of_part = |part: &Vec<u32>| -> Vec<[Option<Vec4>; 3]> {
-        let mut own = vec![[None; 3]; part.len()];
-        let mut corners = Corners { mesh, position_scale, uv_scale, solid: part, tangents: &mut own };
+    let triangles_at = triangles_at_vertices(mesh);
+    let parts = independent_parts(&tamed, &solid, part);
+    let of_part = |(index, part): (usize, &Vec<u32>)| -> Vec<[Option<Vec4>; 3]> {
+        let mut faces = part.clone();
+        // It leaves edges of its last vertex unsorted, and does not pair some of them. So let that be one of a triangle apart.
+        faces.extend(parts.get(index + 1).and_then(|next| next.first()));
+        let mut own = vec![[None; 3]; faces.len()];
+        let mut corners = Corners { tamed: &tamed, faces: &faces, tangents: &mut own };
+        // It also walks round each vertex recursively, a stack frame per triangle.
+        let at_corner =
+            faces.iter().flat_map(|&t| mesh.triangles[t as usize]).map(|v| triangles_at[v as usize]);
+        let frames = at_corner.max().unwrap_or(0) * 256;
         if frames < 256 * 1024 {
             mikktspace::generate_tangents(&mut corners);
         } else {
@@ -73,23 +75,23 @@ fn corner_tangents(mesh: &Mesh, part: usize) -> Vec<[Option<Vec4>; 3]> {
         }
         own
     };
-    let parts = independent_parts(mesh, &solid, part);
-    let each: Vec<_> = parts.par_iter().map(of_part).collect();
-    for (&triangle, corners) in parts.iter().flatten().zip(each.into_iter().flatten()) {
-        tangents[triangle as usize] = corners;
+    let each: Vec<_> = parts.par_iter().enumerate().map(of_part).collect();
+    for (part, corners) in parts.iter().zip(each) {
+        part.iter().zip(corners).for_each(|(&triangle, corners)| tangents[triangle as usize] = corners);
     }
     tangents
 }
 
 /// Triangles apart from each other to MikkTSpace, which looks only from a corner to others of the same position, normal and
-/// coordinate: each part, of `least` triangles or more, can be worked on alone. In each they keep their order.
-fn independent_parts(mesh: &Mesh, solid: &[u32], least: usize) -> Vec<Vec<u32>> {
+/// coordinate: each part, of `least` triangles or more but for the last one, can be worked on alone. In each they keep their order.
+fn independent_parts(tamed: &Tamed, solid: &[u32], least: usize) -> Vec<Vec<u32>> {
     if solid.len() < 2 * least {
-        return vec![solid.to_vec()];
+        return if solid.is_empty() { Vec::new() } else { vec![solid.to_vec()] };
     }
+    let mesh = tamed.mesh;
     let welded = weld_by(mesh.positions.len(), |i| {
-        let ([x, y, z], [a, b, c]) = (mesh.positions[i].to_array(), mesh.normals[i].to_array());
-        let [u, v] = mesh.uvs[i].to_array();
+        let ([x, y, z], [a, b, c]) = (tamed.position(i).to_array(), mesh.normals[i].to_array());
+        let [u, v] = tamed.uv(i).to_array();
         [x, y, z, a, b, c, u, v].map(ordered_bits)
     });
     let mut sets = UnionFind::new(mesh.positions.len());
@@ -98,26 +100,26 @@ fn independent_parts(mesh: &Mesh, solid: &[u32], least: usize) -> Vec<Vec<u32>> 
         sets.union(a, b);
         sets.union(b, c);
     }
-    let of = |triangle: u32, sets: &mut UnionFind| {
-        sets.find(welded[mesh.triangles[triangle as usize][0] as usize])
+    let set_of = |triangle: u32, sets: &mut UnionFind| {
+        sets.find(welded[mesh.triangles[triangle as usize][0] as usize]) as usize
     };
     let mut sizes = vec![0usize; mesh.positions.len()];
-    solid.iter().for_each(|&triangle| sizes[of(triangle, &mut sets) as usize] += 1);
+    solid.iter().for_each(|&triangle| sizes[set_of(triangle, &mut sets)] += 1);
     // Sets are put together by where they begin, until a part is large enough.
-    let mut part_of = vec![u32::MAX; mesh.positions.len()];
+    let mut part_of = vec![usize::MAX; mesh.positions.len()];
     let mut parts: Vec<Vec<u32>> = Vec::new();
     let mut room = 0;
     for &triangle in solid {
-        let set = of(triangle, &mut sets) as usize;
-        if part_of[set] == u32::MAX {
+        let set = set_of(triangle, &mut sets);
+        if part_of[set] == usize::MAX {
             if room == 0 {
                 parts.push(Vec::new());
                 room = least;
             }
-            part_of[set] = parts.len() as u32 - 1;
+            part_of[set] = parts.len() - 1;
             room = room.saturating_sub(sizes[set]);
         }
-        parts[part_of[set] as usize].push(triangle);
+        parts[part_of[set]].push(triangle);
     }
     parts
 }
@@ -128,36 +130,61 @@ fn taming_scale(largest: f32) -> f32 {
     if largest > 1e9 { 2f32.powi(-100) } else { 1.0 }
 }
 
-fn most_triangles_at_a_vertex(mesh: &Mesh) -> usize {
-    // By position: vertices of equal attributes are one to MikkTSpace.
+/// How many corners of triangles each vertex has, with those at the same position: vertices of equal attributes are one to
+/// MikkTSpace.
+fn triangles_at_vertices(mesh: &Mesh) -> Vec<usize> {
     let welded = crate::weld::weld_by_position(&mesh.positions);
     let mut counts = vec![0; mesh.positions.len()];
     for &vertex in mesh.triangles.iter().flatten() {
         counts[welded[vertex as usize] as usize] += 1;
     }
-    counts.into_iter().max().unwrap_or(0)
+    welded.into_iter().map(|first| counts[first as usize]).collect()
 }
 
-/// The mesh as MikkTSpace wants it.
-struct Corners<'a> {
+/// A mesh whose coordinates are scaled as far as MikkTSpace needs it.
+struct Tamed<'a> {
     mesh: &'a Mesh,
     position_scale: f32,
     uv_scale: f32,
-    /// Triangles with three different corners.
-    solid: &'a [u32],
+}
+
+impl<'a> Tamed<'a> {
+    fn new(mesh: &'a Mesh) -> Self {
+        let largest = |values: &mut dyn Iterator<Item = f32>| values.fold(0.0, |m: f32, x| m.max(x.abs()));
+        Self {
+            mesh,
+            position_scale: taming_scale(largest(&mut mesh.positions.iter().flat_map(|p| p.to_array()))),
+            uv_scale: taming_scale(largest(&mut mesh.uvs.iter().flat_map(|uv| uv.to_array()))),
+        }
+    }
+
+    fn position(&self, vertex: usize) -> Vec3 {
+        self.mesh.positions[vertex] * self.position_scale
+    }
+
+    fn uv(&self, vertex: usize) -> Vec2 {
+        self.mesh.uvs[vertex] * self.uv_scale
+    }
+}
+
+/// Triangles as MikkTSpace wants them.
+struct Corners<'a> {
+    tamed: &'a Tamed<'a>,
+    /// Indices of triangles with three different corners.
+    faces: &'a [u32],
     /// Theirs, in the same order.
     tangents: &'a mut [[Option<Vec4>; 3]],
 }
 
 impl Corners<'_> {
     fn vertex(&self, face: usize, corner: usize) -> usize {
-        self.mesh.triangles[self.solid[face] as usize][corner] as usize
+        self.tamed.mesh.triangles[self.faces[face] as usize][corner] as usize
     }
 }
 
 impl Geometry for Corners<'_> {
     fn num_faces(&self) -> usize {
-        self.solid.len()
+        self.faces.len()
     }
 
     fn num_vertices_of_face(&self, _face: usize) -> usize {
@@ -165,15 +192,15 @@ impl Geometry for Corners<'_> {
     }
 
     fn position(&self, face: usize, corner: usize) -> [f32; 3] {
-        (self.mesh.positions[self.vertex(face, corner)] * self.position_scale).to_array()
+        self.tamed.position(self.vertex(face, corner)).to_array()
     }
 
     fn normal(&self, face: usize, corner: usize) -> [f32; 3] {
-        self.mesh.normals[self.vertex(face, corner)].to_array()
+        self.tamed.mesh.normals[self.vertex(face, corner)].to_array()
     }
 
     fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
-        let uv = self.mesh.uvs[self.vertex(face, corner)] * self.uv_scale;
+        let uv = self.tamed.uv(self.vertex(face, corner));
         [uv.x, -uv.y]
     }
 
@@ -192,7 +219,7 @@ impl Geometry for Corners<'_> {
         let untouched = tangent == [1.0, 0.0, 0.0]
             && bitangent == [0.0, 1.0, 0.0]
             && (length_u, length_v, preserves_orientation) == (1.0, 1.0, false);
-        let uvs = self.mesh.corner_uvs(self.solid[face] as usize);
+        let uvs = self.tamed.mesh.corner_uvs(self.faces[face] as usize);
         let no_area = (uvs[1] - uvs[0]).perp_dot(uvs[2] - uvs[0]) == 0.0;
         let sign = if preserves_orientation { 1.0 } else { -1.0 };
         let unit = Vec3::from(tangent).try_normalize().filter(|_| !(untouched && no_area));

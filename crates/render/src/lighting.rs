@@ -19,12 +19,17 @@ use std::f32::consts::PI;
 /// A soft lamp: `color · exp(sharpness (axis·ω − 1))`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftLight {
+    /// Unit vector to its middle.
     axis: Vec3,
+    /// More is narrower; above 0.
     sharpness: f32,
+    /// Linear radiance in its middle.
     color: Vec3,
-    /// Of [`SoftLight::diffuse`]: what scales and is added to the fitted cosine, and its width.
+    /// What multiplies the fitted cosine of [`SoftLight::diffuse`].
     scale: f32,
+    /// What is added to it then.
     bias: f32,
+    /// How far around the horizon it is rounded.
     width: f32,
     /// `∫ exp(λ (μ·ω − 1)) dω`.
     whole: f32,

@@ -141,6 +141,20 @@ impl Scene {
         })
     }
 
+    /// Whether all triangles have the same base colour: no texture, one factor, and vertex colours, if any, that do not differ.
+    pub fn has_one_base_color(&self) -> bool {
+        let mut used = vec![false; self.surfaces.len()];
+        self.mesh.triangle_materials.iter().for_each(|&material| used[material as usize] = true);
+        let of = |surface: &Surface| {
+            let is_plain = surface.plain[MapKind::BaseColor as usize].is_none() && surface.sheen.is_none();
+            is_plain.then_some(surface.factors[MapKind::BaseColor])
+        };
+        let mut colors = self.surfaces.iter().zip(used).filter(|(_, used)| *used).map(|(own, _)| of(own));
+        let first = colors.next().flatten();
+        let is_first = |color: &Vec4| Some(color) == self.mesh.colors.first();
+        first.is_some() && colors.all(|color| color == first) && self.mesh.colors.iter().all(|c| is_first(c))
+    }
+
     /// All triangles on the screen of one camera.
     pub fn on_screen(&self, camera: &Camera, size: usize) -> OnScreen<'_> {
         let clusters = self.clusters.as_ref().and_then(|c| c.on_screen(&self.mesh, camera, size, |_| true));

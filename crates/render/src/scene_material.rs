@@ -201,7 +201,7 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
         let share = 1.0 / (self.supersample * self.supersample) as f32;
         let mut next = 0;
         // Neighbouring samples mostly see the same triangle.
-        let mut last: Option<(u32, ScreenTriangle)> = None;
+        let mut last = (NOTHING, ScreenTriangle::HIDDEN);
         for (sample, solid) in solid.into_iter().enumerate() {
             let from = next;
             next += layers[from..].iter().take_while(|layer| layer.sample == sample).count();
@@ -238,10 +238,10 @@ impl<B: Brdf<Orientation>> Stage<'_, B> {
             match solid {
                 Solid::Nothing => {}
                 Solid::Plain(triangle) => {
-                    let known = last.filter(|(known, _)| *known == triangle);
-                    let (_, on_screen) = *last
-                        .insert(known.unwrap_or_else(|| (triangle, self.screen.triangle(triangle as usize))));
-                    add(triangle, &on_screen, false, &mut passed);
+                    if last.0 != triangle {
+                        last = (triangle, self.screen.triangle(triangle as usize));
+                    }
+                    add(triangle, &last.1, false, &mut passed);
                 }
                 Solid::Special(special) => {
                     let special = &self.special[special];

@@ -27,7 +27,7 @@ pub struct Views<'a> {
     pub comparison: Comparison,
     /// What is behind both.
     pub background: Background,
-    /// Whether gradients are those of a quarter of the pixels ([`GradientPixels::Quarter`]), chosen by each view's seed.
+    /// Whether gradients and losses are those of a quarter of the pixels ([`GradientPixels::Quarter`]), chosen by each view's seed.
     pub reads_a_quarter: bool,
 }
 
@@ -54,10 +54,11 @@ impl Views<'_> {
         sum
     }
 
-    /// Mean of the pictures' losses alone, over the pixels that gradients would be of: the same ones for every surface.
+    /// Mean of the pictures' losses alone, over all pixels.
     pub fn picture_loss(&self, surface: &Surface, textures: &Textures, views: &[(usize, u64)]) -> f64 {
+        let all = Views { reads_a_quarter: false, ..*self };
         let of = |&(index, seed): &(usize, u64)| {
-            self.with_view(index, seed, |view| forward(surface, textures, &HEADLIGHT_BRDF, view).loss.image)
+            all.with_view(index, seed, |view| forward(surface, textures, &HEADLIGHT_BRDF, view).loss.image)
         };
         let each: Vec<f64> = views.par_iter().map(of).collect();
         each.iter().fold(0.0, |sum, loss| sum + loss / views.len() as f64)

@@ -49,6 +49,31 @@ fn a_shiny_model_stays_shiny() {
     assert_eq!((matte.materials[0].metallic, matte.materials[0].roughness), (0.0, 1.0));
 }
 
+/// Protects models without colours, as sculptures are: their one colour stays a factor, which costs no texture and is right under any
+/// light. `lambert` paints what a headlight shows of their shape.
+#[test]
+fn a_model_of_one_color_stays_so() {
+    let (mut high, low) = small_pair();
+    for material in &mut high.materials {
+        (material.base_color_texture, material.base_color) = (None, [0.5, 0.2, 0.1, 1.0]);
+    }
+    let options = BakeOptions {
+        texture_size: 64,
+        preset: Preset::Fast,
+        shape: ShapeMode::Keep,
+        views: Some(24),
+        ..BakeOptions::default()
+    };
+    let plain = bake(&high, &low, &options, &()).unwrap().model;
+    let [material] = &plain.materials[..] else { panic!("one material") };
+    assert!(material.base_color_texture.is_none() && material.normal_texture.is_some(), "{material:?}");
+    let apart = |k: usize| (material.base_color[k] - [0.5, 0.2, 0.1][k]).abs();
+    assert!((0..3).all(|k| apart(k) < 0.01), "{material:?}");
+    let painted = BakeOptions { shading: Shading::Lambert, ..options };
+    let painted = bake(&high, &low, &painted, &()).unwrap().model;
+    assert!(painted.materials[0].base_color_texture.is_some());
+}
+
 /// How far the normals of a bake are from those that views see of the high-poly: their mean squared
 /// difference.
 fn error_of_normals(high: &Model, baked: &Model) -> f64 {
