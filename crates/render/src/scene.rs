@@ -152,7 +152,7 @@ impl Scene {
         let mut colors = self.surfaces.iter().zip(used).filter(|(_, used)| *used).map(|(own, _)| of(own));
         let first = colors.next().flatten();
         let is_first = |color: &Vec4| Some(color) == self.mesh.colors.first();
-        first.is_some() && colors.all(|color| color == first) && self.mesh.colors.iter().all(|c| is_first(c))
+        first.is_some() && colors.all(|color| color == first) && self.mesh.colors.iter().all(is_first)
     }
 
     /// All triangles on the screen of one camera.
