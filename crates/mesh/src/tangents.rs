@@ -32,32 +32,32 @@ pub fn compute_tangents(mesh: &mut Mesh) {
     assign(mesh, &corners);
 }
 
-/// Triangles that are worked on together, about.
+/// Triangles of a part at least, but for the last one.
 const PART: usize = 4096;
 
-/// One tangent for each corner of each triangle, where there is one; about `part` triangles are worked on together.
+/// One tangent for each corner of each triangle, where there is one. Parts of at least `part` triangles are worked on at the same time.
 fn corner_tangents(mesh: &Mesh, part: usize) -> Vec<[Option<Vec4>; 3]> {
     let mut tangents = vec![[None; 3]; mesh.triangles.len()];
     if mesh.uvs.len() != mesh.positions.len() {
         return tangents;
     }
-    let tamed = Tamed::new(mesh);
+    let scaled = Scaled::new(mesh);
     // The reference implementation searches all triangles for each degenerate
     // one, to copy a tangent from its vertex, which `assign` does at once.
     let solid: Vec<u32> = (0..mesh.triangles.len() as u32)
         .filter(|&t| {
-            let [a, b, c] = mesh.triangles[t as usize].map(|vertex| tamed.position(vertex as usize));
+            let [a, b, c] = mesh.triangles[t as usize].map(|vertex| scaled.position(vertex as usize));
             a != b && b != c && c != a
         })
         .collect();
     let triangles_at = triangles_at_vertices(mesh);
-    let parts = independent_parts(&tamed, &solid, part);
+    let parts = independent_parts(&scaled, &solid, part);
     let of_part = |(index, part): (usize, &Vec<u32>)| -> Vec<[Option<Vec4>; 3]> {
         let mut faces = part.clone();
-        // It leaves edges of its last vertex unsorted, and does not pair some of them. So let that be one of a triangle apart.
+        // MikkTSpace leaves the edges of its last vertex unsorted, and may not pair them. A triangle of another part takes that place.
         faces.extend(parts.get(index + 1).and_then(|next| next.first()));
         let mut own = vec![[None; 3]; faces.len()];
-        let mut corners = Corners { tamed: &tamed, faces: &faces, tangents: &mut own };
+        let mut corners = Corners { scaled: &scaled, faces: &faces, tangents: &mut own };
         // It also walks round each vertex recursively, a stack frame per triangle.
         let at_corner =
             faces.iter().flat_map(|&t| mesh.triangles[t as usize]).map(|v| triangles_at[v as usize]);
@@ -84,14 +84,14 @@ fn corner_tangents(mesh: &Mesh, part: usize) -> Vec<[Option<Vec4>; 3]> {
 
 /// Triangles apart from each other to MikkTSpace, which looks only from a corner to others of the same position, normal and
 /// coordinate: each part, of `least` triangles or more but for the last one, can be worked on alone. In each they keep their order.
-fn independent_parts(tamed: &Tamed, solid: &[u32], least: usize) -> Vec<Vec<u32>> {
+fn independent_parts(scaled: &Scaled, solid: &[u32], least: usize) -> Vec<Vec<u32>> {
     if solid.len() < 2 * least {
         return if solid.is_empty() { Vec::new() } else { vec![solid.to_vec()] };
     }
-    let mesh = tamed.mesh;
+    let mesh = scaled.mesh;
     let welded = weld_by(mesh.positions.len(), |i| {
-        let ([x, y, z], [a, b, c]) = (tamed.position(i).to_array(), mesh.normals[i].to_array());
-        let [u, v] = tamed.uv(i).to_array();
+        let ([x, y, z], [a, b, c]) = (scaled.position(i).to_array(), mesh.normals[i].to_array());
+        let [u, v] = scaled.uv(i).to_array();
         [x, y, z, a, b, c, u, v].map(ordered_bits)
     });
     let mut sets = UnionFind::new(mesh.positions.len());
@@ -141,14 +141,14 @@ fn triangles_at_vertices(mesh: &Mesh) -> Vec<usize> {
     welded.into_iter().map(|first| counts[first as usize]).collect()
 }
 
-/// A mesh whose coordinates are scaled as far as MikkTSpace needs it.
-struct Tamed<'a> {
+/// A mesh whose coordinates are scaled so that MikkTSpace's products do not overflow.
+struct Scaled<'a> {
     mesh: &'a Mesh,
     position_scale: f32,
     uv_scale: f32,
 }
 
-impl<'a> Tamed<'a> {
+impl<'a> Scaled<'a> {
     fn new(mesh: &'a Mesh) -> Self {
         let largest = |values: &mut dyn Iterator<Item = f32>| values.fold(0.0, |m: f32, x| m.max(x.abs()));
         Self {
@@ -169,7 +169,7 @@ impl<'a> Tamed<'a> {
 
 /// Triangles as MikkTSpace wants them.
 struct Corners<'a> {
-    tamed: &'a Tamed<'a>,
+    scaled: &'a Scaled<'a>,
     /// Indices of triangles with three different corners.
     faces: &'a [u32],
     /// Theirs, in the same order.
@@ -178,7 +178,7 @@ struct Corners<'a> {
 
 impl Corners<'_> {
     fn vertex(&self, face: usize, corner: usize) -> usize {
-        self.tamed.mesh.triangles[self.faces[face] as usize][corner] as usize
+        self.scaled.mesh.triangles[self.faces[face] as usize][corner] as usize
     }
 }
 
@@ -192,15 +192,15 @@ impl Geometry for Corners<'_> {
     }
 
     fn position(&self, face: usize, corner: usize) -> [f32; 3] {
-        self.tamed.position(self.vertex(face, corner)).to_array()
+        self.scaled.position(self.vertex(face, corner)).to_array()
     }
 
     fn normal(&self, face: usize, corner: usize) -> [f32; 3] {
-        self.tamed.mesh.normals[self.vertex(face, corner)].to_array()
+        self.scaled.mesh.normals[self.vertex(face, corner)].to_array()
     }
 
     fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
-        let uv = self.tamed.uv(self.vertex(face, corner));
+        let uv = self.scaled.uv(self.vertex(face, corner));
         [uv.x, -uv.y]
     }
 
@@ -219,7 +219,7 @@ impl Geometry for Corners<'_> {
         let untouched = tangent == [1.0, 0.0, 0.0]
             && bitangent == [0.0, 1.0, 0.0]
             && (length_u, length_v, preserves_orientation) == (1.0, 1.0, false);
-        let uvs = self.tamed.mesh.corner_uvs(self.faces[face] as usize);
+        let uvs = self.scaled.mesh.corner_uvs(self.faces[face] as usize);
         let no_area = (uvs[1] - uvs[0]).perp_dot(uvs[2] - uvs[0]) == 0.0;
         let sign = if preserves_orientation { 1.0 } else { -1.0 };
         let unit = Vec3::from(tangent).try_normalize().filter(|_| !(untouched && no_area));

@@ -152,7 +152,7 @@ fn parts_have_the_tangents_of_the_whole() {
     }
     m.triangle_materials = vec![0; m.triangles.len()];
     let solid: Vec<u32> = (0..m.triangles.len() as u32).collect();
-    let parts = independent_parts(&Tamed::new(&m), &solid, 40);
+    let parts = independent_parts(&Scaled::new(&m), &solid, 40);
     assert_eq!(parts.iter().map(Vec::len).collect::<Vec<_>>(), [64, 64, 64]);
     assert_eq!(corner_tangents(&m, 40), corner_tangents(&m, usize::MAX / 2));
 }

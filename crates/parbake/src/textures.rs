@@ -170,8 +170,8 @@ pub(crate) fn fit_views(
         schedule.normal_steps = 0;
     }
     // What a headlight shows of a surface of one colour is its shape. Painted onto it, that would be wrong under other lights.
-    let is_unpainted = high.scene.has_one_base_color() && start.get(MapKind::Emissive).is_none();
-    if is_unpainted && !options.fits_normals_to_headlight() {
+    let is_of_one_color = high.scene.has_one_base_color() && start.get(MapKind::Emissive).is_none();
+    if is_of_one_color && !options.fits_normals_to_headlight() {
         (schedule.color_steps, schedule.final_steps) = (0, 0);
     }
     let fitted = fit_textures(&samples, atlas, &start, &comparison, &schedule, &showing);

@@ -29,7 +29,7 @@ pub struct SoftLight {
     scale: f32,
     /// What is added to it then.
     bias: f32,
-    /// How far around the horizon it is rounded.
+    /// Of the range of cosines around 0 over which Hill's fit is a parabola.
     width: f32,
     /// `∫ exp(λ (μ·ω − 1)) dω`.
     whole: f32,
