@@ -15,10 +15,10 @@ fn jobs(folder: &Path, with_failure: bool) {
     fs::write(folder.join("broken.glb"), "glTF and no more").unwrap();
     let broken = "[[job]]\nname = 'broken'\ninputs = ['broken.glb']\n";
     let file = format!(
-        "[defaults]\ncommand = 'simplify'\noptions = {{ triangles = 400 }}\n\
+        "[defaults]\ncommand = 'simplify'\noptions = {{ triangles = 400, closest-in = 'shape' }}\n\
          [[job]]\ninputs = ['demo_high.glb']\n\
          [[job]]\nname = 'finer'\ninputs = ['demo_high.glb']\noptions = {{ triangles = 900 }}\n\
-         {}[[job]]\nname = 'measured'\ncommand = 'stats'\ninputs = ['demo_low.glb']\noptions = {{ triangles = false }}\n\
+         {}[[job]]\nname = 'measured'\ncommand = 'stats'\ninputs = ['demo_low.glb']\noptions = {{ triangles = false, closest-in = false }}\n\
          [[job]]\nname = 'coarse'\ninputs = ['demo_high.glb']\narguments = ['--mesh-compression', 'meshopt']\n",
         if with_failure { broken } else { "" }
     );
@@ -150,7 +150,8 @@ fn a_folder_of_models_is_a_batch() {
     demo_pair(folder);
     fs::rename(folder.join("demo_high.glb"), folder.join("models/sub/high.glb")).unwrap();
     fs::rename(folder.join("demo_low.glb"), folder.join("models/low.glb")).unwrap();
-    let arguments = ["models", "--command", "simplify", "-o", "out", "--", "--triangles", "100"];
+    let arguments =
+        ["models", "--command", "simplify", "-o", "out", "--", "--triangles", "100", "--closest-in", "shape"];
     let out = batch(folder, &arguments);
     assert!(out.status.success(), "{}", text(&out.stderr));
     for name in ["low/low.glb", "sub-high/sub-high.glb", "batch.html"] {
