@@ -184,10 +184,10 @@ pub struct Watch {
     pub watch: bool,
 
     /// Port of that page, 0 to 65535; 0 is any that is free
-    #[arg(long, value_name = "PORT", default_value_t = 0, requires = "watch")]
+    #[arg(long, value_name = "PORT", default_value_t = 0)]
     pub port: u16,
 
     /// Print the page's address without opening a browser
-    #[arg(long, requires = "watch")]
+    #[arg(long)]
     pub no_open: bool,
 }

@@ -24,6 +24,7 @@ pub fn run(command: &BakeCommand, given: &ArgMatches) -> Result<Ending, Failure>
     let file = command.options.as_deref();
     let options = merged(&command.bake, given, file)?;
     rules::check(Work::Bake, &options, given, file)?;
+    rules::check_watch(command.watch.watch, given)?;
     options.check()?;
     check_budget(&options)?;
     let inputs: Vec<&Path> =

@@ -4,6 +4,7 @@ use crate::arguments::{BatchCommand, command};
 use crate::failure::{Ending, Failure};
 use crate::outputs::check_beside;
 use crate::progress::{Console, interrupted};
+use crate::typed;
 use parbake::write_file;
 use parbake_batch::{
     Abilities, BatchError, Commands, Event, Job, Observer, Outcome, TaskCommand, jobs_of_folder,
@@ -118,9 +119,12 @@ impl Commands for Grammar {
 
     fn fault(&self, arguments: &[String]) -> Option<String> {
         let line = std::iter::once("parbake").chain(arguments.iter().map(String::as_str));
-        let error = command().try_get_matches_from(line).err()?.to_string();
-        let first: Vec<&str> = error.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
-        Some(first.join(" ").trim_start_matches("error: ").to_string())
+        let error = command().try_get_matches_from(line).err()?;
+        Some(typed::sentence(&error).unwrap_or_else(|| {
+            let said = error.to_string();
+            let first: Vec<&str> = said.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
+            first.join(" ").trim_start_matches("error: ").to_string()
+        }))
     }
 
     fn picture(&self, output: &str, file: &str) -> Option<Vec<String>> {

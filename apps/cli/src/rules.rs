@@ -37,6 +37,14 @@ pub fn typed_of_views(given: &ArgMatches) -> impl Iterator<Item = String> + '_ {
     of_views.filter(|name| is_typed(given, name)).map(|name| typed_name(name))
 }
 
+/// Checks the options of the page of a running bake.
+pub fn check_watch(is_watched: bool, given: &ArgMatches) -> Result<(), Failure> {
+    let idle = ["port", "no_open"].into_iter().find(|name| !is_watched && is_typed(given, name));
+    idle.map_or(Ok(()), |name| {
+        Err(Failure::Usage(format!("{} does nothing without --watch", typed_name(name))))
+    })
+}
+
 /// Checks the options of `bake` or `compress`; `file` is the options file, if there was one.
 pub fn check(
     work: Work,

@@ -64,7 +64,7 @@ pub struct ReproduceCommand {
     pub record: Option<PathBuf>,
 
     /// Write the gains to the record instead of comparing them
-    #[arg(long, requires = "record")]
+    #[arg(long)]
     pub update_record: bool,
 
     /// What to run

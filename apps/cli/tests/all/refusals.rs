@@ -153,6 +153,8 @@ fn options_without_effect_are_refused() {
         (&bake, &["--parallax", "sh", "--no-cutout", "--cutout-size", "32"], "with --no-cutout"),
         (&bake, &["--parallax", "sh", "--method", "paper", "--cutout-size", "32"], "with --method paper"),
         (&bake, &["--no-content-aware"], "without --method paper"),
+        (&bake, &["--port", "8000"], "--port does nothing without --watch"),
+        (&bake, &["--no-open"], "--no-open does nothing without --watch"),
         (&bake, &["--uv", "keep", "--uv-steps", "3"], "without --uv optimize"),
         (
             &bake,

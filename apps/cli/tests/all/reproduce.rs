@@ -95,6 +95,7 @@ fn mistakes_are_told_before_any_work() {
         (&["reproduce", "nowhere"], 1, "nowhere"),
         (&["reproduce", "empty", "--views", "0"], 2, "views"),
         (&["reproduce", "empty", "--record", "none.json"], 1, "none.json"),
+        (&["reproduce", "empty", "--update-record"], 2, "--update-record does nothing without --record"),
         (&["reproduce"], 2, "PARBAKE_DATA"),
     ] {
         let output = parbake(folder).args(arguments).env_remove("PARBAKE_DATA").output().unwrap();
