@@ -1,7 +1,7 @@
 //! `parbake bake`.
 
 use crate::arguments::{BakeCommand, Talk};
-use crate::document::write_document;
+use crate::document::write_report_document;
 use crate::failure::{Ending, Failure};
 use crate::formats::{check_formats, write_model};
 use crate::options_file::merged;
@@ -74,7 +74,7 @@ fn bake_files(
             let names = ["high", "low"].into_iter();
             let files: Vec<(&str, &Path)> = names.zip(inputs.iter().copied()).collect();
             let about = ("bake", &files[..], Some(command.output.as_path()));
-            write_document(path, about, &baked.report, console)?;
+            write_report_document(path, about, &baked.report, console)?;
         }
         if let Some(path) = &command.report {
             write_report(path, &pair.high, &baked, console)?;

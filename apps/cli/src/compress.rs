@@ -2,7 +2,7 @@
 
 use crate::arguments::CompressCommand;
 use crate::bake::{check_textures, compare, ending, figures_read, gains, has_time, read, write_report};
-use crate::document::write_document;
+use crate::document::write_report_document;
 use crate::failure::{Ending, Failure};
 use crate::formats::{check_formats, write_model};
 use crate::options_file::merged;
@@ -64,7 +64,7 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
         if let Some(path) = &command.json {
             let about =
                 ("compress", &[("model", command.model.as_path())][..], Some(command.output.as_path()));
-            write_document(path, about, &baked.report, &console)?;
+            write_report_document(path, about, &baked.report, &console)?;
         }
         if let Some(path) = &command.report {
             write_report(path, &loaded.model, &baked, &console)?;

@@ -2,7 +2,7 @@
 
 use crate::arguments::{DemoCommand, DemoScene};
 use crate::bake::{Pair, bake_and_write, compare, ending, tell, write_report};
-use crate::document::write_document;
+use crate::document::write_report_document;
 use crate::failure::{Ending, Failure};
 use crate::outputs::{check_folder, check_place, make_folder};
 use crate::pictures::write_pictures;
@@ -44,7 +44,7 @@ pub fn run(command: &DemoCommand, given: &ArgMatches) -> Result<Ending, Failure>
         let [high, low] = ["demo_high.glb", "demo_low.glb"].map(|name| folder.join(name));
         let files = [("high", high.as_path()), ("low", low.as_path())];
         let about = ("demo", &files[..], Some(output.as_path()));
-        write_document(&folder.join("demo.json"), about, &baked.report, &console)?;
+        write_report_document(&folder.join("demo.json"), about, &baked.report, &console)?;
         if let Some(folder) = &command.pictures {
             write_pictures(&folder.join(PICTURE), &pair, &baked, &console)?;
         }

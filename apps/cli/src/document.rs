@@ -7,6 +7,7 @@
 use crate::failure::Failure;
 use crate::printed::write_json;
 use crate::progress::Console;
+use parbake::{BakeReport, UsedValues};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -30,6 +31,24 @@ pub struct Document<'a, T> {
     total_seconds: f64,
     #[serde(flatten)]
     report: &'a T,
+}
+
+/// A bake's figures, with the values that it made of its options.
+#[derive(Serialize)]
+struct Figures<'a> {
+    #[serde(flatten)]
+    report: &'a BakeReport,
+    used: UsedValues,
+}
+
+/// Writes a bake's figures as JSON, as [`write_document`] does.
+pub fn write_report_document(
+    path: &Path,
+    about: (&'static str, &[(&'static str, &Path)], Option<&Path>),
+    report: &BakeReport,
+    console: &Console,
+) -> Result<(), Failure> {
+    write_document(path, about, &Figures { report, used: report.used() }, console)
 }
 
 /// Writes a command's figures as JSON, to standard output for "-".

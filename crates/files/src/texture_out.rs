@@ -6,7 +6,7 @@
 //! Contract: what a format cannot hold (alpha in JPEG, sides of 30 texels in KTX2) is written as PNG, and the
 //! result says so and why.
 
-use crate::image_out::{Raw, pack_png, refuse};
+use crate::image_out::{Raw, encode_png, pack_png, refuse};
 use crate::ktx2_out::{self, Codec, Content};
 use crate::write_options::{LEAST_DATA_QUALITY, TextureFormat, WriteOptions};
 use crate::{FileError, Limits, decode_image};
@@ -74,13 +74,13 @@ pub(crate) fn encode_texture(
     };
     let reason = (format != options.texture_format).then(|| "for viewers without parallax maps".into());
     if let Some(reason) = misfit(image, &raw, purpose.of, format) {
-        return Ok(Encoded { reason: Some(reason), ..png(image)? });
+        return Ok(Encoded { reason: Some(reason), ..png(image, options)? });
     }
     let least = if purpose.of == Use::Data { LEAST_DATA_QUALITY } else { 1 };
     let quality = options.texture_quality.clamp(least, 100);
     let with = |texture_format| WriteOptions { texture_format, ..*options };
     let bytes = match format {
-        TextureFormat::Png => return png(image),
+        TextureFormat::Png => return png(image, options),
         TextureFormat::Jpeg => jpeg(image, &raw, quality)?,
         TextureFormat::Webp if purpose.of == Use::Data => {
             // It has chroma at half the resolution: a baked normal map would be left with 27 dB.
@@ -122,8 +122,9 @@ fn misfit(image: &Image, raw: &Raw, of: Use, format: TextureFormat) -> Option<St
     }
 }
 
-fn png(image: &Image) -> Result<Encoded, FileError> {
-    Ok(Encoded { bytes: pack_png(image)?, format: TextureFormat::Png, psnr: None, reason: None })
+fn png(image: &Image, options: &WriteOptions) -> Result<Encoded, FileError> {
+    let bytes = if options.is_urgent { encode_png(image)? } else { pack_png(image)? };
+    Ok(Encoded { bytes, format: TextureFormat::Png, psnr: None, reason: None })
 }
 
 fn jpeg(image: &Image, raw: &Raw, quality: u8) -> Result<Vec<u8>, FileError> {

@@ -1,7 +1,6 @@
 //! What is lost in each format, and what is not.
 
 use super::*;
-use crate::MeshCompression;
 
 const COLOR: Purpose = Purpose { of: Use::Color, content: Content::Color, cutoff: None };
 const NORMAL: Purpose = Purpose { of: Use::Data, content: Content::Normal, cutoff: None };
@@ -10,7 +9,7 @@ const EXACT: Purpose = Purpose { of: Use::Exact, content: Content::Values, cutof
 const FALLBACK: Purpose = Purpose { of: Use::Fallback, content: Content::Normal, cutoff: None };
 
 fn write(image: &Image, purpose: Purpose, (texture_format, texture_quality): (TextureFormat, u8)) -> Encoded {
-    let options = WriteOptions { texture_format, texture_quality, mesh_compression: MeshCompression::None };
+    let options = WriteOptions { texture_format, texture_quality, ..WriteOptions::default() };
     encode_texture(image, purpose, &options).unwrap()
 }
 
@@ -115,4 +114,18 @@ fn fallbacks_are_small() {
     image.pixels[0][3] = 9;
     let stays = write(&image, FALLBACK, (TextureFormat::Png, 92));
     assert_eq!((stays.format, stays.psnr, stays.reason), (TextureFormat::Png, None, None));
+}
+
+/// Protects who interrupts a run: what is written at once has the same texels.
+#[test]
+fn urgent_textures_have_the_same_texels() {
+    let image = picture();
+    let texels = |is_urgent| {
+        let options = WriteOptions { is_urgent, ..WriteOptions::default() };
+        let encoded = encode_texture(&image, COLOR, &options).unwrap();
+        assert_eq!((encoded.format, encoded.psnr), (TextureFormat::Png, None));
+        (decode_image("a", &encoded.bytes, &Limits::default()).unwrap(), encoded.bytes)
+    };
+    let [(urgent, fast), (patient, small)] = [true, false].map(texels);
+    assert!(urgent == image && patient == image && fast != small);
 }

@@ -105,6 +105,12 @@ pub struct WriteOptions {
     /// Compression of the mesh in a GLB file
     #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "COMPRESSION", default_value_t = MeshCompression::None, help_heading = HEADING))]
     pub mesh_compression: MeshCompression,
+
+    /// Pack PNG with little effort, for who waits for the end of a run that was interrupted: 3 to 30 % more bytes, in a fiftieth of the
+    /// time
+    #[cfg_attr(feature = "clap", arg(skip))]
+    #[serde(skip)]
+    pub is_urgent: bool,
 }
 
 /// Heading in `--help`.
@@ -117,6 +123,7 @@ impl Default for WriteOptions {
             texture_format: TextureFormat::Png,
             texture_quality: DEFAULT_TEXTURE_QUALITY,
             mesh_compression: MeshCompression::None,
+            is_urgent: false,
         }
     }
 }

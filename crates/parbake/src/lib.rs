@@ -59,6 +59,7 @@ mod stats;
 mod texels;
 mod textures;
 mod threads;
+mod used_values;
 mod warnings;
 mod work;
 
@@ -130,6 +131,7 @@ pub use stats::{
 };
 pub use texels::parse_texels;
 pub use threads::{MOST_THREADS, join, with_threads};
+pub use used_values::UsedValues;
 pub use work::Work;
 
 /// The README's example, compiled as it is pasted.

@@ -413,6 +413,7 @@ mod tests {
             texture_format: parbake_files::TextureFormat::Ktx2Etc1s,
             texture_quality: 60,
             mesh_compression: parbake_files::MeshCompression::Meshopt,
+            ..WriteOptions::default()
         };
         assert_eq!((options.write, options.seed), (write, 3));
         let json = serde_json::to_value(&options).unwrap();

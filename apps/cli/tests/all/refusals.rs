@@ -118,7 +118,7 @@ fn options_without_effect_are_refused() {
     let lod = ["lod", "model.glb", "-o", "never"];
     let eval = ["eval", "high.glb", "low.glb"];
     let raycast = ["raycast", "high.glb", "low.glb", "-o", "never.glb"];
-    let cases: [(&[&str], &[&str], &str); 33] = [
+    let cases: [(&[&str], &[&str], &str); 35] = [
         (&bake, &["--uv", "keep", "--gutter", "2"], "--gutter does nothing with --uv keep"),
         (
             &bake,

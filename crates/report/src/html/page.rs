@@ -5,7 +5,7 @@ use super::gallery::gallery;
 use super::loss_curve::loss_curve;
 use super::model_view::{SCRIPT, model_view};
 use super::pictures::{AMPLIFIED, Side};
-use super::settings::{Used, settings};
+use super::settings::settings;
 use super::tables;
 use super::textures::textures;
 use super::uv_check::uv_check;
@@ -118,7 +118,7 @@ pub fn page(
             ),
             loss_curve(&report.losses),
             tables::stages(report),
-            settings(&report.options, report.work, Used::of(report))
+            settings(&report.options, report.work, &report.used())
         ),
     );
     Ok(document_with_script(&name, &out, SCRIPT))

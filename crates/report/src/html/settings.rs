@@ -2,7 +2,7 @@
 //! option can be forgotten.
 
 use crate::page::text::escape;
-use parbake::{BakeOptions, BakeReport, UvMode, Work, idle_options};
+use parbake::{BakeOptions, UsedValues, UvMode, Work, idle_options};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -43,32 +43,6 @@ pub fn flags<T: Serialize>(options: &T, default: &T) -> String {
     escape(&out)
 }
 
-/// What a run made of options that say how much at most, or that leave a choice; none where it did not say.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Used {
-    views: Option<usize>,
-    gutter: Option<f64>,
-    uv_steps: Option<usize>,
-    more_triangles: Option<usize>,
-    /// The side of the textures of viewers without parallax maps; 0 where the maps' own serve all.
-    fallback_size: Option<usize>,
-}
-
-impl Used {
-    /// What this run used.
-    pub fn of(report: &BakeReport) -> Self {
-        let uv_stage = report.uv_stage.as_ref();
-        let own = report.work == Work::Compress;
-        Self {
-            views: Some(report.views),
-            gutter: uv_stage.map(|uv_stage| uv_stage.gutter),
-            uv_steps: uv_stage.map(|uv_stage| uv_stage.steps).or(Some(0)),
-            more_triangles: own.then(|| report.low_triangles.saturating_sub(report.high_triangles)),
-            fallback_size: report.fallback.as_ref().map(|fallback| fallback.side.unwrap_or(0)),
-        }
-    }
-}
-
 /// "24 of at most 30", or the number alone where it was reached.
 fn of_at_most(used: Option<usize>, most: usize) -> String {
     match used {
@@ -78,7 +52,7 @@ fn of_at_most(used: Option<usize>, most: usize) -> String {
 }
 
 /// The table of the options that act, with the values that were used, and the command that takes them.
-pub fn settings(options: &BakeOptions, work: Work, used: Used) -> String {
+pub fn settings(options: &BakeOptions, work: Work, used: &UsedValues) -> String {
     let (plan, default) = (options.plan(), fields(&BakeOptions::default()));
     let mut out = String::from(r#"<table class="settings"><tbody>"#);
     let idle = idle_options(options, work);
@@ -165,7 +139,7 @@ mod tests {
             keep_parts: vec!["wheel".into()],
             ..BakeOptions::default()
         };
-        let html = settings(&options, Work::Bake, Used::default());
+        let html = settings(&options, Work::Bake, &UsedValues::default());
         let views = options.plan().views;
         let idle = ["more_triangles", "no_content_aware", "importance"];
         let acting = fields(&options).into_keys().filter(|name| !idle.contains(&name.as_str()));
@@ -176,7 +150,7 @@ mod tests {
             );
         }
         assert_eq!(html.matches("<tr").count(), fields(&options).len() - idle.len());
-        let plain = settings(&BakeOptions::default(), Work::Compress, Used::default());
+        let plain = settings(&BakeOptions::default(), Work::Compress, &UsedValues::default());
         assert!(!plain.contains("cutout") && !plain.contains(">shape<") && plain.contains("more triangles"));
         assert!(
             html.contains(&format!("{views} <small>by default")) && html.contains("<td>0.05</td>"),
@@ -187,16 +161,17 @@ mod tests {
     /// Protects readers from values that were only allowed: what a run used is on the page.
     #[test]
     fn values_are_those_that_were_used() {
-        let used = Used {
+        let used = UsedValues {
             views: Some(284),
             gutter: Some(16.0),
             uv_steps: Some(24),
             more_triangles: Some(0),
             fallback_size: Some(64),
+            ..UsedValues::default()
         };
         let deep = BakeOptions { parallax: Parallax::Tangent, ..BakeOptions::default() };
         let (baked, compressed) =
-            (settings(&deep, Work::Bake, used), settings(&BakeOptions::default(), Work::Compress, used));
+            (settings(&deep, Work::Bake, &used), settings(&BakeOptions::default(), Work::Compress, &used));
         for text in ["284 of at most 960", "16 texels", "24 of at most 30", "64 texels"] {
             assert!(baked.contains(text), "{text}: {baked}");
         }
