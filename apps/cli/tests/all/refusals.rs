@@ -143,7 +143,7 @@ fn options_without_effect_are_refused() {
         (&bake, &["--rounds", "0", "--keep-normals"], "--keep-normals does nothing with --rounds 0"),
         (&lod, &["--texture-quality", "50"], "--texture-quality does nothing with a lossless"),
         (&eval, &["--ortho", "1", "--fov", "40"], "--fov does nothing with --ortho"),
-        (&bake, &["--gutter", "x"], "for '--gutter <TEXELS>': give a number, such as 0.5"),
+        (&bake, &["--gutter", "x"], "--gutter cannot be x: give a number, such as 0.5"),
         (&bake, &["--parallax-order", "2"], "--parallax-order does nothing without --parallax"),
         (&bake, &["--parallax-size", "64"], "--parallax-size does nothing without --parallax"),
         (&bake, &["--no-cutout"], "--no-cutout does nothing without --parallax"),

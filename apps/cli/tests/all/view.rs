@@ -114,7 +114,7 @@ fn the_address_is_printed_and_mistakes_are_named() {
         (vec!["a.obj", "--compare", "gone.glb"], 1, "gone.glb"),
         (vec!["."], 1, "folder"),
         (vec!["-"], 2, "standard input"),
-        (vec![], 2, "<MODELS>"),
+        (vec![], 2, "view needs MODELS"),
         (vec!["a.obj", "--port", port], 1, "--port"),
         (vec!["a.obj", "--port", "65536"], 2, "65536"),
     ] {
