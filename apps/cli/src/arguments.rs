@@ -109,7 +109,7 @@ pub fn command() -> Clap {
 
 /// Bakes a high-poly's appearance onto a low-poly by differentiable rendering
 #[derive(Parser, Debug)]
-#[command(name = "parbake", version, propagate_version = true)]
+#[command(name = "parbake", bin_name = "parbake", version, propagate_version = true)]
 #[command(after_help = "Exit codes: 0 done, 1 bad input or failed output, 2 wrong usage, \
 3 check found problems, 4 reproduce found gains that fell or lod cannot reach its --target-psnr, 130 interrupted (the best state so far was written).")]
 pub struct Arguments {

@@ -13,8 +13,9 @@ use crate::watch;
 use clap::ArgMatches;
 use parbake::{
     BakeOptions, BakeReport, Baked, Comparison, Convention, Detail, Loaded, Message, Metrics, Model, NormalY,
-    Shading, Stage, StageTime, Warning, WarningKind, Watcher, Work, bake, bake_to_triangles, check_budget,
-    compare_bake, psnr_from_mse, read_model, read_painted_model, with_normal_y, with_threads, write_file,
+    Shading, Stage, StageTime, Warning, WarningKind, Watcher, Work, WriteOptions, bake, bake_to_triangles,
+    check_budget, compare_bake, psnr_from_mse, read_model, read_painted_model, with_normal_y, with_threads,
+    write_file,
 };
 use parbake_report::html_report;
 use std::path::Path;
@@ -88,6 +89,11 @@ fn bake_files(
 /// Interrupted only if that cost anything: a report is finished all the same.
 pub fn ending(report: &BakeReport) -> Ending {
     if interrupted() && report.stopped_early { Ending::Interrupted } else { Ending::Finished }
+}
+
+/// How the result is written: at once where the run was interrupted.
+pub fn write_options(report: &BakeReport) -> WriteOptions {
+    WriteOptions { is_urgent: ending(report) == Ending::Interrupted, ..report.options.write }
 }
 
 /// Refuses parts that stay apart in a file that has no nodes.
@@ -205,7 +211,7 @@ fn finish(
 ) -> Result<Baked, Failure> {
     let begin = console.seconds();
     let model = with_normal_y(&baked.model, options.normal_y);
-    (_, baked.report.written) = write_model(output, &model, &options.write, console)?;
+    (_, baked.report.written) = write_model(output, &model, &write_options(&baked.report), console)?;
     let report = &mut baked.report;
     report.warnings.splice(0..0, pair.warnings.iter().map(|warning| warning.text.clone()));
     let reading = pair.seconds.map(|seconds| StageTime { stage: Stage::Read, seconds });

@@ -120,6 +120,10 @@ impl Commands for Grammar {
     fn fault(&self, arguments: &[String]) -> Option<String> {
         let line = std::iter::once("parbake").chain(arguments.iter().map(String::as_str));
         let error = command().try_get_matches_from(line).err()?;
+        let given = ["--output", "--json", "--quiet"];
+        if let Some(name) = typed::conflicting(&error).filter(|name| given.contains(&name.as_str())) {
+            return Some(format!("a batch gives {name} itself; leave it out, and what does not go with it"));
+        }
         Some(typed::sentence(&error).unwrap_or_else(|| {
             let said = error.to_string();
             let first: Vec<&str> = said.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();

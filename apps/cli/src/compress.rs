@@ -1,7 +1,9 @@
 //! `parbake compress`.
 
 use crate::arguments::CompressCommand;
-use crate::bake::{check_textures, compare, ending, figures_read, gains, has_time, read, write_report};
+use crate::bake::{
+    check_textures, compare, ending, figures_read, gains, has_time, read, write_options, write_report,
+};
 use crate::document::write_report_document;
 use crate::failure::{Ending, Failure};
 use crate::formats::{check_formats, write_model};
@@ -47,9 +49,10 @@ pub fn run(command: &CompressCommand, given: &ArgMatches) -> Result<Ending, Fail
         let mut baked = compress(&loaded.model, &options, &console)?;
         let begin = console.seconds();
         let model = with_normal_y(&baked.model, options.normal_y);
-        let (after, written) = write_model(output, &model, &options.write, &console)?;
+        let write = write_options(&baked.report);
+        let (after, written) = write_model(output, &model, &write, &console)?;
         let bytes = [loaded.bytes, after];
-        let told = grown(bytes, output, &options.write);
+        let told = grown(bytes, output, &write);
         told.iter().for_each(|text| console.message(Message::Warning(text.clone())));
         baked.report.warnings.extend(told);
         baked.report.written = written;
@@ -85,7 +88,8 @@ fn grown([before, after]: [u64; 2], output: &Path, write: &WriteOptions) -> Opti
     let more = [(format, "--texture-format webp"), (mesh, "--mesh-compression meshopt")];
     let more: String =
         more.iter().filter(|(helps, _)| *helps).map(|(_, text)| format!(", or {text}")).collect();
-    (after > before).then(|| {
+    // What is written at once is larger than it would be.
+    (after > before && !write.is_urgent).then(|| {
         let name = output.display();
         format!(
             "{name} is larger than the model was ({after} bytes, {before} before); for a smaller file take a smaller \
@@ -131,6 +135,8 @@ mod tests {
         );
         let packed = WriteOptions { texture_format: TextureFormat::Webp, ..plain };
         assert!(!of([1000, 2000], "a.glb", &packed).contains("webp"));
+        let urgent = WriteOptions { is_urgent: true, ..plain };
+        assert_eq!(of([1000, 2000], "a.glb", &urgent), "");
         assert!(of([1000, 2000], "a.obj", &plain).ends_with("a smaller --texture-size"));
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::failure::Failure;
 use crate::outputs::is_obj;
-use crate::progress::{Console, interrupted};
+use crate::progress::Console;
 use parbake::{
     MeshCompression, Model, TextureFormat, WriteOptions, Written, WrittenTexture, write_glb_with, write_obj,
 };
@@ -48,9 +48,8 @@ pub fn write_model(
         }
         return Ok((write_obj(path, model)?, None));
     }
-    // Who interrupts a run waits for its end.
-    let written = write_glb_with(path, model, &WriteOptions { is_urgent: interrupted(), ..*options })?;
-    if *options != WriteOptions::default() {
+    let written = write_glb_with(path, model, options)?;
+    if (WriteOptions { is_urgent: false, ..*options }) != WriteOptions::default() {
         for line in losses(&written) {
             console.say(&line);
         }

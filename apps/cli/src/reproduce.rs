@@ -50,9 +50,9 @@ fn recorded(command: &ReproduceCommand) -> Result<Option<Record>, Failure> {
     match &command.record {
         Some(path) if command.update_record => check_place(path).map(|()| None),
         Some(path) => Ok(Some(Record::read(path)?)),
-        None if command.update_record => {
-            Err(Failure::Usage("--update-record does nothing without --record FILE".into()))
-        }
+        None if command.update_record => Err(Failure::Usage(
+            "--update-record does nothing without --record FILE; add that or leave it out".into(),
+        )),
         None => Ok(None),
     }
 }

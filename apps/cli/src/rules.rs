@@ -41,7 +41,10 @@ pub fn typed_of_views(given: &ArgMatches) -> impl Iterator<Item = String> + '_ {
 pub fn check_watch(is_watched: bool, given: &ArgMatches) -> Result<(), Failure> {
     let idle = ["port", "no_open"].into_iter().find(|name| !is_watched && is_typed(given, name));
     idle.map_or(Ok(()), |name| {
-        Err(Failure::Usage(format!("{} does nothing without --watch", typed_name(name))))
+        Err(Failure::Usage(format!(
+            "{} does nothing without --watch; add that or leave it out",
+            typed_name(name)
+        )))
     })
 }
 

@@ -22,8 +22,7 @@ pub fn run(command: &SimplifyCommand, given: &ArgMatches) -> Result<Ending, Fail
     let console = Console::new(command.talk).confined(command.reading);
     let model = read(&command.model, &console)?.model;
     let result = match command.subdivide {
-        Some(times @ 1..=6) => (0..times).fold(model.clone(), |m, _| subdivided(&m)),
-        Some(times) => return Err(Failure::Usage(format!("--subdivide {times}: 1 to 6"))),
+        Some(times) => (0..times).fold(model.clone(), |m, _| subdivided(&m)),
         None => match command.closest_in {
             ClosestIn::Pictures => simplified_by_pictures(&model, command.triangles, &console),
             ClosestIn::Shape => simplified(&model, command.triangles),

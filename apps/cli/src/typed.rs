@@ -1,11 +1,11 @@
-//! What was typed wrong, in one sentence each: the culprit, and what to do next.
+//! What was typed wrong, in one sentence each that says what to do next.
 //!
 //! Contract: clap's words stand where nothing better is known, which is also how it prints help and version.
 
 use clap::Error;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::error::Error as _;
-use std::num::{ParseFloatError, ParseIntError};
+use std::num::{IntErrorKind, ParseFloatError, ParseIntError};
 
 /// Prints what is wrong, and ends.
 pub fn end(error: &Error) -> ! {
@@ -27,9 +27,16 @@ pub fn sentence(error: &Error) -> Option<String> {
         ErrorKind::InvalidSubcommand => {
             let name = text(error, ContextKind::InvalidSubcommand)?;
             let meant = strings(error, ContextKind::SuggestedSubcommand);
-            Some(format!("there is no command {name}; {}", meant_or_listed(&meant, "parbake --help")))
+            Some(format!(
+                "there is no command {name}; {}",
+                meant_or(&meant, "parbake --help lists the commands")
+            ))
         }
         ErrorKind::InvalidValue | ErrorKind::ValueValidation => value(error),
+        ErrorKind::TooManyValues => {
+            let name = as_written(&text(error, ContextKind::InvalidArg)?);
+            Some(format!("{name} takes no value; give it alone"))
+        }
         _ => None,
     }
 }
@@ -63,6 +70,13 @@ fn conflict(error: &Error) -> Option<String> {
     }
 }
 
+/// The option that is there twice, or that does not go with one that is.
+pub fn conflicting(error: &Error) -> Option<String> {
+    let is_conflict = error.kind() == ErrorKind::ArgumentConflict;
+    let argument = text(error, ContextKind::InvalidArg).filter(|_| is_conflict)?;
+    as_written(&argument).split(' ').next().map(str::to_string)
+}
+
 fn unknown(error: &Error) -> Option<String> {
     let (typed, command) = (text(error, ContextKind::InvalidArg)?, command_of(error));
     let help =
@@ -72,8 +86,40 @@ fn unknown(error: &Error) -> Option<String> {
         return Some(format!("{typed} is one argument too many{of}; see {help}"));
     }
     let meant = strings(error, ContextKind::SuggestedArg);
-    let what = command.map_or("there is".into(), |command| format!("{command} has"));
-    Some(format!("{what} no option {typed}; {}", meant_or_listed(&meant, &help)))
+    Some(match command.as_deref() {
+        Some("batch") if meant.is_empty() => {
+            format!("batch has no option {typed}; options of the command that it runs come after --")
+        }
+        Some(command) => {
+            let help = format!("{help} lists them all");
+            format!("{command} has no option {typed}; {}", meant_or(&meant, &help))
+        }
+        None => match command_with(&typed) {
+            Some(command) => {
+                format!(
+                    "{typed} is an option of a command and comes after it, as in parbake {command} {typed}"
+                )
+            }
+            None => {
+                format!(
+                    "there is no option {typed}; {}",
+                    meant_or(&meant, "parbake --help lists the commands")
+                )
+            }
+        },
+    })
+}
+
+/// The first command with this option.
+fn command_with(typed: &str) -> Option<String> {
+    let name = typed.trim_start_matches('-');
+    let is_meant = |argument: &clap::Arg| match typed.starts_with("--") {
+        true => argument.get_long() == Some(name),
+        false => argument.get_short().is_some_and(|short| name.starts_with(short)),
+    };
+    let whole = crate::arguments::command();
+    let mut commands = whole.get_subcommands();
+    commands.find(|own| own.get_arguments().any(is_meant)).map(|own| own.get_name().to_string())
 }
 
 fn value(error: &Error) -> Option<String> {
@@ -81,11 +127,15 @@ fn value(error: &Error) -> Option<String> {
     let name = argument.split(' ').next().unwrap_or_default();
     let typed = text(error, ContextKind::InvalidValue)?;
     let possible = strings(error, ContextKind::ValidValue);
-    let is_absent = typed.is_empty() && error.source().is_none();
+    let is_absent = typed.is_empty();
     Some(match (is_absent, &possible[..]) {
         (true, []) => format!("{argument} needs a value"),
         (true, possible) => format!("{name} needs a value: {}", listed(possible, "or")),
-        (false, []) => format!("{name} cannot be {typed}: {}", wanted(error, &typed)?),
+        (false, []) => match wanted(error, &typed)? {
+            // Some say themselves what they are of.
+            said if said.starts_with(&format!("{typed:?} ")) => format!("{name}: {said}"),
+            said => format!("{name} cannot be {typed}: {said}"),
+        },
         (false, possible) => format!("{name} cannot be {typed}: it may be {}", listed(possible, "or")),
     })
 }
@@ -96,16 +146,24 @@ fn wanted(error: &Error, typed: &str) -> Option<String> {
     if source.is::<ParseFloatError>() {
         return Some("give a number, such as 0.5".into());
     }
-    if source.is::<ParseIntError>() {
+    if let Some(error) = source.downcast_ref::<ParseIntError>() {
+        let is_large = *error.kind() == IntErrorKind::PosOverflow;
         let is_negative = typed.starts_with('-');
-        return Some(if is_negative { "give 0 or more" } else { "give a whole number, such as 8" }.into());
+        return Some(match (is_large, is_negative) {
+            (true, _) => "give a smaller number".into(),
+            (_, true) => "give 0 or more".into(),
+            _ => "give a whole number, such as 8".into(),
+        });
     }
     let said = source.to_string();
     let Some((_, range)) = said.split_once(" is not in ") else { return Some(said) };
     let (least, most) = range.split_once("..")?;
+    let is_below = typed.starts_with('-') || typed.parse::<u64>().ok() < least.parse().ok();
     Some(match most.trim_start_matches('=') {
         // Some ranges end only where the parser's type does.
-        most if most.is_empty() || most == u32::MAX.to_string() => format!("it may be {least} or more"),
+        most if is_below && (most.is_empty() || most == u32::MAX.to_string()) => {
+            format!("it may be {least} or more")
+        }
         most => format!("it may be {least} to {most}"),
     })
 }
@@ -122,9 +180,10 @@ fn as_written(argument: &str) -> String {
     argument.chars().filter(|c| !"<>[]".contains(*c)).collect::<String>().trim_end_matches("...").to_string()
 }
 
-fn meant_or_listed(meant: &[String], help: &str) -> String {
+/// What was perhaps meant, or else this.
+fn meant_or(meant: &[String], otherwise: &str) -> String {
     match meant {
-        [] => format!("{help} lists them"),
+        [] => otherwise.into(),
         meant => format!("did you mean {}?", listed(meant, "or")),
     }
 }
@@ -185,7 +244,25 @@ mod tests {
             ("bake a.glb b.glb --seed 1 --seed 2", "--seed is given twice; leave one out"),
             ("bake a.glb b.glb c.glb", "c.glb is one argument too many for bake; see parbake bake --help"),
             ("bakee", "there is no command bakee; did you mean bake?"),
-            ("unheard-of", "there is no command unheard-of; parbake --help lists them"),
+            ("unheard-of", "there is no command unheard-of; parbake --help lists the commands"),
+            (
+                "--texture-size 512 bake a b",
+                "--texture-size is an option of a command and comes after it, as in parbake bake --texture-size",
+            ),
+            ("--xyzzy", "there is no option --xyzzy; parbake --help lists the commands"),
+            ("bake a.glb b.glb --xyzzy", "bake has no option --xyzzy; parbake bake --help lists them all"),
+            (
+                "batch models --command compress --preset fast",
+                "batch has no option --preset; options of the command that it runs come after --",
+            ),
+            ("bake a.glb b.glb --strict=1", "--strict takes no value; give it alone"),
+            ("bake a.glb b.glb --seed=", "--seed NUMBER needs a value"),
+            (
+                "bake a.glb b.glb --seed 99999999999999999999",
+                "--seed cannot be 99999999999999999999: give a smaller number",
+            ),
+            ("bake a.glb -t 5000000000", "--triangles cannot be 5000000000: it may be 4 to 4294967295"),
+            ("simplify a.glb -o b.glb --subdivide 9", "--subdivide cannot be 9: it may be 1 to 6"),
             ("lod", "lod needs MODEL; parbake lod --help says more"),
             ("lod a.glb --screen-size a", "--screen-size cannot be a: give a number, such as 0.5"),
             ("simplify a.glb", "simplify needs --output FILE; parbake simplify --help says more"),

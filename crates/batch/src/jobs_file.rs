@@ -167,7 +167,7 @@ mod tests {
             ("", "no job in it"),
             ("[[job]]\ninputs = ['a.glb']", "has no command"),
             ("[[job]]\ncommand = 'fly'\ninputs = ['a.glb']", "\"fly\" is no command"),
-            ("[[job]]\ncommand = 'make'\ninputs = ['a.glb']\noptions = { bad = true }", "'--bad'"),
+            ("[[job]]\ncommand = 'make'\ninputs = ['a.glb']\noptions = { bad = true }", "no option --bad"),
             ("[[job]]\ncommand = 'make'\noptions = { a = [1] }", "--a must be"),
             ("[defaults]\ninputs = ['a.glb']", "[defaults] may have"),
             (

@@ -268,7 +268,7 @@ pub struct SimplifyCommand {
     pub triangles: usize,
 
     /// Subdivide instead: split each triangle into four, 1 to 6 times
-    #[arg(long, value_name = "TIMES", conflicts_with_all = ["triangles", "closest_in"])]
+    #[arg(long, value_name = "TIMES", value_parser = clap::value_parser!(u32).range(1..=6), conflicts_with_all = ["triangles", "closest_in"])]
     pub subdivide: Option<u32>,
 
     /// Whether pictures of the copy or its shape come closest to the model

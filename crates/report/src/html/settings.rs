@@ -2,7 +2,7 @@
 //! option can be forgotten.
 
 use crate::page::text::escape;
-use parbake::{BakeOptions, UsedValues, UvMode, Work, idle_options};
+use parbake::{BakeOptions, UsedValues, Work, idle_options};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -62,18 +62,18 @@ pub fn settings(options: &BakeOptions, work: Work, used: &UsedValues) -> String 
     };
     for (name, value) in fields(options).into_iter().filter(|(name, value)| acts(name, value)) {
         let settled = match name.as_str() {
+            "views" | "view_size" | "rounds" if used.views.is_none() => Some("not used".into()),
             "views" => Some(of_at_most(used.views, plan.views)),
             "view_size" => Some(plan.reference.size.to_string()),
             "rounds" => Some(plan.schedule.rounds.to_string()),
-            "gutter" if options.uv == UvMode::Keep && used.gutter.is_none() => Some("as delivered".into()),
-            "gutter" => Some(format!(
-                "{} texels",
-                plain(&used.gutter.unwrap_or_else(|| options.gutter_texels()).into())
-            )),
+            "gutter" => Some(match used.gutter {
+                Some(gutter) => format!("{} texels", plain(&gutter.into())),
+                None => "as delivered".into(),
+            }),
             "silhouette" => Some(options.silhouette_weight().to_string()),
             "robust_scale" => Some(plan.schedule.robust_scale.to_string()),
             "more_triangles" => Some(of_at_most(used.more_triangles, options.more_triangles())),
-            "uv_steps" => Some(of_at_most(used.uv_steps, options.settled_uv_steps(work))),
+            "uv_steps" => Some(of_at_most(used.uv_steps.or(Some(0)), options.settled_uv_steps(work))),
             "fallback_size" => match used.fallback_size {
                 Some(0) => Some("none: the maps' own textures serve all viewers".into()),
                 side => side.map(|side| format!("{side} texels")),
@@ -139,8 +139,9 @@ mod tests {
             keep_parts: vec!["wheel".into()],
             ..BakeOptions::default()
         };
-        let html = settings(&options, Work::Bake, &UsedValues::default());
         let views = options.plan().views;
+        let used = UsedValues { views: Some(views), ..UsedValues::default() };
+        let html = settings(&options, Work::Bake, &used);
         let idle = ["more_triangles", "no_content_aware", "importance"];
         let acting = fields(&options).into_keys().filter(|name| !idle.contains(&name.as_str()));
         for name in acting {
@@ -151,6 +152,8 @@ mod tests {
         }
         assert_eq!(html.matches("<tr").count(), fields(&options).len() - idle.len());
         let plain = settings(&BakeOptions::default(), Work::Compress, &UsedValues::default());
+        // Without views their size says nothing.
+        assert!(plain.contains("not used") && !html.contains("not used"));
         assert!(!plain.contains("cutout") && !plain.contains(">shape<") && plain.contains("more triangles"));
         assert!(
             html.contains(&format!("{views} <small>by default")) && html.contains("<td>0.05</td>"),
