@@ -106,7 +106,8 @@ pub struct WriteOptions {
     #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "COMPRESSION", default_value_t = MeshCompression::None, help_heading = HEADING))]
     pub mesh_compression: MeshCompression,
 
-    /// Write PNG fast instead of small: 3 to 30 % more bytes, about 50 times as fast. Default: false
+    /// Write PNG fast instead of small: up to twice the bytes (9.9 instead of 5.7 MB for three maps of 2048²), about 50 times as
+    /// fast. Default: false
     #[cfg_attr(feature = "clap", arg(skip))]
     #[serde(skip)]
     pub is_urgent: bool,
