@@ -59,10 +59,9 @@ fn missing(error: &Error) -> Option<String> {
 fn conflict(error: &Error) -> Option<String> {
     let own = as_written(&text(error, ContextKind::InvalidArg)?);
     let others = strings(error, ContextKind::PriorArg);
-    let name = |argument: &str| argument.split(' ').next().unwrap_or_default().to_string();
     match &others.iter().map(|other| as_written(other)).collect::<Vec<_>>()[..] {
         [] => None,
-        [other] if *other == own => Some(format!("{} is given twice; leave one out", name(&own))),
+        [other] if *other == own => Some(format!("{} is given twice; leave one out", name_of(&own))),
         others => {
             let all: Vec<String> = others.iter().chain([&own]).cloned().collect();
             Some(format!("{} do not go together; give one of them", listed(&all, "and")))
@@ -74,7 +73,7 @@ fn conflict(error: &Error) -> Option<String> {
 pub fn conflicting(error: &Error) -> Option<String> {
     let is_conflict = error.kind() == ErrorKind::ArgumentConflict;
     let argument = text(error, ContextKind::InvalidArg).filter(|_| is_conflict)?;
-    as_written(&argument).split(' ').next().map(str::to_string)
+    Some(name_of(&as_written(&argument)).to_string())
 }
 
 fn unknown(error: &Error) -> Option<String> {
@@ -124,11 +123,10 @@ fn command_with(typed: &str) -> Option<String> {
 
 fn value(error: &Error) -> Option<String> {
     let argument = as_written(&text(error, ContextKind::InvalidArg)?);
-    let name = argument.split(' ').next().unwrap_or_default();
+    let name = name_of(&argument);
     let typed = text(error, ContextKind::InvalidValue)?;
     let possible = strings(error, ContextKind::ValidValue);
-    let is_absent = typed.is_empty();
-    Some(match (is_absent, &possible[..]) {
+    Some(match (typed.is_empty(), &possible[..]) {
         (true, []) => format!("{argument} needs a value"),
         (true, possible) => format!("{name} needs a value: {}", listed(possible, "or")),
         (false, []) => match wanted(error, &typed)? {
@@ -178,6 +176,11 @@ fn command_of(error: &Error) -> Option<String> {
 /// An argument as people write it: `--output FILE`, `LOW`.
 fn as_written(argument: &str) -> String {
     argument.chars().filter(|c| !"<>[]".contains(*c)).collect::<String>().trim_end_matches("...").to_string()
+}
+
+/// An option as people write it without its value: `--output`.
+fn name_of(written: &str) -> &str {
+    written.split(' ').next().unwrap_or_default()
 }
 
 /// What was perhaps meant, or else this.
