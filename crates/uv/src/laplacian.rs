@@ -3,19 +3,15 @@
 //!
 //! Gradients of texture coordinates are rough: neighbours are pulled in opposite ways.
 //! Smoothed by the inverse Laplacian (a Sobolev gradient) they move whole regions in one
-//! step. The matrix stays while a layout's connectivity does, so it is factorised once
-//! (sparse Cholesky, faer).
+//! step. The matrix stays while a layout's connectivity does, so it is factorised once.
 
 use crate::descent::Preconditioner;
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::Llt;
-use faer::sparse::{SparseColMat, Triplet};
-use faer::{Mat, Side};
 use glam::{DVec2, dvec2};
+use parbake_cholesky::{Cholesky, LowerHalf};
 
 /// `(L + κ)⁻¹`, factorised.
 pub struct Laplacian {
-    factors: Option<Llt<usize, f64>>,
+    factors: Option<Cholesky>,
 }
 
 impl Laplacian {
@@ -29,18 +25,24 @@ impl Laplacian {
         edges.sort_unstable();
         edges.dedup();
         let mut diagonal = vec![shift; points];
-        let mut triplets = Vec::with_capacity(points + edges.len());
-        for [a, b] in edges {
-            diagonal[a as usize] += 1.0;
-            diagonal[b as usize] += 1.0;
-            triplets.push(Triplet::new(b as usize, a as usize, -1.0));
+        for edge in &edges {
+            edge.iter().for_each(|&i| diagonal[i as usize] += 1.0);
         }
-        triplets.extend(diagonal.iter().enumerate().map(|(i, d)| Triplet::new(i, i, *d)));
+        let mut matrix = LowerHalf::default();
+        let mut edges = edges.into_iter().peekable();
+        for (a, &own) in diagonal.iter().enumerate() {
+            matrix.pointers.push(matrix.rows.len());
+            matrix.rows.push(a);
+            matrix.values.push(own);
+            while let Some([_, b]) = edges.next_if(|edge| edge[0] as usize == a) {
+                matrix.rows.push(b as usize);
+                matrix.values.push(-1.0);
+            }
+        }
+        matrix.pointers.push(matrix.rows.len());
         // A positive shift makes the matrix positive definite; should memory run out, plain
         // L-BFGS goes on without it.
-        let factors = SparseColMat::try_new_from_triplets(points, points, &triplets)
-            .ok()
-            .and_then(|matrix| matrix.sp_cholesky(Side::Lower).ok());
+        let factors = Cholesky::new(matrix);
         Self { factors }
     }
 }
@@ -48,10 +50,10 @@ impl Laplacian {
 impl Preconditioner for Laplacian {
     fn apply(&self, vector: &mut [DVec2]) {
         let Some(factors) = &self.factors else { return };
-        let mut right = Mat::from_fn(vector.len(), 2, |i, k| vector[i][k]);
-        factors.solve_in_place(&mut right);
-        for (i, v) in vector.iter_mut().enumerate() {
-            *v = dvec2(right[(i, 0)], right[(i, 1)]);
+        let [mut x, mut y] = [0, 1].map(|axis| vector.iter().map(|v| v[axis]).collect::<Vec<f64>>());
+        factors.solve([&mut x, &mut y]);
+        for (v, (x, y)) in vector.iter_mut().zip(x.into_iter().zip(y)) {
+            *v = dvec2(x, y);
         }
     }
 }
