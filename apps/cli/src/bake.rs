@@ -12,10 +12,10 @@ use crate::stage_times::stage_line;
 use crate::watch;
 use clap::ArgMatches;
 use parbake::{
-    BakeOptions, BakeReport, Baked, Comparison, Convention, Detail, Loaded, Message, Metrics, Model, NormalY,
-    Shading, Stage, StageTime, Warning, WarningKind, Watcher, Work, WriteOptions, bake, bake_to_triangles,
-    check_budget, compare_bake, psnr_from_mse, read_model, read_painted_model, with_normal_y, with_threads,
-    write_file,
+    BakeOptions, BakeReport, Baked, Comparison, Convention, Detail, FileError, Loaded, Message, Metrics,
+    Model, NormalY, Shading, Stage, StageTime, Warning, WarningKind, Watcher, Work, WriteOptions, bake,
+    bake_to_triangles, check_budget, compare_bake, psnr_from_mse, read_model, read_model_with_pictures,
+    read_painted_model, with_normal_y, with_threads, write_file,
 };
 use parbake_report::html_report;
 use std::path::Path;
@@ -131,11 +131,25 @@ pub fn read(path: &Path, console: &Console) -> Result<Loaded, Failure> {
 
 /// The same, with the importances that are painted in an attribute, if there is one.
 pub fn read_painted(path: &Path, attribute: Option<&str>, console: &Console) -> Result<Loaded, Failure> {
+    told(path, console, || match attribute {
+        Some(attribute) => read_painted_model(path, attribute, console.limits()),
+        None => read_model(path, console.limits()),
+    })
+}
+
+/// A model with the files of its pictures, to be written with them.
+pub fn read_with_pictures(path: &Path, console: &Console) -> Result<Loaded, Failure> {
+    told(path, console, || read_model_with_pictures(path, console.limits()))
+}
+
+/// What was read, once its warnings are told.
+fn told(
+    path: &Path,
+    console: &Console,
+    read: impl FnOnce() -> Result<Loaded, FileError>,
+) -> Result<Loaded, Failure> {
     check_input(path)?;
-    let loaded = match attribute {
-        Some(attribute) => read_painted_model(path, attribute, console.limits())?,
-        None => read_model(path, console.limits())?,
-    };
+    let loaded = read()?;
     for warning in &loaded.warnings {
         console.message(Message::Warning(warning.text.clone()));
     }

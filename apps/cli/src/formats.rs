@@ -5,7 +5,8 @@ use crate::failure::Failure;
 use crate::outputs::is_obj;
 use crate::progress::Console;
 use parbake::{
-    MeshCompression, Model, TextureFormat, WriteOptions, Written, WrittenTexture, write_glb_with, write_obj,
+    MeshCompression, Model, PictureFiles, TextureFormat, WriteOptions, Written, WrittenTexture,
+    write_glb_keeping, write_obj,
 };
 use std::path::Path;
 
@@ -32,6 +33,17 @@ pub fn write_model(
     options: &WriteOptions,
     console: &Console,
 ) -> Result<(u64, Option<Written>), Failure> {
+    write_model_keeping(path, model, options, &PictureFiles::default(), console)
+}
+
+/// As [`write_model`]; pictures of a GLB that are still those of `files` stay the files they were.
+pub fn write_model_keeping(
+    path: &Path,
+    model: &Model,
+    options: &WriteOptions,
+    files: &PictureFiles,
+    console: &Console,
+) -> Result<(u64, Option<Written>), Failure> {
     if is_obj(path) {
         if model.materials.iter().any(|material| material.extensions.show()) {
             console.say(&format!(
@@ -48,7 +60,7 @@ pub fn write_model(
         }
         return Ok((write_obj(path, model)?, None));
     }
-    let written = write_glb_with(path, model, options)?;
+    let written = write_glb_keeping(path, model, options, files)?;
     if (WriteOptions { is_urgent: false, ..*options }) != WriteOptions::default() {
         for line in losses(&written) {
             console.say(&line);

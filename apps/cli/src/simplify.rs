@@ -1,14 +1,14 @@
 //! `parbake simplify`.
 
 use crate::arguments::{ClosestIn, SimplifyCommand};
-use crate::bake::read;
+use crate::bake::read_with_pictures;
 use crate::failure::{Ending, Failure};
-use crate::formats::{check_formats, write_model};
+use crate::formats::{check_formats, write_model_keeping};
 use crate::outputs::{check_not_input, check_output};
 use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;
-use parbake::{simplified, simplified_by_pictures, subdivided};
+use parbake::{Loaded, simplified, simplified_by_pictures, subdivided};
 
 /// Runs the command.
 pub fn run(command: &SimplifyCommand, given: &ArgMatches) -> Result<Ending, Failure> {
@@ -20,7 +20,7 @@ pub fn run(command: &SimplifyCommand, given: &ArgMatches) -> Result<Ending, Fail
         return Err(Failure::Usage(format!("--triangles {}: at least 4", command.triangles)));
     }
     let console = Console::new(command.talk).confined(command.reading);
-    let model = read(&command.model, &console)?.model;
+    let Loaded { model, pictures, .. } = read_with_pictures(&command.model, &console)?;
     let result = match command.subdivide {
         Some(times) => (0..times).fold(model.clone(), |m, _| subdivided(&m)),
         None => match command.closest_in {
@@ -28,7 +28,7 @@ pub fn run(command: &SimplifyCommand, given: &ArgMatches) -> Result<Ending, Fail
             ClosestIn::Shape => simplified(&model, command.triangles),
         },
     };
-    write_model(&command.output, &result, &command.formats, &console)?;
+    write_model_keeping(&command.output, &result, &command.formats, &pictures, &console)?;
     console.finish();
     console.say(&format!(
         "{}: {} triangles from {}",

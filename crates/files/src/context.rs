@@ -3,6 +3,7 @@
 
 use crate::contents::{PictureFormat, StoredPicture};
 use crate::image_in::{decode, texels};
+use crate::picture_files::PictureFiles;
 use crate::search;
 use crate::words::shown;
 use crate::{Contents, FileError, Limits, Place, Resources, Warning, WarningKind};
@@ -37,17 +38,33 @@ pub(crate) struct Context<'a> {
     pub textures: Textures,
     /// The vertex attribute that importances are painted in, where they are asked for.
     pub attribute: Option<&'a str>,
+    /// Whether the files of pictures are kept.
+    pub keeps_pictures: bool,
     warnings: RefCell<Vec<Warning>>,
     seen: RefCell<BTreeSet<String>>,
     /// Bytes of each file that was read, the model's own under the empty name.
     read: RefCell<BTreeMap<String, u64>>,
     contents: RefCell<Contents>,
+    picture_files: RefCell<PictureFiles>,
 }
 
 impl<'a> Context<'a> {
     pub fn new(path: &'a Path, resources: &'a dyn Resources, limits: &'a Limits, textures: Textures) -> Self {
-        let (warnings, seen, read, contents) = Default::default();
-        Self { path, resources, limits, textures, attribute: None, warnings, seen, read, contents }
+        let (warnings, seen, read, contents, picture_files) = Default::default();
+        let (attribute, keeps_pictures) = (None, false);
+        Self {
+            path,
+            resources,
+            limits,
+            textures,
+            attribute,
+            keeps_pictures,
+            warnings,
+            seen,
+            read,
+            contents,
+            picture_files,
+        }
     }
 
     /// Counts the model's own file.
@@ -130,6 +147,11 @@ impl<'a> Context<'a> {
     /// What the files hold, as far as they were read.
     pub fn contents(&self) -> Contents {
         self.contents.borrow().clone()
+    }
+
+    /// The files of pictures, where they are kept.
+    pub fn picture_files(&self) -> PictureFiles {
+        self.picture_files.take()
     }
 
     /// Adds a warning of no kind of its own, once.
@@ -218,6 +240,10 @@ impl<'a> Context<'a> {
             })
         });
         self.contents.borrow_mut().pictures.extend(stored);
+        if self.keeps_pictures {
+            let mut files = self.picture_files.borrow_mut();
+            images.iter().zip(pictures).for_each(|(image, (_, bytes))| files.keep(image, bytes));
+        }
         Ok(images)
     }
 }

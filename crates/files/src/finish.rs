@@ -47,7 +47,8 @@ pub(crate) fn finish(
     }
     let bytes = context.bytes();
     let contents = Contents { degenerate_triangles: degenerate, ..context.contents() };
-    Ok(Loaded { model, warnings: context.into_warnings(), bytes, contents })
+    let pictures = context.picture_files();
+    Ok(Loaded { model, warnings: context.into_warnings(), bytes, contents, pictures })
 }
 
 /// Twice the area vector, in doubles: products of small floats would vanish.

@@ -1,6 +1,6 @@
 //! What every reader gives: a model, and what there is to say of its files.
 
-use crate::{Contents, Warning};
+use crate::{Contents, PictureFiles, Warning};
 use parbake_model::Model;
 
 /// A model, and what is odd about its file.
@@ -14,4 +14,6 @@ pub struct Loaded {
     pub bytes: u64,
     /// What those files hold that the model does not tell.
     pub contents: Contents,
+    /// The files of its pictures, where they were asked for ([`crate::read_model_with_pictures`]).
+    pub pictures: PictureFiles,
 }

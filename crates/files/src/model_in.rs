@@ -20,6 +20,18 @@ pub fn read_model(path: &Path, limits: &Limits) -> Result<Loaded, FileError> {
     read(path, limits, Textures::Decode)
 }
 
+/// Like [`read_model`], with the files of its pictures ([`Loaded::pictures`]), for a model that is written with pictures as they
+/// came ([`crate::write_glb_keeping`]).
+///
+/// # Errors
+/// As [`read_model`].
+pub fn read_model_with_pictures(path: &Path, limits: &Limits) -> Result<Loaded, FileError> {
+    let (resources, bytes) = opened(path, limits)?;
+    let mut context = Context::new(path, &resources, limits, Textures::Decode);
+    context.keeps_pictures = true;
+    parsed_in(context, path, &bytes)
+}
+
 /// Like [`read_model`], with the importances that are painted in a vertex attribute of a glTF file
 /// ([`Model::painted`](parbake_model::Model::painted)): one number, or a colour's red.
 ///
@@ -83,7 +95,10 @@ pub(crate) fn parsed(
     limits: &Limits,
     textures: Textures,
 ) -> Result<Loaded, FileError> {
-    let context = Context::new(path, resources, limits, textures);
+    parsed_in(Context::new(path, resources, limits, textures), path, bytes)
+}
+
+fn parsed_in(context: Context<'_>, path: &Path, bytes: &[u8]) -> Result<Loaded, FileError> {
     let mut loaded =
         if is_gltf(path, bytes) { gltf::read(context, bytes) } else { obj::read(context, bytes) }?;
     name_model(path, &mut loaded.warnings);

@@ -98,10 +98,11 @@ pub use parbake_evaluate::options::EvaluateOptions;
 pub use parbake_evaluate::renderer::{PlacedModel, RenderedView, Renderer, tonemapped};
 pub use parbake_evaluate::screen_size::AtSize;
 pub use parbake_files::{
-    Contents, DEFAULT_TEXTURE_QUALITY, FileError, Limits, Loaded, MeshCompression, NormalY, PictureFormat,
-    StoredPicture, TextureFormat, Warning, WarningKind, WriteOptions, Written, WrittenMesh, WrittenTexture,
-    encode_png, named_files, read_image, read_model, read_painted_model, replaced_files, with_normal_y,
-    write_atomically as write_file, write_glb, write_glb_with, write_lod_glb, write_obj,
+    Contents, DEFAULT_TEXTURE_QUALITY, FileError, Limits, Loaded, MeshCompression, NormalY, PictureFiles,
+    PictureFormat, StoredPicture, TextureFormat, Warning, WarningKind, WriteOptions, Written, WrittenMesh,
+    WrittenTexture, encode_png, named_files, read_image, read_model, read_model_with_pictures,
+    read_painted_model, replaced_files, with_normal_y, write_atomically as write_file, write_glb,
+    write_glb_keeping, write_glb_with, write_lod_glb, write_obj,
 };
 pub use parbake_fit::parallax_maps::ParallaxReport;
 pub use parbake_mesh::distance::{OneWay, SurfaceDistance};

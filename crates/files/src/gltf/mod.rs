@@ -61,7 +61,9 @@ mod write_rig;
 
 pub(crate) use names::named_files;
 pub(crate) use pack::pack;
-pub use write::{glb_bytes, glb_bytes_with, quick_glb_bytes, write_glb, write_glb_with, write_lod_glb};
+pub use write::{
+    glb_bytes, glb_bytes_with, quick_glb_bytes, write_glb, write_glb_keeping, write_glb_with, write_lod_glb,
+};
 
 use crate::context::{Context, Textures};
 use crate::finish::finish;

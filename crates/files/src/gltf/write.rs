@@ -12,6 +12,8 @@ use super::meshopt_out;
 use super::pieces::{Piece, pieces};
 use super::write_material::{EMISSIVE_STRENGTH, UNLIT};
 use super::write_rig;
+use crate::contents::PictureFormat;
+use crate::picture_files::{PictureFile, PictureFiles};
 use crate::texture_out::{Encoded, Purpose, encode_texture};
 use crate::write_options::{
     MeshCompression, TextureFormat, WriteOptions, Written, WrittenMesh, WrittenTexture,
@@ -40,7 +42,32 @@ pub fn write_glb(path: &Path, model: &Model) -> Result<u64, FileError> {
 /// # Errors
 /// As [`write_glb`].
 pub fn write_glb_with(path: &Path, model: &Model, options: &WriteOptions) -> Result<Written, FileError> {
-    let (bytes, written) = to_bytes(path, &[model], None, options, encode_texture)?;
+    write_glb_keeping(path, model, options, &PictureFiles::default())
+}
+
+/// As [`write_glb_with`]; where PNG is asked for, pictures that are still those of `files` are written as the files they were
+/// ([`PictureFiles`]).
+///
+/// # Errors
+/// As [`write_glb`].
+pub fn write_glb_keeping(
+    path: &Path,
+    model: &Model,
+    options: &WriteOptions,
+    files: &PictureFiles,
+) -> Result<Written, FileError> {
+    let encode = |image: &Image, purpose: Purpose, options: &WriteOptions| {
+        let kept = if options.texture_format == TextureFormat::Png { files.of(image) } else { None };
+        match kept {
+            Some(PictureFile { bytes, format }) => {
+                let format =
+                    if *format == PictureFormat::Jpeg { TextureFormat::Jpeg } else { TextureFormat::Png };
+                Ok(Encoded { bytes: bytes.clone(), format, psnr: None, reason: None })
+            }
+            None => encode_texture(image, purpose, options),
+        }
+    };
+    let (bytes, written) = to_bytes(path, &[model], None, options, encode)?;
     write_atomically(path, &bytes)?;
     Ok(written)
 }
