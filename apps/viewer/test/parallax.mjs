@@ -120,7 +120,7 @@ async function ofExample(file, called) {
   await stop();
 }
 
-const FRAMES = 6, SIZE = 256, HEIGHT = 20;
+const FRAMES = 4, SIZE = 256, HEIGHT = 20;
 
 /** Decibels between the page and the CPU renderer, the least of a few views. */
 async function againstCpu(page, file, isOn) {

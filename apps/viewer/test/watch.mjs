@@ -81,7 +81,7 @@ async function session(what, options, steps) {
 const browser = await launch();
 await session('watched', { width: 800, height: 560 }, async (page) => {
   const file = path.join(out, 'watched.glb');
-  const { url, end, isOver } = await bake([values.low, '-o', file, '--parallax', 'tangent', '--texture-size', '128', '--preset', 'fast', '--views', '480']);
+  const { url, end, isOver } = await bake([values.low, '-o', file, '--parallax', 'tangent', '--texture-size', '128', '--preset', 'fast', '--views', '200']);
   const stages = new Set(), layouts = new Set();
   let snapshots = 0, isShown = false;
   page.on('response', (response) => { if (response.url().endsWith('/run/snapshot') && response.ok()) snapshots++; });

@@ -39,8 +39,8 @@ pub fn json(path: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
 }
 
-/// The built-in pair, with a tenth of the high-poly's triangles, as files in this folder: `demo_high.glb` and
-/// `demo_low.glb`.
+/// The built-in pair, with a tenth of the high-poly's triangles and a quarter of its textures' sides, as files in this
+/// folder: `demo_high.glb` and `demo_low.glb`.
 pub fn demo_pair(folder: &Path) {
     demo_files(folder, &["demo_high.glb", "demo_low.glb"]);
 }
@@ -53,7 +53,8 @@ pub fn demo_files(folder: &Path, names: &[&str]) {
     let made = PAIR.get_or_init(|| {
         let made = tempfile::tempdir().unwrap();
         let (high, low) = parbake::demo_pair();
-        let high = parbake::simplified(&high, 6000);
+        let mut high = parbake::simplified(&high, 6000);
+        high.images.iter_mut().for_each(|image| *image = coarser(image));
         for (name, model) in [("demo_high.glb", &high), ("demo_low.glb", &low)] {
             parbake::write_glb(&made.path().join(name), model).unwrap();
         }
@@ -68,6 +69,14 @@ pub fn demo_files(folder: &Path, names: &[&str]) {
     for name in names {
         std::fs::copy(made.path().join(name), folder.join(name)).unwrap();
     }
+}
+
+/// Every fourth texel in each direction.
+fn coarser(image: &parbake::Picture) -> parbake::Picture {
+    let (width, height) = (image.width / 4, image.height / 4);
+    let texel = |i: usize| image.pixels[4 * (i / width) * image.width + 4 * (i % width)];
+    let pixels = (0..width * height).map(texel).collect();
+    parbake::Picture { name: image.name.clone(), width, height, pixels }
 }
 
 /// The folder of real models, or none with a word about it.
