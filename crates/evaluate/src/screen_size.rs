@@ -2,7 +2,7 @@
 //! found by rendering both at that size.
 //!
 //! Both are rendered from some directions as viewers show them: whole materials under the built-in light, 2 × 2 samples
-//! a pixel, each shaded, on the grey 128 of 255. The figure is the PSNR over whole pictures in which the model's longest
+//! a pixel, each shaded, on the grey 128 of 255, or on what is asked for. The figure is the PSNR over whole pictures in which the model's longest
 //! side spans five sevenths of the width, the mean over the directions. Sizes are tried in steps of a fifth from the one
 //! that the level was made for; the largest that passes before one does not counts.
 //!
@@ -30,7 +30,9 @@ const FEW_PIXELS: f64 = 150.0;
 /// Samples along a side of a pixel, each shaded.
 const SAMPLES: usize = 2;
 /// The grey that viewers show as the number 128 of 255, in linear light.
-const BEHIND: [f32; 3] = [0.2159; 3];
+const GREY: &[[f32; 3]] = &[[0.2159; 3]];
+/// Black and white: whatever colour a model has, its outline shows before one of both.
+pub const BLACK_AND_WHITE: &[[f32; 3]] = &[[0.0; 3], [1.0; 3]];
 /// Pixels of a picture for each that the model spans, as cameras stand (3.5 from the middle, half a width of 0.4).
 const PICTURE: f64 = 1.4;
 /// From one size to the next.
@@ -57,7 +59,9 @@ pub struct AtSize {
 pub struct Pictures {
     renderer: Renderer,
     pixels: f64,
-    views: Vec<Rgb>,
+    backgrounds: &'static [[f32; 3]],
+    /// For each direction one on each background.
+    views: Vec<Vec<Rgb>>,
 }
 
 /// Compares models at sizes on screen, as viewers show them, in the frame of the original.
@@ -87,22 +91,37 @@ impl ScreenComparison {
         Ok(self.renderer(SIZES[0])?.place(model))
     }
 
-    /// Takes a model's pictures at a size, to compare any number of others with.
+    /// Takes a model's pictures at a size, on grey, to compare any number of others with.
     ///
     /// # Errors
     /// Where the original has no extent.
     pub fn pictures(&self, model: &PlacedModel, pixels: f64) -> Result<Pictures, EvaluateError> {
-        let renderer = self.renderer(pixels)?;
-        let views = directions(pixels)
-            .into_par_iter()
-            .map(|direction| renderer.tonemap(&renderer.render(model, direction), BEHIND))
-            .collect();
-        Ok(Pictures { renderer, pixels, views })
+        self.pictures_on(model, pixels, GREY)
     }
 
-    /// PSNR in dB of a model against another one's pictures: that of [`ScreenComparison::compare`].
+    /// The same on other backgrounds, in linear light: figures are then means over these.
+    ///
+    /// # Errors
+    /// Where the original has no extent.
+    pub fn pictures_on(
+        &self,
+        model: &PlacedModel,
+        pixels: f64,
+        backgrounds: &'static [[f32; 3]],
+    ) -> Result<Pictures, EvaluateError> {
+        let mut pictures =
+            Pictures { renderer: self.renderer(pixels)?, pixels, backgrounds, views: Vec::new() };
+        let directions = directions(pixels).into_par_iter();
+        pictures.views = directions.map(|direction| pictures.taken(model, direction)).collect();
+        Ok(pictures)
+    }
+
+    /// PSNR in dB of a model against another one's pictures: on grey that of [`ScreenComparison::compare`].
     pub fn psnr(&self, pictures: &Pictures, model: &PlacedModel) -> f64 {
-        let own = |(direction, other)| psnr(other, &pictures.picture(model, direction));
+        let own = |(direction, others): (Vec3, &Vec<Rgb>)| {
+            let own = pictures.taken(model, direction);
+            others.iter().zip(&own).map(|(other, own)| psnr(other, own)).sum::<f64>() / own.len() as f64
+        };
         let figures: Vec<f64> = pictures.seen_from().map(own).collect();
         figures.iter().sum::<f64>() / figures.len() as f64
     }
@@ -113,8 +132,11 @@ impl ScreenComparison {
     /// Where the original has no extent.
     pub fn compare(&self, a: &PlacedModel, b: &PlacedModel, pixels: f64) -> Result<AtSize, EvaluateError> {
         let pictures = self.pictures(a, pixels)?;
-        let own = |(direction, other)| figures::compare(other, &pictures.picture(b, direction), Metrics::ALL);
-        let views: Vec<_> = pictures.seen_from().map(own).collect();
+        let own = |(direction, others): (Vec3, &Vec<Rgb>)| -> Vec<_> {
+            let own = pictures.taken(b, direction);
+            others.iter().zip(own).map(|(other, own)| figures::compare(other, &own, Metrics::ALL)).collect()
+        };
+        let views: Vec<_> = pictures.seen_from().flat_map_iter(own).collect();
         let mean = figures::mean(&views);
         Ok(AtSize { pixels, psnr: mean.psnr, ms_ssim: mean.ms_ssim, flip: mean.flip })
     }
@@ -153,12 +175,14 @@ impl ScreenComparison {
 }
 
 impl Pictures {
-    fn picture(&self, model: &PlacedModel, direction: Vec3) -> Rgb {
-        self.renderer.tonemap(&self.renderer.render(model, direction), BEHIND)
+    /// A model as it is seen from a direction, on each background.
+    fn taken(&self, model: &PlacedModel, direction: Vec3) -> Vec<Rgb> {
+        let view = self.renderer.render(model, direction);
+        self.backgrounds.iter().map(|&background| self.renderer.tonemap(&view, background)).collect()
     }
 
     /// The pictures, each with the direction that it was taken from.
-    fn seen_from(&self) -> impl IndexedParallelIterator<Item = (Vec3, &Rgb)> {
+    fn seen_from(&self) -> impl IndexedParallelIterator<Item = (Vec3, &Vec<Rgb>)> {
         directions(self.pixels).into_par_iter().zip(&self.views)
     }
 }

@@ -12,7 +12,7 @@
 
 use crate::models::with_tangents;
 use parbake_evaluate::EvaluateError;
-use parbake_evaluate::screen_size::ScreenComparison;
+use parbake_evaluate::screen_size::{BLACK_AND_WHITE, ScreenComparison};
 use parbake_levels::collapses::{FIRST_WAYS, best_collapsed};
 use parbake_levels::face_frames::with_face_tangents;
 use parbake_levels::maps::with_maps_at_most;
@@ -58,7 +58,8 @@ fn with_tangents_as(model: &Model, copy: Model) -> Model {
     if model.mesh.tangents.is_empty() { copy } else { with_tangents(copy) }
 }
 
-/// Of all copies the one whose pictures are closest to the model's.
+/// Of all copies the one whose pictures are closest to the model's, in the mean on black and on white: before a grey like its
+/// own a bumpy outline costs nothing, and no bake makes good for it.
 fn closest_in_pictures(
     model: &Model,
     parted: &Model,
@@ -66,7 +67,8 @@ fn closest_in_pictures(
     watcher: &dyn Watcher,
 ) -> Result<Mesh, EvaluateError> {
     let screens = ScreenComparison::new(model);
-    let pictures = screens.pictures(&screens.place(&with_face_tangents(model))?, PIXELS)?;
+    let original = screens.place(&with_face_tangents(model))?;
+    let pictures = screens.pictures_on(&original, PIXELS, BLACK_AND_WHITE)?;
     let look = with_maps_at_most(parted, TEXELS);
     let tried = Cell::new(0);
     let judged = |mesh: Mesh| -> Result<(Mesh, f64), EvaluateError> {

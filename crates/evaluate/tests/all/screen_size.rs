@@ -1,7 +1,7 @@
 //! The size on screen at which two models look the same.
 
 use crate::jar;
-use parbake_evaluate::screen_size::ScreenComparison;
+use parbake_evaluate::screen_size::{BLACK_AND_WHITE, ScreenComparison};
 use parbake_model::Model;
 
 /// The jar with a fine pattern of two greys, or their mean.
@@ -35,4 +35,25 @@ fn fine_differences_vanish_with_size() {
     white.materials.iter_mut().for_each(|material| material.base_color = [1.0; 4]);
     let white = screens.place(&white).unwrap();
     assert_eq!(screens.largest_same(&white, &[&fine], 100.0, 40.0).unwrap(), None);
+}
+
+/// Protects outlines: what has the colour of one background shows before others.
+#[test]
+fn black_and_white_show_every_outline() {
+    let grey = |scale: f32| {
+        let mut jar = jar(1.0, 0.0, 1.0);
+        for material in &mut jar.materials {
+            (material.unlit, material.base_color) = (true, [0.2159, 0.2159, 0.2159, 1.0]);
+        }
+        jar.mesh.positions.iter_mut().for_each(|position| *position *= scale);
+        jar
+    };
+    let (model, smaller) = (grey(1.0), grey(0.9));
+    let screens = ScreenComparison::new(&model);
+    let [model, smaller] = [&model, &smaller].map(|model| screens.place(model).unwrap());
+    let on_grey = screens.psnr(&screens.pictures(&model, 64.0).unwrap(), &smaller);
+    let pictures = screens.pictures_on(&model, 64.0, BLACK_AND_WHITE).unwrap();
+    let on_both = screens.psnr(&pictures, &smaller);
+    assert!(on_grey > 60.0 && on_both < 30.0, "{on_grey} {on_both}");
+    assert!(screens.psnr(&pictures, &model) > 60.0);
 }
