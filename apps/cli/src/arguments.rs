@@ -61,6 +61,12 @@ have about the same size at any quality; from 96 on it is encoded with more care
     ),
 ];
 
+/// The same of `simplify`, which has textures that may stay as they are.
+const HELP_OF_SIMPLIFY: [(&str, &str); 1] = [(
+    "texture_format",
+    "Image format of the textures in a GLB file. Where it is not given, JPEGs and PNGs of 16 bits stay the files they are",
+)];
+
 /// Commands that write models without parallax maps.
 const WITHOUT_PARALLAX: [&str; 4] = ["compress", "lod", "raycast", "simplify"];
 
@@ -78,6 +84,7 @@ pub fn command() -> Clap {
     let whole = WITHOUT_PARALLAX.into_iter().fold(Arguments::command(), |whole, name| {
         whole.mut_subcommand(name, |own| with_help(own, &HELP_WITHOUT_PARALLAX))
     });
+    let whole = whole.mut_subcommand("simplify", |own| with_help(own, &HELP_OF_SIMPLIFY));
     let whole = whole.mut_subcommands(|own| {
         own.mut_args(|argument| match argument.get_action().takes_values() {
             // The option's own check says more about a negative number than the parser could.

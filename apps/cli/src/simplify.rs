@@ -8,7 +8,7 @@ use crate::outputs::{check_not_input, check_output};
 use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;
-use parbake::{Loaded, simplified, simplified_by_pictures, subdivided};
+use parbake::{Loaded, PictureFiles, simplified, simplified_by_pictures, subdivided};
 
 /// Runs the command.
 pub fn run(command: &SimplifyCommand, given: &ArgMatches) -> Result<Ending, Failure> {
@@ -20,7 +20,11 @@ pub fn run(command: &SimplifyCommand, given: &ArgMatches) -> Result<Ending, Fail
         return Err(Failure::Usage(format!("--triangles {}: at least 4", command.triangles)));
     }
     let console = Console::new(command.talk).confined(command.reading);
-    let Loaded { model, pictures, .. } = read_with_pictures(&command.model, &console)?;
+    let Loaded { model, mut pictures, .. } = read_with_pictures(&command.model, &console)?;
+    // Who asks for PNG gets PNG.
+    if rules::is_typed(given, "texture_format") {
+        pictures = PictureFiles::default();
+    }
     let result = match command.subdivide {
         Some(times) => (0..times).fold(model.clone(), |m, _| subdivided(&m)),
         None => match command.closest_in {

@@ -2,8 +2,8 @@
 //!
 //! faer does the work, with a fill-reducing order of the unknowns. Its generic code is compiled here, once for all that use it.
 //!
-//! Contract: deterministic, whatever the number of threads. Nothing panics on a matrix that is not positive definite, or for
-//! which memory runs out: there are no factors then.
+//! Contract: deterministic, whatever the number of threads. A matrix that is not positive definite, or whose factors memory does not
+//! suffice for, has none.
 
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::Llt;
@@ -30,7 +30,7 @@ impl Cholesky {
     /// Factorises a matrix. None if it is not positive definite, or if memory runs out.
     ///
     /// # Panics
-    /// If `pointers` and `rows` are not those of a matrix.
+    /// If `pointers`, `rows` and `values` are not those of a matrix.
     pub fn new(LowerHalf { pointers, rows, values }: LowerHalf) -> Option<Self> {
         let size = pointers.len().saturating_sub(1);
         let pattern = SymbolicSparseColMat::new_checked(size, size, pointers, None, rows);
@@ -38,8 +38,11 @@ impl Cholesky {
         Some(Self { factors })
     }
 
-    /// Solves `A x = b` for several right-hand sides, each as long as the matrix and one behind the other in `sides`, and
+    /// Solves `A x = b` for several right-hand sides, each as long as the matrix, and
     /// puts the solutions in their place.
+    ///
+    /// # Panics
+    /// If a side has another length, or there is none.
     pub fn solve<const COUNT: usize>(&self, mut sides: [&mut [f64]; COUNT]) {
         self.solve_all(&mut sides);
     }

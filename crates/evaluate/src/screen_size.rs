@@ -99,7 +99,7 @@ impl ScreenComparison {
         self.pictures_on(model, pixels, GREY)
     }
 
-    /// The same on other backgrounds, in linear light: figures are then means over these.
+    /// The same on other backgrounds, at least one, in linear light: figures are then means over these.
     ///
     /// # Errors
     /// Where the original has no extent.

@@ -149,8 +149,8 @@ impl<'a> Context<'a> {
         self.contents.borrow().clone()
     }
 
-    /// The files of pictures, where they are kept.
-    pub fn picture_files(&self) -> PictureFiles {
+    /// Takes out the files of pictures, where they are kept.
+    pub fn take_picture_files(&self) -> PictureFiles {
         self.picture_files.take()
     }
 

@@ -47,7 +47,7 @@ pub(crate) fn finish(
     }
     let bytes = context.bytes();
     let contents = Contents { degenerate_triangles: degenerate, ..context.contents() };
-    let pictures = context.picture_files();
+    let pictures = context.take_picture_files();
     Ok(Loaded { model, warnings: context.into_warnings(), bytes, contents, pictures })
 }
 

@@ -1,18 +1,24 @@
 //! The files of a model's pictures, so that a picture that nobody changed is written as it came.
 //!
 //! A JPEG encoded anew is larger, as PNG, or loses more, as JPEG; a PNG of 16 bits loses half of them. Other PNGs are not
-//! kept: packed anew they lose nothing and are a tenth smaller.
+//! kept: packed anew they lose nothing and are smaller.
 //!
-//! Contract: a file is found by its texels, so none is ever written for a picture that differs from it in one of them.
+//! Contract: a file is found by a fingerprint of its texels in 8 bits, so none is written for a picture that was changed. Of
+//! two files with the same texels none is kept.
 
 use crate::contents::PictureFormat;
+use image::ImageDecoder;
+use image::codecs::jpeg::JpegDecoder;
+use image::metadata::Orientation;
 use parbake_model::Image;
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
+use std::io::Cursor;
 
-/// JPEGs and PNGs of 16 bits by what they show. Other formats need extensions that not every viewer has.
+/// JPEGs and PNGs of 16 bits by what they show; none where several files show the same. Other formats need extensions that
+/// not every viewer has.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct PictureFiles(BTreeMap<Key, PictureFile>);
+pub struct PictureFiles(BTreeMap<Key, Option<PictureFile>>);
 
 /// Width, height and a fingerprint of the texels.
 type Key = (usize, usize, u64);
@@ -31,16 +37,42 @@ impl PictureFiles {
     /// Keeps a picture's file.
     pub(crate) fn keep(&mut self, image: &Image, bytes: &[u8]) {
         let format = match PictureFormat::of(bytes) {
-            Some(PictureFormat::Jpeg) => PictureFormat::Jpeg,
+            Some(PictureFormat::Jpeg) if is_plain(bytes) => PictureFormat::Jpeg,
             Some(PictureFormat::Png) if bytes.get(BIT_DEPTH_AT) == Some(&16) => PictureFormat::Png,
             _ => return,
         };
-        self.0.insert(key(image), PictureFile { bytes: bytes.to_vec(), format });
+        let own = PictureFile { bytes: bytes.to_vec(), format };
+        let known = self.0.entry(key(image)).or_insert_with(|| Some(own.clone()));
+        if known.as_ref() != Some(&own) {
+            *known = None;
+        }
     }
 
     /// The file that shows exactly these texels.
     pub(crate) fn of(&self, image: &Image) -> Option<&PictureFile> {
-        if self.0.is_empty() { None } else { self.0.get(&key(image)) }
+        if self.0.is_empty() { None } else { self.0.get(&key(image))?.as_ref() }
+    }
+}
+
+/// Whether every viewer shows a JPEG as the reader does: in grey or three channels, and not turned by its EXIF data, which
+/// glTF has viewers ignore and browsers heed.
+fn is_plain(jpeg: &[u8]) -> bool {
+    let orientation = JpegDecoder::new(Cursor::new(jpeg)).and_then(|mut decoder| decoder.orientation());
+    matches!(channels(jpeg), Some(1 | 3)) && matches!(orientation, Ok(Orientation::NoTransforms))
+}
+
+/// The number of channels in a JPEG's frame header (ITU-T T.81, annex B.2.2).
+fn channels(jpeg: &[u8]) -> Option<u8> {
+    let mut rest = jpeg.get(2..)?;
+    loop {
+        // Markers may have fill bytes in front.
+        rest = &rest[rest.iter().position(|&byte| byte != 0xff)?..];
+        let (&code, segment) = rest.split_first()?;
+        if matches!(code, 0xc0..=0xcf) && !matches!(code, 0xc4 | 0xc8 | 0xcc) {
+            return segment.get(7).copied();
+        }
+        let length = usize::from(u16::from_be_bytes(*segment.first_chunk()?));
+        rest = segment.get(length..)?;
     }
 }
 
@@ -126,6 +158,33 @@ mod tests {
             |file: &[u8]| originals.iter().map(|original| contains(file, original)).collect::<Vec<_>>();
         assert_eq!(kept(&first), [true, true, false]);
         assert_eq!(kept(&second), [true, false, false]);
+    }
+
+    /// Protects what people see: a JPEG that browsers turn by its EXIF data, or one in four channels, is not kept, and of two files
+    /// with the same texels in 8 bits neither stands in for the other.
+    #[test]
+    fn only_files_that_all_show_alike_are_kept() {
+        let (model, originals, _) = model();
+        let kept = |image: usize, bytes: &[&[u8]]| {
+            let mut files = PictureFiles::default();
+            bytes.iter().for_each(|bytes| files.keep(&model.images[image], bytes));
+            files.of(&model.images[image]).is_some()
+        };
+        assert!(kept(0, &[&originals[0]]) && kept(0, &[&originals[0], &originals[0]]));
+        // Behind the first marker: Exif, big-endian, one entry: orientation 6, a quarter turn.
+        let exif =
+            b"\xff\xe1\x00\x22Exif\0\0MM\0\x2a\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0";
+        let turned = [&originals[0][..2], exif, &originals[0][2..]].concat();
+        assert!(!kept(0, &[&turned]));
+        let mut four = originals[0].clone();
+        let frame = four.windows(2).position(|marker| marker == [0xff, 0xc0]).unwrap();
+        assert_eq!(channels(&four), Some(3));
+        four[frame + 9] = 4;
+        assert_eq!(channels(&four), Some(4));
+        assert!(!kept(0, &[&four]) && !kept(0, &[&originals[0][..20]]));
+        let other: Vec<u16> = (0..192).map(|i| 341 * i + 1).collect();
+        let other = crate::encode_png16("fine", [8, 8], 3, &other).unwrap();
+        assert!(kept(1, &[&originals[1]]) && !kept(1, &[&originals[1], &other]));
     }
 
     /// Protects a format that was asked for.

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum TextureFormat {
-    /// Lossless; every viewer reads it. With `simplify`, textures that are JPEG stay JPEG
+    /// Lossless; every viewer reads it
     #[default]
     Png,
     /// Lossy; every viewer reads it. Textures with alpha stay PNG

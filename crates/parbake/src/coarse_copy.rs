@@ -59,7 +59,7 @@ fn with_tangents_as(model: &Model, copy: Model) -> Model {
 }
 
 /// Of all copies the one whose pictures are closest to the model's, in the mean on black and on white: before a grey like its
-/// own a bumpy outline costs nothing, and no bake makes good for it.
+/// own a bumpy outline costs nothing.
 fn closest_in_pictures(
     model: &Model,
     parted: &Model,

@@ -73,6 +73,24 @@ fn formats_are_options_and_are_reported() {
     assert!(textures[0]["reason"].as_str().unwrap().contains("30 × 30"), "{textures}");
 }
 
+/// Protects bytes and texels: a copy has the JPEGs of its model, unless another format is asked for.
+#[test]
+fn simplified_models_keep_their_jpegs() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    let simplify = |from: &str, to: &str, more: &[&str]| {
+        let arguments = ["simplify", from, "-o", to, "--triangles", "300", "--closest-in", "shape", "-q"];
+        run(folder, &[&arguments[..], more].concat());
+        let glb = fs::read(folder.join(to)).unwrap();
+        String::from_utf8_lossy(&glb).contains("image/jpeg")
+    };
+    assert!(simplify("demo_high.glb", "jpeg.glb", &["--texture-format", "jpeg"]));
+    assert!(simplify("jpeg.glb", "kept.glb", &[]));
+    assert!(!simplify("jpeg.glb", "png.glb", &["--texture-format", "png"]));
+    assert!(!simplify("demo_high.glb", "packed.glb", &[]));
+}
+
 /// Protects scripts: one sentence that names the culprit, the right exit code, and
 /// nothing left behind.
 #[test]

@@ -60,9 +60,10 @@ pub fn write_glb_keeping(
         let kept = if options.texture_format == TextureFormat::Png { files.of(image) } else { None };
         match kept {
             Some(PictureFile { bytes, format }) => {
-                let format =
-                    if *format == PictureFormat::Jpeg { TextureFormat::Jpeg } else { TextureFormat::Png };
-                Ok(Encoded { bytes: bytes.clone(), format, psnr: None, reason: None })
+                let is_jpeg = *format == PictureFormat::Jpeg;
+                let format = if is_jpeg { TextureFormat::Jpeg } else { TextureFormat::Png };
+                let reason = is_jpeg.then(|| "it was a JPEG".into());
+                Ok(Encoded { bytes: bytes.clone(), format, psnr: None, reason })
             }
             None => encode_texture(image, purpose, options),
         }
