@@ -40,10 +40,10 @@ export function view(parbake, models, more = []) {
   });
 }
 
-/** A page with all that it complains about, and all that it asks of others. */
-export async function watchedPage(browser, { width = 1440, height = 900, scheme = 'light', isPhone = false, motion = 'no-preference' } = {}) {
+/** A page with all that it complains about, and all that it asks of others; `sharpness` is the canvas's pixels for each of the page's. */
+export async function watchedPage(browser, { width = 1440, height = 900, sharpness = 1, scheme = 'light', isPhone = false, motion = 'no-preference' } = {}) {
   const page = await browser.newPage();
-  await page.setViewport({ width, height, deviceScaleFactor: 1, isMobile: isPhone, hasTouch: isPhone });
+  await page.setViewport({ width, height, deviceScaleFactor: sharpness, isMobile: isPhone, hasTouch: isPhone });
   await page.emulateMediaFeatures([{ name: 'prefers-color-scheme', value: scheme }, { name: 'prefers-reduced-motion', value: motion }]);
   const errors = [], outside = [];
   page.on('console', (message) => {

@@ -68,10 +68,10 @@ async function session(what, models, more, options, steps) {
   console.log(`${what}: ${((performance.now() - began) / 1000).toFixed(1)} s`);
 }
 
-const SMALL = { width: 800, height: 480 };
+// Small and coarse, since every picture is drawn by the processor.
+const SMALL = { width: 800, height: 480, sharpness: 0.5 };
 const choose = (page, name, value) => page.click(`input[name="${name}"][value="${value}"]`);
 
-// Small, since every picture is drawn by the processor.
 await session('compared', [values.low], ['--compare', values.high], SMALL, async (page) => {
   verify(/^\d+\.\d\d dB$/.test(await page.$eval('#psnr', (e) => e.textContent)), 'PSNR of the view is told');
   const rows = await page.$$eval('#figures tbody tr', (all) => all.map((row) => [...row.cells].map((cell) => cell.textContent)));
