@@ -61,10 +61,10 @@ have about the same size at any quality; from 96 on it is encoded with more care
     ),
 ];
 
-/// The same of `simplify`, which has textures that may stay as they are.
+/// The same for `simplify`, which leaves textures alone.
 const HELP_OF_SIMPLIFY: [(&str, &str); 1] = [(
     "texture_format",
-    "Image format of the textures in a GLB file. Where it is not given, JPEGs and PNGs of 16 bits stay the files they are",
+    "Image format of the textures in a GLB file. Without this option, JPEGs and 16-bit PNGs are copied unchanged",
 )];
 
 /// Commands that write models without parallax maps.

@@ -36,7 +36,7 @@ pub fn write_model(
     write_model_keeping(path, model, options, &PictureFiles::default(), console)
 }
 
-/// As [`write_model`]; pictures of a GLB that are still those of `files` stay the files they were.
+/// As [`write_model`]; textures of a GLB that are still those of `files` are written as these files.
 pub fn write_model_keeping(
     path: &Path,
     model: &Model,

@@ -21,7 +21,7 @@ pub fn run(command: &SimplifyCommand, given: &ArgMatches) -> Result<Ending, Fail
     }
     let console = Console::new(command.talk).confined(command.reading);
     let Loaded { model, mut pictures, .. } = read_with_pictures(&command.model, &console)?;
-    // Who asks for PNG gets PNG.
+    // By default textures need not be PNG; who types it wants to convert them.
     if rules::is_typed(given, "texture_format") {
         pictures = PictureFiles::default();
     }

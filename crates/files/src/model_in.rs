@@ -20,8 +20,8 @@ pub fn read_model(path: &Path, limits: &Limits) -> Result<Loaded, FileError> {
     read(path, limits, Textures::Decode)
 }
 
-/// Like [`read_model`], with the files of its pictures ([`Loaded::pictures`]), for a model that is written with pictures as they
-/// came ([`crate::write_glb_keeping`]).
+/// Like [`read_model`], with the encoded files of its textures ([`Loaded::pictures`]), so that
+/// [`write_glb_keeping`](crate::write_glb_keeping) can copy them unchanged.
 ///
 /// # Errors
 /// As [`read_model`].

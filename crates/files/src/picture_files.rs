@@ -1,10 +1,10 @@
 //! The files of a model's pictures, so that a picture that nobody changed is written as it came.
 //!
-//! A JPEG encoded anew is larger, as PNG, or loses more, as JPEG; a PNG of 16 bits loses half of them. Other PNGs are not
+//! A JPEG encoded anew is larger, as PNG, or loses more, as JPEG; a 16-bit PNG loses its lower 8 bits. 8-bit PNGs are not
 //! kept: packed anew they lose nothing and are smaller.
 //!
-//! Contract: a file is found by a fingerprint of its texels in 8 bits, so none is written for a picture that was changed. Of
-//! two files with the same texels none is kept.
+//! Contract: a file is found by a 64-bit fingerprint of its texels in 8 bits, so none is written for a picture that was
+//! changed. Of two kept files with the same texels neither is written.
 
 use crate::contents::PictureFormat;
 use image::ImageDecoder;
@@ -12,10 +12,11 @@ use image::codecs::jpeg::JpegDecoder;
 use image::metadata::Orientation;
 use parbake_model::Image;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Cursor;
 
-/// JPEGs and PNGs of 16 bits by what they show; none where several files show the same. Other formats need extensions that
+/// JPEGs and 16-bit PNGs by what they show; none where several files show the same. Other formats need extensions that
 /// not every viewer has.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PictureFiles(BTreeMap<Key, Option<PictureFile>>);
@@ -34,7 +35,7 @@ pub(crate) struct PictureFile {
 }
 
 impl PictureFiles {
-    /// Keeps a picture's file.
+    /// Keeps a picture's file if it is a JPEG that every viewer shows alike, or a 16-bit PNG.
     pub(crate) fn keep(&mut self, image: &Image, bytes: &[u8]) {
         let format = match PictureFormat::of(bytes) {
             Some(PictureFormat::Jpeg) if is_plain(bytes) => PictureFormat::Jpeg,
@@ -42,9 +43,14 @@ impl PictureFiles {
             _ => return,
         };
         let own = PictureFile { bytes: bytes.to_vec(), format };
-        let known = self.0.entry(key(image)).or_insert_with(|| Some(own.clone()));
-        if known.as_ref() != Some(&own) {
-            *known = None;
+        match self.0.entry(key(image)) {
+            Entry::Vacant(place) => {
+                place.insert(Some(own));
+            }
+            Entry::Occupied(mut known) if known.get().as_ref() != Some(&own) => {
+                known.insert(None);
+            }
+            Entry::Occupied(_) => {}
         }
     }
 
@@ -54,8 +60,8 @@ impl PictureFiles {
     }
 }
 
-/// Whether every viewer shows a JPEG as the reader does: in grey or three channels, and not turned by its EXIF data, which
-/// glTF has viewers ignore and browsers heed.
+/// Whether every viewer shows a JPEG as the reader does: grey or in three channels (not CMYK), and not rotated by its EXIF
+/// orientation, which glTF ignores and browsers apply.
 fn is_plain(jpeg: &[u8]) -> bool {
     let orientation = JpegDecoder::new(Cursor::new(jpeg)).and_then(|mut decoder| decoder.orientation());
     matches!(channels(jpeg), Some(1 | 3)) && matches!(orientation, Ok(Orientation::NoTransforms))
@@ -160,7 +166,7 @@ mod tests {
         assert_eq!(kept(&second), [true, false, false]);
     }
 
-    /// Protects what people see: a JPEG that browsers turn by its EXIF data, or one in four channels, is not kept, and of two files
+    /// Protects what people see: a JPEG with an EXIF orientation, or in CMYK, is not kept, and of two files
     /// with the same texels in 8 bits neither stands in for the other.
     #[test]
     fn only_files_that_all_show_alike_are_kept() {

@@ -58,8 +58,8 @@ fn with_tangents_as(model: &Model, copy: Model) -> Model {
     if model.mesh.tangents.is_empty() { copy } else { with_tangents(copy) }
 }
 
-/// Of all copies the one whose pictures are closest to the model's, in the mean on black and on white: before a grey like its
-/// own a bumpy outline costs nothing.
+/// Of all copies the one whose pictures are closest to the model's, in the mean on black and on white: on grey alone, a
+/// bumpy outline of a grey model would cost nothing.
 fn closest_in_pictures(
     model: &Model,
     parted: &Model,

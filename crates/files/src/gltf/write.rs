@@ -45,8 +45,8 @@ pub fn write_glb_with(path: &Path, model: &Model, options: &WriteOptions) -> Res
     write_glb_keeping(path, model, options, &PictureFiles::default())
 }
 
-/// As [`write_glb_with`]; where PNG is asked for, pictures that are still those of `files` are written as the files they were
-/// ([`PictureFiles`]).
+/// As [`write_glb_with`]; where PNG is asked for, textures that are still those of `files` are written as these files
+/// (JPEG or 16-bit PNG).
 ///
 /// # Errors
 /// As [`write_glb`].
@@ -62,7 +62,7 @@ pub fn write_glb_keeping(
             Some(PictureFile { bytes, format }) => {
                 let is_jpeg = *format == PictureFormat::Jpeg;
                 let format = if is_jpeg { TextureFormat::Jpeg } else { TextureFormat::Png };
-                let reason = is_jpeg.then(|| "it was a JPEG".into());
+                let reason = is_jpeg.then(|| "copied unchanged".into());
                 Ok(Encoded { bytes: bytes.clone(), format, psnr: None, reason })
             }
             None => encode_texture(image, purpose, options),
