@@ -17,7 +17,7 @@ use parbake_image::display::Display;
 use parbake_image::{MapKind, MapValues};
 use parbake_metric::Rgb;
 use parbake_model::glam::Vec3;
-use parbake_model::{Model, Placement};
+use parbake_model::{Mesh, Model, Placement};
 use parbake_render::camera::Camera;
 use parbake_render::interpretation::Interpretation;
 use parbake_render::lighting::Lighting;
@@ -135,12 +135,20 @@ impl Renderer {
         shown
     }
 
+    /// The positions of a mesh in the frame of all.
+    pub(crate) fn in_frame(&self, mesh: &Mesh) -> Vec<Vec3> {
+        let mut placed = Mesh { positions: mesh.positions.clone(), ..Mesh::default() };
+        self.frame.apply(&mut placed);
+        placed.positions
+    }
+
     /// Pixels along a side, and samples along a side of a pixel.
-    fn size(&self) -> (usize, usize) {
+    pub(crate) fn size(&self) -> (usize, usize) {
         (self.options.resolution, self.options.supersample)
     }
 
-    fn camera(&self, direction: Vec3) -> Camera {
+    /// The camera of a direction, of unit length.
+    pub(crate) fn camera(&self, direction: Vec3) -> Camera {
         Camera::towards_origin(direction, self.options.radius, self.options.projection())
     }
 }

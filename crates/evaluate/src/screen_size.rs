@@ -64,6 +64,14 @@ pub struct Pictures {
     views: Vec<Vec<Rgb>>,
 }
 
+/// A model beside another one's pictures.
+pub struct Compared {
+    /// PSNR in dB, the mean over the pictures.
+    pub psnr: f64,
+    /// For each direction the squared difference at each pixel, the mean over channels and backgrounds.
+    pub errors: Vec<Vec<f32>>,
+}
+
 /// Compares models at sizes on screen, as viewers show them, in the frame of the original.
 pub struct ScreenComparison {
     original: Arc<Model>,
@@ -126,6 +134,17 @@ impl ScreenComparison {
         figures.iter().sum::<f64>() / figures.len() as f64
     }
 
+    /// The same with the errors of all pixels.
+    pub fn compared(&self, pictures: &Pictures, model: &PlacedModel) -> Compared {
+        let own = |(direction, others): (Vec3, &Vec<Rgb>)| {
+            let own = pictures.taken(model, direction);
+            let psnr = others.iter().zip(&own).map(|(other, own)| psnr(other, own)).sum::<f64>();
+            (psnr / own.len() as f64, squared_differences(others, &own))
+        };
+        let (figures, errors): (Vec<f64>, Vec<_>) = pictures.seen_from().map(own).unzip();
+        Compared { psnr: figures.iter().sum::<f64>() / figures.len() as f64, errors }
+    }
+
     /// Compares two models at a size.
     ///
     /// # Errors
@@ -183,13 +202,41 @@ impl Pictures {
 
     /// The pictures, each with the direction that it was taken from.
     fn seen_from(&self) -> impl IndexedParallelIterator<Item = (Vec3, &Vec<Rgb>)> {
-        directions(self.pixels).into_par_iter().zip(&self.views)
+        self.directions().into_par_iter().zip(&self.views)
+    }
+
+    /// The directions that they were taken from.
+    pub(crate) fn directions(&self) -> Vec<Vec3> {
+        directions(self.pixels)
+    }
+
+    /// What took them.
+    pub(crate) fn renderer(&self) -> &Renderer {
+        &self.renderer
+    }
+
+    /// Pixels along a side of each.
+    pub(crate) fn size(&self) -> usize {
+        self.renderer.size().0
     }
 }
 
 /// Directions from which a model of so many pixels is seen.
 fn directions(pixels: f64) -> Vec<Vec3> {
     fibonacci_sphere(if pixels < FEW_PIXELS { VIEWS_OF_FEW_PIXELS } else { VIEWS }, 0.0)
+}
+
+/// The squared differences at each pixel, the mean over channels and over pairs of pictures.
+fn squared_differences(some: &[Rgb], others: &[Rgb]) -> Vec<f32> {
+    let mut sums = vec![0.0; some.first().map_or(0, |picture| picture.pixels.len())];
+    for (a, b) in some.iter().zip(others) {
+        for ((sum, a), b) in sums.iter_mut().zip(&a.pixels).zip(&b.pixels) {
+            *sum += a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f32>();
+        }
+    }
+    let count = 3.0 * some.len() as f32;
+    sums.iter_mut().for_each(|sum| *sum /= count);
+    sums
 }
 
 fn psnr(a: &Rgb, b: &Rgb) -> f64 {

@@ -14,6 +14,7 @@ use crate::weld::weld_by_position;
 use meshopt::{SimplifyOptions as Flags, SimplifyVertex};
 use parbake_model::Mesh;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
+use std::collections::BTreeSet;
 
 /// Per vertex: texture coordinate, normal, colour.
 const ATTRIBUTES: usize = 9;
@@ -43,11 +44,14 @@ pub struct Collapses {
     pub uv_weight: f32,
     /// Whether vertices move to where the quadrics want them; else each is one of the mesh's own.
     pub moves: bool,
+    /// Whether triangles become more even in size and shape, which costs positions and attributes a little.
+    pub evens: bool,
 }
 
-/// A coarser mesh of about `triangles` triangles, at least 1; the mesh itself where it has no more than that.
-pub fn simplify_in_layout(mesh: &Mesh, triangles: usize, collapses: Collapses) -> Mesh {
-    let Collapses { seams, normal_weight, uv_weight, moves } = collapses;
+/// A coarser mesh of about `triangles` triangles, at least 1; the mesh itself where it has no more than that. Of `favoured`
+/// vertices, and those at the same places, as many stay as can; others make room for them.
+pub fn simplify_in_layout(mesh: &Mesh, triangles: usize, collapses: Collapses, favoured: &[u32]) -> Mesh {
+    let Collapses { seams, normal_weight, uv_weight, moves, evens } = collapses;
     let Some(unit) = UnitBox::of(mesh).filter(|_| mesh.triangles.len() > triangles) else {
         return mesh.clone();
     };
@@ -62,10 +66,12 @@ pub fn simplify_in_layout(mesh: &Mesh, triangles: usize, collapses: Collapses) -
     weights[..2].fill(if scale > 0.0 { uv_weight } else { 0.0 });
     weights[2..5].fill(if work.normals.is_empty() { 0.0 } else { normal_weight });
     weights[5..].fill(if work.colors.is_empty() { 0.0 } else { COLOR_WEIGHT });
-    let locks = locks(&work, &materials, seams);
+    let mut locks = locks(&work, &materials, seams);
+    favour(&mut locks, &work, favoured.iter().map(|&vertex| mesh.positions[vertex as usize]));
     let mut indices = work.triangles.as_flattened().to_vec();
     let (count, stride) = (3 * triangles.max(1), ATTRIBUTES * size_of::<f32>());
-    let flags = if seams == Seams::Kept { Flags::None } else { Flags::Permissive };
+    let mut flags = if seams == Seams::Kept { Flags::None } else { Flags::Permissive };
+    flags.set(Flags::RegularizeLight, evens);
     if moves {
         let (positions, values) = (&mut positions, &mut values);
         let kept = meshopt::simplify_with_update(
@@ -153,6 +159,17 @@ fn locks(mesh: &Mesh, materials: &[u32], seams: Seams) -> Vec<SimplifyVertex> {
     locks
 }
 
+/// Marks the vertices at these places to be kept where that can be.
+fn favour(locks: &mut [SimplifyVertex], mesh: &Mesh, places: impl Iterator<Item = Vec3>) {
+    let bits = |place: Vec3| place.to_array().map(f32::to_bits);
+    let favoured: BTreeSet<[u32; 3]> = places.map(bits).collect();
+    for (lock, &place) in locks.iter_mut().zip(&mesh.positions).filter(|_| !favoured.is_empty()) {
+        if favoured.contains(&bits(place)) {
+            *lock |= SimplifyVertex::Priority;
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -189,8 +206,16 @@ mod tests {
 
     fn ways() -> Vec<Collapses> {
         let seams = [Seams::Kept, Seams::OfTextures, Seams::Crossed];
-        let of =
-            |seams| [false, true].map(|moves| Collapses { seams, normal_weight: 0.1, uv_weight: 0.5, moves });
+        let switches = [(false, false), (true, false), (true, true)];
+        let of = |seams| {
+            switches.map(|(moves, evens)| Collapses {
+                seams,
+                normal_weight: 0.1,
+                uv_weight: 0.5,
+                moves,
+                evens,
+            })
+        };
         seams.into_iter().flat_map(of).collect()
     }
 
@@ -200,7 +225,7 @@ mod tests {
     fn attributes_follow_the_surface() {
         let mesh = sheet();
         for way in ways() {
-            let coarse = simplify_in_layout(&mesh, 120, way);
+            let coarse = simplify_in_layout(&mesh, 120, way, &[]);
             assert!((60..=120).contains(&coarse.triangles.len()), "{way:?}: {}", coarse.triangles.len());
             for (triangle, &half) in coarse.triangles.iter().zip(&coarse.triangle_materials) {
                 for v in triangle.map(|v| v as usize) {
@@ -219,22 +244,39 @@ mod tests {
     fn vertices_stay_in_place() {
         let mesh = sheet();
         for way in ways() {
-            let coarse = simplify_in_layout(&mesh, 120, way);
+            let coarse = simplify_in_layout(&mesh, 120, way, &[]);
             let is_own = |p: &Vec3| mesh.positions.contains(p);
             assert_eq!(coarse.positions.iter().all(is_own), !way.moves, "{way:?}");
         }
+    }
+
+    /// Protects details that pictures ask for: most favoured vertices stay where others would have been kept, and the number of
+    /// triangles holds.
+    #[test]
+    fn favoured_vertices_stay() {
+        let mesh = sheet();
+        let way = ways()[3];
+        let has = |coarse: &Mesh, v: u32| coarse.positions.contains(&mesh.positions[v as usize]);
+        let without = simplify_in_layout(&mesh, 120, way, &[]);
+        let inside = |v: &u32| mesh.uvs[*v as usize].x % 0.4 > 0.05 && mesh.uvs[*v as usize].y % 0.5 > 0.05;
+        let lost = (0..mesh.positions.len() as u32).filter(|&v| !has(&without, v));
+        let favoured: Vec<u32> = lost.filter(inside).step_by(9).collect();
+        let with = simplify_in_layout(&mesh, 120, way, &favoured);
+        let kept = favoured.iter().filter(|&&v| has(&with, v)).count();
+        assert!(10 * kept >= 8 * favoured.len() && kept >= 8, "{kept} of {}", favoured.len());
+        assert!((60..=120).contains(&with.triangles.len()));
     }
 
     /// Protects models that nothing is asked of, and meshes without attributes.
     #[test]
     fn little_is_asked_of_little() {
         let mesh = sheet();
-        let way = Collapses { seams: Seams::Crossed, normal_weight: 0.1, uv_weight: 0.5, moves: true };
-        assert_eq!(simplify_in_layout(&mesh, mesh.triangles.len(), way), mesh);
-        assert!(simplify_in_layout(&Mesh::default(), 5, way).triangles.is_empty());
+        let way = ways()[7];
+        assert_eq!(simplify_in_layout(&mesh, mesh.triangles.len(), way, &[]), mesh);
+        assert!(simplify_in_layout(&Mesh::default(), 5, way, &[]).triangles.is_empty());
         let Mesh { positions, triangles, triangle_materials, .. } = mesh;
         let bare = Mesh { positions, triangles, triangle_materials, ..Mesh::default() };
-        let coarse = simplify_in_layout(&bare, 120, way);
+        let coarse = simplify_in_layout(&bare, 120, way, &[]);
         assert!(coarse.triangles.len() <= 120 && coarse.uvs.is_empty() && coarse.normals.is_empty());
     }
 }

@@ -10,10 +10,11 @@
 //!
 //! Contract: materials stay as they are, and a rig comes along. Deterministic.
 
+use crate::copies::Copies;
 use crate::models::with_tangents;
 use parbake_evaluate::EvaluateError;
 use parbake_evaluate::screen_size::{BLACK_AND_WHITE, ScreenComparison};
-use parbake_levels::collapses::{FIRST_WAYS, best_collapsed};
+use parbake_levels::collapses::{Judge, MOST_COPIES, best_collapsed};
 use parbake_levels::face_frames::with_face_tangents;
 use parbake_levels::maps::with_maps_at_most;
 use parbake_mesh::parts::{parts_of_materials, with_parted_materials};
@@ -21,7 +22,6 @@ use parbake_mesh::rigs::transferred;
 use parbake_mesh::simplify::{SimplifyOptions, simplify};
 use parbake_model::{Mesh, Model};
 use parbake_progress::{Message, Stage, Watcher};
-use std::cell::Cell;
 
 /// Pixels that a model spans in the pictures by which copies are compared.
 const PIXELS: f64 = 256.0;
@@ -68,30 +68,24 @@ fn closest_in_pictures(
 ) -> Result<Mesh, EvaluateError> {
     let screens = ScreenComparison::new(model);
     let original = screens.place(&with_face_tangents(model))?;
-    let pictures = screens.pictures_on(&original, PIXELS, BLACK_AND_WHITE)?;
+    let pictures = [screens.pictures_on(&original, PIXELS, BLACK_AND_WHITE)?];
     let look = with_maps_at_most(parted, TEXELS);
-    let tried = Cell::new(0);
-    let judged = |mesh: Mesh| -> Result<(Mesh, f64), EvaluateError> {
-        let coarse = with_tangents_as(model, Model { mesh, ..look.clone() });
-        let psnr = screens.psnr(&pictures, &screens.place(&with_face_tangents(&coarse))?);
-        tried.set(tried.get() + 1);
-        watcher.message(Message::Progress {
-            stage: Stage::Simplify,
-            done: tried.get(),
-            total: FIRST_WAYS + 1,
-        });
-        Ok((coarse.mesh, psnr))
+    let mut done = 0;
+    let mut finish = |mesh: Mesh| {
+        done += 1;
+        watcher.message(Message::Progress { stage: Stage::Simplify, done, total: MOST_COPIES + 1 });
+        with_tangents_as(model, Model { mesh, ..look.clone() })
     };
-    let best = best_collapsed(&parted.mesh, triangles, false, &|| watcher.stopped(), judged)?;
-    let other = by_shape(&parted.mesh, triangles);
-    match best {
-        None => Ok(other),
-        Some((mesh, _)) if other.triangles.len() > triangles => Ok(mesh),
-        Some((mesh, most)) => {
-            let (other, psnr) = judged(other)?;
-            Ok(if psnr > most { other } else { mesh })
-        }
+    let by_shape = by_shape(&parted.mesh, triangles);
+    let stops = || watcher.stopped();
+    let copies = Copies::new(&screens, &pictures, &mut finish);
+    let best = best_collapsed(&parted.mesh, triangles, false, &stops, copies)?;
+    let Some((copy, psnr)) = best else { return Ok(by_shape) };
+    if by_shape.triangles.len() > triangles {
+        return Ok(copy.model.mesh);
     }
+    let (other, of_other) = Copies::new(&screens, &pictures, &mut finish).judged(by_shape)?;
+    Ok(if of_other > psnr { other.model.mesh } else { copy.model.mesh })
 }
 
 fn by_shape(mesh: &Mesh, triangles: usize) -> Mesh {

@@ -35,6 +35,7 @@ mod coarse_copy;
 mod comparison;
 mod comparison_figures;
 mod compress;
+mod copies;
 mod error;
 mod fallback;
 mod geometry;

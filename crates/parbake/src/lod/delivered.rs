@@ -93,15 +93,11 @@ pub(crate) fn coarser(
 ) -> Result<Option<Coarser>, BakeError> {
     let model = maker.model;
     let look = with_maps_at_most(model, maker.power_of_two(DENSITY * side));
-    let judged = |mesh: Mesh| -> Result<(Model, f64), BakeError> {
-        let coarse = Model { mesh, ..look.clone() };
-        let psnr = score.psnr(&coarse)?;
-        Ok((coarse, psnr))
-    };
-    let best = best_collapsed(&model.mesh, triangles, searches, is_over, judged)?;
+    let copies = score.copies(|mesh| Model { mesh, ..look.clone() });
+    let best = best_collapsed(&model.mesh, triangles, searches, is_over, copies)?;
     // Pictures are of the model at rest.
-    Ok(best.map(|(coarse, psnr)| {
-        let rig = transferred(model, &coarse.mesh, &[]);
-        Coarser { model: Model { rig, ..coarse }, psnr }
+    Ok(best.map(|(copy, psnr)| {
+        let rig = transferred(model, &copy.model.mesh, &[]);
+        Coarser { model: Model { rig, ..copy.model }, psnr }
     }))
 }

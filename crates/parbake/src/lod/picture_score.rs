@@ -4,10 +4,11 @@
 
 use super::candidate::Candidate;
 use super::maker::{Draft, Maker};
+use crate::copies::Copies;
 use crate::error::BakeError;
 use parbake_evaluate::screen_size::Pictures;
 use parbake_levels::face_frames::with_face_tangents;
-use parbake_model::Model;
+use parbake_model::{Mesh, Model};
 
 /// Pixels that a model spans at most in the larger ones of the pictures that are compared.
 const LARGEST: f64 = 300.0;
@@ -37,6 +38,11 @@ impl<'m> PictureScore<'m> {
         let placed = screens.place(&with_face_tangents(model))?;
         let sum: f64 = self.pictures.iter().map(|pictures| screens.psnr(pictures, &placed)).sum();
         Ok(sum / self.pictures.len() as f64)
+    }
+
+    /// Judges copies of the model by the same pictures; `finish` makes a model of a mesh.
+    pub(crate) fn copies<Finish: FnMut(Mesh) -> Model>(&self, finish: Finish) -> Copies<'_, Finish> {
+        Copies::new(&self.maker.screens, &self.pictures, finish)
     }
 
     /// A draft with its figure.
