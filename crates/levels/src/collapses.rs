@@ -1,7 +1,8 @@
 //! A coarser copy of a mesh with its own layout: of many ways to collapse its edges, the one whose pictures are closest.
 //!
 //! How far seams may move, and how much normals and texture coordinates count beside positions, has no best answer for
-//! all models. So a few ways are tried, each judged by pictures, and what lies beside the best ones.
+//! all models. So a few ways are tried, each judged by pictures, and what lies beside the best ones. The best one then
+//! favours vertices where its pictures are wrong (`missed.rs`).
 //!
 //! Contract: no more triangles than were asked for. Deterministic, as long as `is_over` says no; what was tried until it says
 //! yes counts.
@@ -36,15 +37,40 @@ const fn way(seams: Seams, normal_weight: f32, uv_weight: f32, moves: bool, even
 /// Weights of normals and of texture coordinates that are tried around the best of these.
 const NORMAL_WEIGHTS: [f32; 6] = [0.03, 0.1, 0.2, 0.3, 0.5, 1.0];
 const UV_WEIGHTS: [f32; 4] = [0.05, 0.2, 0.5, 1.0];
-/// Ways that are tried around the best one with the same seams, at most; only where that is at most so many decibels below
-/// the best one of all, and that still shows what it lacks.
-const MOST_SEARCHED: usize = 8;
+/// Around the best way with the same seams others are tried, where it is at most so many decibels below the best one of all, and that
+/// still shows what it lacks. Other copies are refined if they are not further below.
 const PROMISING: f64 = 2.0;
-/// Vertices that are favoured at once, for each triangle; and how often more are, at most, without and with a search.
+/// Vertices that are favoured at once, for each triangle.
 const FAVOURED_SHARE: f64 = 0.015;
-const MOST_FAVOURED: [usize; 2] = [10, 16];
+/// Triangles from which on a mesh is large: each collapse of it takes long.
+const LARGE: usize = 65_536;
 /// How many copies are judged without a search, at most.
-pub const MOST_COPIES: usize = FIRST_WAYS + MOST_FAVOURED[0];
+pub const MOST_COPIES: usize = FIRST_WAYS + Effort::WITHOUT_SEARCH.favoured;
+
+/// How much is tried, at most.
+#[derive(Clone, Copy)]
+struct Effort {
+    /// Ways around the best one with the same seams.
+    searched: usize,
+    /// From how many copies on vertices are favoured.
+    starts: usize,
+    /// How often, from each.
+    favoured: usize,
+}
+
+impl Effort {
+    const WITHOUT_SEARCH: Self = Self { searched: 0, starts: 1, favoured: 10 };
+    const OF_SEARCH: Self = Self { searched: 4, starts: 2, favoured: 16 };
+    const OF_SEARCH_IN_LARGE_MESHES: Self = Self { searched: 2, starts: 1, favoured: 8 };
+
+    fn of(mesh: &Mesh, searches: bool) -> Self {
+        match searches {
+            false => Self::WITHOUT_SEARCH,
+            true if mesh.triangles.len() < LARGE => Self::OF_SEARCH,
+            true => Self::OF_SEARCH_IN_LARGE_MESHES,
+        }
+    }
+}
 
 /// What judges copies of a mesh by their pictures.
 pub trait Judge {
@@ -66,13 +92,14 @@ pub trait Judge {
     fn mesh(made: &Self::Made) -> &Mesh;
 }
 
-/// The best copy so far, and what is known of others.
+/// The best copies so far, and what is known of others.
 struct Search<'m, J: Judge> {
     judge: J,
     mesh: &'m Mesh,
     triangles: usize,
-    most_favoured: usize,
-    best: Option<Tried<J::Made>>,
+    effort: Effort,
+    /// The best copy whose triangles are as they come, and the best one whose triangles are even.
+    best: [Option<Tried<J::Made>>; 2],
     tried: Vec<(Collapses, f64)>,
     /// Of few triangles many ways make the same, whose pictures are known.
     known: BTreeMap<u64, f64>,
@@ -107,14 +134,11 @@ impl<J: Judge> Search<'_, J> {
         let (made, psnr) = self.judge.judged(copy)?;
         self.known.insert(fingerprint, psnr);
         self.tried.push((way, psnr));
-        self.keep(Tried { made, way, favoured: Vec::new(), psnr });
-        Ok(())
-    }
-
-    fn keep(&mut self, other: Tried<J::Made>) {
-        if self.best.as_ref().is_none_or(|best| other.psnr > best.psnr) {
-            self.best = Some(other);
+        let best = &mut self.best[usize::from(way.evens)];
+        if best.as_ref().is_none_or(|best| psnr > best.psnr) {
+            *best = Some(Tried { made, way, favoured: Vec::new(), psnr });
         }
+        Ok(())
     }
 
     /// A copy of the same way that shows more: with vertices favoured that it misses most, a few more each time; where that shows
@@ -124,12 +148,15 @@ impl<J: Judge> Search<'_, J> {
         mut at: Tried<J::Made>,
         is_over: &dyn Fn() -> bool,
     ) -> Result<Tried<J::Made>, J::Error> {
+        if at.psnr >= INVISIBLE || is_over() {
+            return Ok(at);
+        }
         let missed_by = |judge: &mut J, mesh: &Mesh, at: &Tried<J::Made>| {
             missed(mesh, J::mesh(&at.made), &judge.lost(&at.made, mesh), &at.favoured)
         };
         let mut missing = missed_by(&mut self.judge, self.mesh, &at);
         let mut count = (self.triangles as f64 * FAVOURED_SHARE).ceil() as usize;
-        for _ in 0..self.most_favoured {
+        for _ in 0..self.effort.favoured {
             count = count.min(missing.len());
             if count == 0 || at.psnr >= INVISIBLE || is_over() {
                 break;
@@ -168,8 +195,8 @@ pub fn best_collapsed<J: Judge>(
 ) -> Result<Option<(J::Made, f64)>, J::Error> {
     let fine = begun(mesh, triangles);
     let (tried, known) = (Vec::new(), BTreeMap::new());
-    let most_favoured = MOST_FAVOURED[usize::from(searches)];
-    let mut search = Search { judge, mesh: &fine, triangles, most_favoured, best: None, tried, known };
+    let effort = Effort::of(&fine, searches);
+    let mut search = Search { judge, mesh: &fine, triangles, effort, best: [None, None], tried, known };
     // With all triangles there is nothing to choose.
     let has_choice = mesh.triangles.len() > triangles;
     for way in COLLAPSES.into_iter().take(if has_choice { COLLAPSES.len() } else { 1 }) {
@@ -178,36 +205,24 @@ pub fn best_collapsed<J: Judge>(
         }
         search.weigh(way)?;
     }
-    for seams in
-        [Seams::Kept, Seams::OfTextures, Seams::Crossed].into_iter().filter(|_| has_choice && searches)
-    {
-        for _ in 0..MOST_SEARCHED {
+    for seams in [Seams::Kept, Seams::OfTextures, Seams::Crossed].into_iter().filter(|_| has_choice) {
+        for _ in 0..effort.searched {
             let Some(next) = next(&search.tried, seams).filter(|_| !is_over()) else { break };
             search.weigh(next)?;
         }
     }
-    if has_choice && let Some(best) = search.best.take() {
-        let other = searches.then(|| best_unlike(&search.tried, best.way, best.psnr)).flatten();
-        search.best = Some(search.favoured(best, is_over)?);
-        if let Some(way) = other.filter(|_| !is_over())
-            && let Some(copy) = search.copy(way, &[])
-        {
-            let (made, psnr) = search.judge.judged(copy)?;
-            let other = search.favoured(Tried { made, way, favoured: Vec::new(), psnr }, is_over)?;
-            search.keep(other);
+    let mut starts: Vec<_> = std::mem::take(&mut search.best).into_iter().flatten().collect();
+    starts.sort_by(|a, b| b.psnr.total_cmp(&a.psnr));
+    let least = starts.first().map_or(0.0, |best| best.psnr - PROMISING);
+    starts.truncate(effort.starts);
+    let mut best: Option<Tried<J::Made>> = None;
+    for start in starts.into_iter().filter(|start| start.psnr >= least) {
+        let other = if has_choice { search.favoured(start, is_over)? } else { start };
+        if best.as_ref().is_none_or(|best| other.psnr > best.psnr) {
+            best = Some(other);
         }
     }
-    Ok(search.best.map(|best| (best.made, best.psnr)))
-}
-
-/// The best way that was tried whose triangles are even where those of `way` are not, or the other way round; none where it is far
-/// below `psnr`.
-fn best_unlike(tried: &[(Collapses, f64)], way: Collapses, psnr: f64) -> Option<Collapses> {
-    let unlike = tried.iter().filter(|(other, _)| other.evens != way.evens);
-    unlike
-        .max_by(|a, b| a.1.total_cmp(&b.1))
-        .filter(|(_, own)| *own >= psnr - PROMISING)
-        .map(|(other, _)| *other)
+    Ok(best.map(|best| (best.made, best.psnr)))
 }
 
 /// A number that meshes share whose triangles and vertices are the same to the bit.
@@ -278,113 +293,5 @@ fn beside(weights: &[f32], own: f32) -> Vec<f32> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use parbake_model::glam::{vec2, vec3};
-
-    /// Protects the search: it goes on from the best with the same seams, tries nothing twice, and leaves seams alone that show far
-    /// less; it ends.
-    #[test]
-    fn the_search_climbs_from_the_best_with_the_same_seams() {
-        let of = |seams| COLLAPSES.into_iter().find(|own| own.seams == seams).unwrap_or(BEGIN);
-        let [kept, of_textures, crossed] = [Seams::Kept, Seams::OfTextures, Seams::Crossed].map(of);
-        let mut tried = vec![(kept, 40.0), (of_textures, 45.0), (crossed, 44.0)];
-        assert_eq!(next(&tried, Seams::Kept), None);
-        assert_eq!(next(&[(kept, f64::NEG_INFINITY)], Seams::Kept), None);
-        for (seams, best) in [(Seams::OfTextures, of_textures), (Seams::Crossed, crossed)] {
-            let mut steps = 0;
-            while let Some(found) = next(&tried, seams) {
-                assert!(found.seams == seams && tried.iter().all(|(known, _)| *known != found));
-                assert!(neighbours(best).contains(&found));
-                tried.push((found, 43.5));
-                steps += 1;
-            }
-            assert_eq!(steps, neighbours(best).len());
-        }
-        tried.push((Collapses { normal_weight: 1.0, ..crossed }, 46.0));
-        assert_eq!(next(&tried, Seams::Crossed).map(|own| own.normal_weight), Some(1.0));
-        tried.push((Collapses { normal_weight: 1.0, ..of_textures }, 61.0));
-        assert_eq!(next(&tried, Seams::OfTextures), None);
-    }
-
-    /// Protects time: ways to collapse a large mesh share what they begin with, which still leaves much to choose from.
-    #[test]
-    fn large_meshes_are_collapsed_once_for_all_ways() {
-        let (cells, mut mesh) = (40u32, Mesh::default());
-        for (row, column) in (0..=cells).flat_map(|row| (0..=cells).map(move |column| (row, column))) {
-            let (x, y) = (column as f32 / cells as f32, row as f32 / cells as f32);
-            mesh.positions.push(vec3(x, y, 0.1 * (9.0 * x).sin() * (7.0 * y).cos()));
-            mesh.uvs.push(vec2(x, y));
-        }
-        for (row, column) in (0..cells).flat_map(|row| (0..cells).map(move |column| (row, column))) {
-            let a = row * (cells + 1) + column;
-            mesh.triangles.extend([[a, a + 1, a + cells + 2], [a, a + cells + 2, a + cells + 1]]);
-        }
-        mesh.triangle_materials = vec![0; mesh.triangles.len()];
-        mesh.normals = parbake_mesh::smooth_normals(&mesh);
-        assert!(matches!(begun(&mesh, mesh.triangles.len().div_ceil(MANY)), Cow::Borrowed(_)));
-        let few = begun(&mesh, 10).triangles.len();
-        assert!((320..=640).contains(&few), "{few}");
-    }
-
-    /// Finds all copies alike and lists them.
-    struct Looks<'l>(&'l mut Vec<u64>);
-
-    impl Judge for Looks<'_> {
-        type Made = Mesh;
-        type Error = ();
-
-        fn judged(&mut self, copy: Mesh) -> Result<(Mesh, f64), ()> {
-            self.0.push(fingerprint(&copy));
-            Ok((copy, 30.0))
-        }
-
-        fn lost(&mut self, _: &Mesh, finer: &Mesh) -> Vec<Lost> {
-            (0..finer.triangles.len() as u32)
-                .map(|of_finer| Lost { of_copy: 0, of_finer, error: 1.0 })
-                .collect()
-        }
-
-        fn mesh(made: &Mesh) -> &Mesh {
-            made
-        }
-    }
-
-    /// Protects time: a mesh that several ways make is looked at once, and one that is anyhow different is not taken for it.
-    #[test]
-    fn the_same_mesh_is_looked_at_once() {
-        let mesh = Mesh {
-            positions: vec![
-                vec3(0.0, 0.0, 0.0),
-                vec3(1.0, 0.0, 0.0),
-                vec3(0.0, 1.0, 0.0),
-                vec3(1.0, 1.0, 0.0),
-            ],
-            normals: vec![vec3(0.0, 0.0, 1.0); 4],
-            uvs: vec![vec2(0.0, 0.0), vec2(1.0, 0.0), vec2(0.0, 1.0), vec2(1.0, 1.0)],
-            triangles: vec![[0, 1, 2], [1, 3, 2]],
-            triangle_materials: vec![0; 2],
-            ..Mesh::default()
-        };
-        let mut looked = Vec::new();
-        let best = best_collapsed(&mesh, 1, true, &|| false, Looks(&mut looked));
-        looked.sort_unstable();
-        let count = looked.len();
-        looked.dedup();
-        assert!(
-            count == looked.len() && count < FIRST_WAYS && best.is_ok_and(|best| best.is_some()),
-            "{count}"
-        );
-        let mut other = mesh.clone();
-        other.uvs[3].y += 1e-7;
-        assert_ne!(fingerprint(&other), fingerprint(&mesh));
-    }
-
-    /// Protects it from weights that lie beside none.
-    #[test]
-    fn first_ways_have_weights_that_are_searched() {
-        for own in COLLAPSES {
-            assert!(NORMAL_WEIGHTS.contains(&own.normal_weight) && UV_WEIGHTS.contains(&own.uv_weight));
-        }
-    }
-}
+#[path = "collapses_tests.rs"]
+mod tests;
