@@ -61,7 +61,7 @@ struct Effort {
 impl Effort {
     const WITHOUT_SEARCH: Self = Self { searched: 0, starts: 1, favoured: 10 };
     const OF_SEARCH: Self = Self { searched: 4, starts: 2, favoured: 16 };
-    const OF_SEARCH_IN_LARGE_MESHES: Self = Self { searched: 2, starts: 1, favoured: 8 };
+    const OF_SEARCH_IN_LARGE_MESHES: Self = Self { searched: 4, starts: 1, favoured: 8 };
 
     fn of(mesh: &Mesh, searches: bool) -> Self {
         match searches {
