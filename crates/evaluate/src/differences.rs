@@ -9,11 +9,12 @@
 //! The errors of a picture count as shares of its own sum: the PSNR of several pictures is a mean of logarithms. Beside an
 //! outline a pixel may show only one of the two; then the other one's triangle is that of a pixel beside it.
 //!
-//! Contract: deterministic, in ascending order of triangles. What is blended or cut out counts as if it were opaque.
+//! Contract: deterministic, in ascending order of triangles. What is blended, cut out or seen
+//! from behind counts as if it were opaque and seen from both sides.
 
 use crate::screen_size::{Compared, Pictures};
 use parbake_model::Mesh;
-use parbake_render::raster::{NOTHING, ScreenTriangles, Visibility, rasterise};
+use parbake_render::raster::{NOTHING, rasterised};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -24,7 +25,8 @@ pub struct Difference {
     pub of_copy: u32,
     /// Triangle of the surface that it is a copy of.
     pub of_surface: u32,
-    /// Squared differences of its pixels, as shares of those of their pictures, summed over all pictures; above 0.
+    /// The squared differences of the pixels that show both, each picture's as a share of its own sum, added up over all pictures; above 0
+    /// and at most the number of pictures.
     pub error: f64,
 }
 
@@ -36,12 +38,13 @@ pub struct Differences<'p> {
 }
 
 impl<'p> Differences<'p> {
-    /// For copies of this surface, which has the coordinates of the model whose pictures these are.
+    /// For copies of this surface, which has the coordinates of the model whose pictures these are, and may have other
+    /// triangles.
     pub fn new(pictures: &'p Pictures, surface: &Mesh) -> Self {
         Self { pictures, seen: seen(pictures, surface) }
     }
 
-    /// Where one of them, which was compared with the same pictures, differs.
+    /// Where one of them differs; `compared` says how it compares with the same pictures.
     pub fn of(&self, copy: &Mesh, compared: &Compared) -> Vec<Difference> {
         let own = seen(self.pictures, copy);
         let size = self.pictures.size();
@@ -62,10 +65,7 @@ fn seen(pictures: &Pictures, mesh: &Mesh) -> Vec<Vec<u32>> {
     let size = pictures.size();
     let from = |direction| {
         let camera = pictures.renderer().camera(direction);
-        let screen = ScreenTriangles::new(&positions, &mesh.triangles, &camera, size);
-        let mut seen = Visibility::empty(size);
-        rasterise(&screen, size, (0.0, 0.0), &mut seen);
-        seen.triangle
+        rasterised(&positions, &mesh.triangles, &camera, size).triangle
     };
     pictures.directions().into_par_iter().map(from).collect()
 }
@@ -73,8 +73,9 @@ fn seen(pictures: &Pictures, mesh: &Mesh) -> Vec<Vec<u32>> {
 /// The errors of a picture by the triangles that are seen, as shares of all.
 fn sums(size: usize, own: &[u32], others: &[u32], errors: &[f32]) -> BTreeMap<(u32, u32), f64> {
     let mut sums = BTreeMap::new();
-    let total: f64 = errors.iter().map(|&error| f64::from(error)).sum();
-    for (pixel, &error) in errors.iter().enumerate().filter(|(_, error)| **error > 0.0) {
+    let shown = || errors.iter().enumerate().filter(|(_, error)| **error > 0.0 && error.is_finite());
+    let total: f64 = shown().map(|(_, &error)| f64::from(error)).sum();
+    for (pixel, &error) in shown() {
         if let (Some(own), Some(other)) = (at_or_beside(size, own, pixel), at_or_beside(size, others, pixel))
         {
             *sums.entry((own, other)).or_insert(0.0) += f64::from(error) / total;
@@ -129,7 +130,9 @@ mod tests {
         let pictures = screens.pictures(&screens.place(&original).unwrap(), 32.0).unwrap();
         let differences = Differences::new(&pictures, &original.mesh);
         let of = |copy: &Model| {
-            let compared = screens.compared(&pictures, &screens.place(copy).unwrap());
+            let mut copy = copy.clone();
+            copy.mesh.triangles.reverse();
+            let compared = screens.compared(&pictures, &screens.place(&copy).unwrap());
             (compared.psnr, differences.of(&copy.mesh, &compared))
         };
         assert!(of(&original).1.is_empty());
@@ -140,7 +143,7 @@ mod tests {
         };
         let everywhere = sum(&|_| true);
         assert!((everywhere - everywhere.round()).abs() < 1e-2 && everywhere > 8.0, "{everywhere}");
-        let where_it_is = sum(&|difference| difference.of_copy == 1 && difference.of_surface == 1);
+        let where_it_is = sum(&|difference| difference.of_copy == 0 && difference.of_surface == 1);
         assert!(where_it_is > 0.9 * everywhere, "{where_it_is} of {everywhere}");
     }
 

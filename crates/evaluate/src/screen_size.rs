@@ -68,7 +68,8 @@ pub struct Pictures {
 pub struct Compared {
     /// PSNR in dB, the mean over the pictures.
     pub psnr: f64,
-    /// For each direction the squared difference at each pixel, the mean over channels and backgrounds.
+    /// For each direction the squared difference of display values, 0 to 1, at each pixel, row 0 on top: the mean over channels and
+    /// backgrounds.
     pub errors: Vec<Vec<f32>>,
 }
 

@@ -60,14 +60,16 @@ struct Effort {
 
 impl Effort {
     const WITHOUT_SEARCH: Self = Self { searched: 0, starts: 1, favoured: 10 };
+    const WITHOUT_SEARCH_IN_LARGE_MESHES: Self = Self { searched: 0, starts: 1, favoured: 5 };
     const OF_SEARCH: Self = Self { searched: 4, starts: 2, favoured: 16 };
     const OF_SEARCH_IN_LARGE_MESHES: Self = Self { searched: 4, starts: 1, favoured: 8 };
 
     fn of(mesh: &Mesh, searches: bool) -> Self {
-        match searches {
-            false => Self::WITHOUT_SEARCH,
-            true if mesh.triangles.len() < LARGE => Self::OF_SEARCH,
-            true => Self::OF_SEARCH_IN_LARGE_MESHES,
+        match (searches, mesh.triangles.len() < LARGE) {
+            (false, true) => Self::WITHOUT_SEARCH,
+            (false, false) => Self::WITHOUT_SEARCH_IN_LARGE_MESHES,
+            (true, true) => Self::OF_SEARCH,
+            (true, false) => Self::OF_SEARCH_IN_LARGE_MESHES,
         }
     }
 }
@@ -85,7 +87,7 @@ pub trait Judge {
     /// Where it cannot be judged.
     fn judged(&mut self, copy: Mesh) -> Result<(Self::Made, f64), Self::Error>;
 
-    /// Where pictures of a copy of `finer` differ from those of the original.
+    /// Where pictures of a copy of `finer` differ from those of the original, by triangles of both; `finer` is the same each time.
     fn lost(&mut self, made: &Self::Made, finer: &Mesh) -> Vec<Lost>;
 
     /// The mesh of a copy.
@@ -141,27 +143,28 @@ impl<J: Judge> Search<'_, J> {
         Ok(())
     }
 
-    /// A copy of the same way that shows more: with vertices favoured that it misses most, a few more each time; where that shows
-    /// less, half as many.
-    fn favoured(
+    /// A copy of the same way whose pictures are closer: vertices are favoured that it misses most, a few more each time; where that
+    /// shows less, half as many.
+    fn refined(
         &mut self,
         mut at: Tried<J::Made>,
         is_over: &dyn Fn() -> bool,
     ) -> Result<Tried<J::Made>, J::Error> {
-        if at.psnr >= INVISIBLE || is_over() {
-            return Ok(at);
-        }
-        let missed_by = |judge: &mut J, mesh: &Mesh, at: &Tried<J::Made>| {
-            missed(mesh, J::mesh(&at.made), &judge.lost(&at.made, mesh), &at.favoured)
-        };
-        let mut missing = missed_by(&mut self.judge, self.mesh, &at);
         let mut count = (self.triangles as f64 * FAVOURED_SHARE).ceil() as usize;
+        let mut missing: Option<Vec<u32>> = None;
         for _ in 0..self.effort.favoured {
-            count = count.min(missing.len());
             if count == 0 || at.psnr >= INVISIBLE || is_over() {
                 break;
             }
-            let favoured: Vec<u32> = at.favoured.iter().chain(&missing[..count]).copied().collect();
+            let missing_now = match &missing {
+                Some(known) => known,
+                None => {
+                    let lost = self.judge.lost(&at.made, self.mesh);
+                    missing.insert(missed(self.mesh, J::mesh(&at.made), &lost, &at.favoured))
+                }
+            };
+            count = count.min(missing_now.len());
+            let favoured: Vec<u32> = at.favoured.iter().chain(&missing_now[..count]).copied().collect();
             let copy = self.copy(at.way, &favoured).map(|copy| (fingerprint(&copy), copy));
             if let Some((fingerprint, copy)) = copy
                 && !self.known.contains_key(&fingerprint)
@@ -170,7 +173,7 @@ impl<J: Judge> Search<'_, J> {
                 self.known.insert(fingerprint, psnr);
                 if psnr > at.psnr {
                     at = Tried { made, favoured, psnr, ..at };
-                    missing = missed_by(&mut self.judge, self.mesh, &at);
+                    missing = None;
                     continue;
                 }
             }
@@ -181,8 +184,8 @@ impl<J: Judge> Search<'_, J> {
 }
 
 /// The mesh with at most `triangles` triangles whose pictures are closest to the original's, as `judge` made it, with
-/// its PSNR in dB. The best of six first ways, or with `searches` what a search from there finds, goes on with vertices where
-/// pictures miss them. None where seams leave too many triangles.
+/// its PSNR in dB. The best of six first ways, or with `searches` the best two that a search from there finds, are refined: vertices are
+/// favoured where pictures are wrong. None where seams leave too many triangles.
 ///
 /// # Errors
 /// Those of `judge`.
@@ -217,7 +220,10 @@ pub fn best_collapsed<J: Judge>(
     starts.truncate(effort.starts);
     let mut best: Option<Tried<J::Made>> = None;
     for start in starts.into_iter().filter(|start| start.psnr >= least) {
-        let other = if has_choice { search.favoured(start, is_over)? } else { start };
+        if best.as_ref().is_some_and(|best| best.psnr >= INVISIBLE) {
+            break;
+        }
+        let other = if has_choice { search.refined(start, is_over)? } else { start };
         if best.as_ref().is_none_or(|best| other.psnr > best.psnr) {
             best = Some(other);
         }

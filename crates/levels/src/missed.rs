@@ -32,10 +32,11 @@ struct OfCopy {
     around: BTreeMap<Place, (u32, f64)>,
 }
 
-/// Vertices of `finer` that `copy` has at no place and that are not among `known`, in falling order of the errors of the triangles
-/// that lack them.
+/// Vertices of `finer` in whose place `copy` has none, and that are not among `known`, in falling order of the errors of the triangles
+/// that lack them. One that has moved counts as lacking: favoured, it goes back.
 pub(crate) fn missed(finer: &Mesh, copy: &Mesh, lost: &[Lost], known: &[u32]) -> Vec<u32> {
-    let place = |position: &Vec3| position.to_array().map(f32::to_bits);
+    // Zero has two signs.
+    let place = |position: &Vec3| position.to_array().map(|x| (x + 0.0).to_bits());
     let place_of = |vertex: u32| place(&finer.positions[vertex as usize]);
     let mut taken: BTreeSet<Place> = copy.positions.iter().map(place).collect();
     taken.extend(known.iter().map(|&vertex| place_of(vertex)));

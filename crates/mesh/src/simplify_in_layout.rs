@@ -10,7 +10,7 @@
 use crate::corner_vertices::{ToldApart, corner_vertices};
 use crate::simplify::{UnitBox, texture_scale};
 use crate::vertices::drop_unused;
-use crate::weld::weld_by_position;
+use crate::weld::{ordered_bits, weld_by_position};
 use meshopt::{SimplifyOptions as Flags, SimplifyVertex};
 use parbake_model::Mesh;
 use parbake_model::glam::{Vec2, Vec3, Vec4};
@@ -48,8 +48,8 @@ pub struct Collapses {
     pub evens: bool,
 }
 
-/// A coarser mesh of about `triangles` triangles, at least 1; the mesh itself where it has no more than that. Of `favoured`
-/// vertices, and those at the same places, as many stay as can; others make room for them.
+/// A coarser mesh of about `triangles` triangles, at least 1; the mesh itself where it has no more than that. `favoured` are vertices of
+/// `mesh`: they, and those at the same places, resist as if their own surface had to stay in place, and others make room.
 pub fn simplify_in_layout(mesh: &Mesh, triangles: usize, collapses: Collapses, favoured: &[u32]) -> Mesh {
     let Collapses { seams, normal_weight, uv_weight, moves, evens } = collapses;
     let Some(unit) = UnitBox::of(mesh).filter(|_| mesh.triangles.len() > triangles) else {
@@ -161,7 +161,7 @@ fn locks(mesh: &Mesh, materials: &[u32], seams: Seams) -> Vec<SimplifyVertex> {
 
 /// Marks the vertices at these places to be kept where that can be.
 fn favour(locks: &mut [SimplifyVertex], mesh: &Mesh, places: impl Iterator<Item = Vec3>) {
-    let bits = |place: Vec3| place.to_array().map(f32::to_bits);
+    let bits = |place: Vec3| place.to_array().map(ordered_bits);
     let favoured: BTreeSet<[u32; 3]> = places.map(bits).collect();
     for (lock, &place) in locks.iter_mut().zip(&mesh.positions).filter(|_| !favoured.is_empty()) {
         if favoured.contains(&bits(place)) {

@@ -70,22 +70,24 @@ fn closest_in_pictures(
     let original = screens.place(&with_face_tangents(model))?;
     let pictures = [screens.pictures_on(&original, PIXELS, BLACK_AND_WHITE)?];
     let look = with_maps_at_most(parted, TEXELS);
+    let total = MOST_COPIES + 1;
     let mut done = 0;
     let mut finish = |mesh: Mesh| {
+        watcher.message(Message::Progress { stage: Stage::Simplify, done, total });
         done += 1;
-        watcher.message(Message::Progress { stage: Stage::Simplify, done, total: MOST_COPIES + 1 });
         with_tangents_as(model, Model { mesh, ..look.clone() })
     };
-    let by_shape = by_shape(&parted.mesh, triangles);
     let stops = || watcher.stopped();
     let copies = Copies::new(&screens, &pictures, &mut finish);
     let best = best_collapsed(&parted.mesh, triangles, false, &stops, copies)?;
+    let by_shape = by_shape(&parted.mesh, triangles);
     let Some((copy, psnr)) = best else { return Ok(by_shape) };
     if by_shape.triangles.len() > triangles {
-        return Ok(copy.model.mesh);
+        return Ok(copy.mesh);
     }
     let (other, of_other) = Copies::new(&screens, &pictures, &mut finish).judged(by_shape)?;
-    Ok(if of_other > psnr { other.model.mesh } else { copy.model.mesh })
+    watcher.message(Message::Progress { stage: Stage::Simplify, done: total, total });
+    Ok(if of_other > psnr { other.mesh } else { copy.mesh })
 }
 
 fn by_shape(mesh: &Mesh, triangles: usize) -> Mesh {

@@ -20,9 +20,9 @@ pub(crate) struct Copies<'p, Finish> {
     differences: Vec<Differences<'p>>,
 }
 
-/// A copy, and how each set of pictures compares.
+/// The mesh of a finished copy, and how it compares with each set of pictures.
 pub(crate) struct Copy {
-    pub model: Model,
+    pub mesh: Mesh,
     compared: Vec<Compared>,
 }
 
@@ -43,7 +43,7 @@ impl<Finish: FnMut(Mesh) -> Model> Judge for Copies<'_, Finish> {
         let compare = |pictures: &Pictures| self.screens.compared(pictures, &placed);
         let compared: Vec<Compared> = self.pictures.iter().map(compare).collect();
         let psnr = compared.iter().map(|own| own.psnr).sum::<f64>() / compared.len() as f64;
-        Ok((Copy { model, compared }, psnr))
+        Ok((Copy { mesh: model.mesh, compared }, psnr))
     }
 
     fn lost(&mut self, made: &Copy, finer: &Mesh) -> Vec<Lost> {
@@ -52,12 +52,12 @@ impl<Finish: FnMut(Mesh) -> Model> Judge for Copies<'_, Finish> {
         }
         let lost = |Difference { of_copy, of_surface, error }| Lost { of_copy, of_finer: of_surface, error };
         (self.differences.iter().zip(&made.compared))
-            .flat_map(|(differences, compared)| differences.of(&made.model.mesh, compared))
+            .flat_map(|(differences, compared)| differences.of(&made.mesh, compared))
             .map(lost)
             .collect()
     }
 
     fn mesh(made: &Copy) -> &Mesh {
-        &made.model.mesh
+        &made.mesh
     }
 }

@@ -178,7 +178,20 @@ pub fn rasterise(screen: &ScreenTriangles, size: usize, offset: (f32, f32), seen
     fill(screen, size, offset, seen, |_, _| true);
 }
 
-/// The same of some triangles.
+/// The nearest triangle of a mesh at the middle of each of size² pixels. Of the triangles on the screen one at a time is kept, so that
+/// it takes little memory whatever their number.
+pub fn rasterised(positions: &[Vec3], triangles: &[[u32; 3]], camera: &Camera, size: usize) -> Visibility {
+    let mut seen = Visibility::empty(size);
+    for (index, corners) in (0..).zip(triangles) {
+        let corners = corners.map(|vertex| positions[vertex as usize]);
+        if let Some(triangle) = triangle_on_screen(&corners, camera, size, Some((0.0, 0.0))) {
+            draw::<false>(&triangle, index, size, (0.0, 0.0), &mut seen, |_, _| true);
+        }
+    }
+    seen
+}
+
+/// The same as [`rasterise`] of some triangles.
 pub(crate) fn rasterise_some(
     screen: &ScreenTriangles,
     size: usize,

@@ -97,7 +97,7 @@ pub(crate) fn coarser(
     let best = best_collapsed(&model.mesh, triangles, searches, is_over, copies)?;
     // Pictures are of the model at rest.
     Ok(best.map(|(copy, psnr)| {
-        let rig = transferred(model, &copy.model.mesh, &[]);
-        Coarser { model: Model { rig, ..copy.model }, psnr }
+        let rig = transferred(model, &copy.mesh, &[]);
+        Coarser { model: Model { mesh: copy.mesh, rig, ..look }, psnr }
     }))
 }
