@@ -127,12 +127,7 @@ impl ScreenComparison {
 
     /// PSNR in dB of a model against another one's pictures: on grey that of [`ScreenComparison::compare`].
     pub fn psnr(&self, pictures: &Pictures, model: &PlacedModel) -> f64 {
-        let own = |(direction, others): (Vec3, &Vec<Rgb>)| {
-            let own = pictures.taken(model, direction);
-            others.iter().zip(&own).map(|(other, own)| psnr(other, own)).sum::<f64>() / own.len() as f64
-        };
-        let figures: Vec<f64> = pictures.seen_from().map(own).collect();
-        figures.iter().sum::<f64>() / figures.len() as f64
+        self.compared(pictures, model).psnr
     }
 
     /// The same with the errors of all pixels.

@@ -52,9 +52,9 @@ pub const MOST_COPIES: usize = FIRST_WAYS + Effort::WITHOUT_SEARCH.favoured;
 struct Effort {
     /// Ways around the best one with the same seams.
     searched: usize,
-    /// From how many copies on vertices are favoured.
+    /// Copies that are refined by favouring vertices.
     starts: usize,
-    /// How often, from each.
+    /// Tries for each of these.
     favoured: usize,
 }
 
@@ -153,7 +153,7 @@ impl<J: Judge> Search<'_, J> {
         let mut count = (self.triangles as f64 * FAVOURED_SHARE).ceil() as usize;
         let mut missing: Option<Vec<u32>> = None;
         for _ in 0..self.effort.favoured {
-            if count == 0 || at.psnr >= INVISIBLE || is_over() {
+            if at.psnr >= INVISIBLE || is_over() {
                 break;
             }
             let missing_now = match &missing {
@@ -164,6 +164,9 @@ impl<J: Judge> Search<'_, J> {
                 }
             };
             count = count.min(missing_now.len());
+            if count == 0 {
+                break;
+            }
             let favoured: Vec<u32> = at.favoured.iter().chain(&missing_now[..count]).copied().collect();
             let copy = self.copy(at.way, &favoured).map(|copy| (fingerprint(&copy), copy));
             if let Some((fingerprint, copy)) = copy
