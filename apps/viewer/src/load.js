@@ -92,8 +92,9 @@ export class Model {
       if (object.isLight) object.visible = false;
       if (object.isPoints || object.isLine) others++;
       for (const material of materialsOf(object)) {
-        teach(material);
+        // Before it is taught: where channels are shown it is solid then.
         if (material.transmission > 0) this.hasTransmission = true;
+        teach(material);
         if (material.isMeshPhysicalMaterial) this.hasExtensions = true;
       }
     });

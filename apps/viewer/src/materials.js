@@ -1,6 +1,6 @@
 // What each material can show besides its light: single channels, the studio's light, a headlight. The materials
 // stay three.js's own; a few lines after their shading choose what is written.
-import { CustomBlending, Matrix3, OneFactor, OneMinusSrcAlphaFactor, Vector3 } from './vendor.js';
+import { Matrix3 } from './vendor.js';
 import { STUDIO_GLSL, splitSum, studioUniforms } from './studio.js';
 
 /** Channels: key, label, and whether the values are colours (which the screen encodes) or numbers. */
@@ -19,7 +19,7 @@ export const CHANNELS = [
 /** What is written instead of three.js's own light. */
 export const SHADED = { three: 0, studio: 10, headlight: 11 };
 
-const uniforms = { pbTurn: { value: new Matrix3() }, pbSplitSum: { value: null }, ...studioUniforms };
+const uniforms = { pbTurn: { value: new Matrix3() }, pbUnit: { value: 1 }, pbSplitSum: { value: null }, ...studioUniforms };
 const taught = new Map();
 let shown = 0;
 
@@ -28,19 +28,22 @@ export function show(code) {
   if (code === SHADED.studio) uniforms.pbSplitSum.value = splitSum();
   if (code === shown) return;
   shown = code;
-  for (const [material, own] of taught) {
-    if (own.transmission > 0) showGlass(material, own);
+  for (const [material, transmission] of taught) {
+    if (transmission > 0) showGlass(material, transmission);
     material.needsUpdate = true;
   }
 }
 
-/** Blends glass in the studio; in channels it is solid. three.js draws all that is behind it first, for its own light alone. */
-function showGlass(material, own) {
-  material.transmission = shown === SHADED.three ? own.transmission : 0;
-  Object.assign(material, shown === SHADED.studio ? GLASS : own.blending);
+/** Glass is solid in channels and under the headlight. Where it transmits light, three.js draws all that is behind it first. */
+function showGlass(material, transmission) {
+  material.transmission = showsGlass(shown) ? transmission : 0;
 }
 
-const GLASS = { transparent: true, depthWrite: false, blending: CustomBlending, blendSrc: OneFactor, blendDst: OneMinusSrcAlphaFactor };
+/** Whether glass shows what is behind it. */
+export const showsGlass = (code) => code === SHADED.three || code === SHADED.studio;
+
+/** Says how long the model's unit is in the scene: attenuation is by lengths of the model. */
+export function setUnit(length) { uniforms.pbUnit.value = length; }
 
 /** Turns the studio about +Y, in radians. */
 export function turnStudio(angle) {
@@ -73,9 +76,18 @@ const WRITTEN = {
 
 // What extensions show, of a physical material in the studio's light.
 const LAYERED = /* glsl */ `
-  vec3 pbF0 = vec3(0.04), pbReflects, pbAttenuated;
-  float pbPassing = pbThrough(pbAttenuated);
-  float pbF90 = 1.0;
+  vec3 pbF0 = vec3(0.04), pbReflects;
+  float pbF90 = 1.0, pbPassing = 0.0;
+  #ifdef USE_TRANSMISSION
+    float pbThickness = thickness;
+    pbPassing = transmission;
+    #ifdef USE_TRANSMISSIONMAP
+      pbPassing *= texture2D(transmissionMap, vTransmissionMapUv).r;
+    #endif
+    #ifdef USE_THICKNESSMAP
+      pbThickness *= texture2D(thicknessMap, vThicknessMapUv).g;
+    #endif
+  #endif
   #ifdef USE_SPECULAR
     vec3 pbTint = specularColor;
     pbF90 = specularIntensity;
@@ -117,9 +129,15 @@ const LAYERED = /* glsl */ `
     pbLit = pbLit * pbVarnish.a + pbVarnish.rgb;
     pbBelow *= pbVarnish.a;
   #endif
-  // Glass is blended, by the mean of what passes.
-  vec3 pbPasses = clamp(pbPassing * pbAttenuated * (1.0 - metalnessFactor) * (1.0 - pbReflects) * diffuseColor.rgb, 0.0, 1.0) * pbBelow;
-  pbOpacity = 1.0 - dot(pbPasses, vec3(1.0 / 3.0));
+  #ifdef USE_TRANSMISSION
+    vec3 pbWay = getVolumeTransmissionRay(pbNormal, pbViewer, pbThickness, ior, modelMatrix);
+    vec3 pbLeft = pbThickness > 0.0 ? volumeAttenuation(length(pbWay) / pbUnit, attenuationColor, attenuationDistance) : vec3(1.0);
+    vec3 pbPasses = clamp(pbPassing * pbLeft * (1.0 - metalnessFactor) * (1.0 - pbReflects) * diffuseColor.rgb, 0.0, 1.0) * pbBelow;
+    vec4 pbOnScreen = projectionMatrix * viewMatrix * vec4(vWorldPosition + pbWay, 1.0);
+    vec4 pbBehind = getTransmissionSample(0.5 * pbOnScreen.xy / pbOnScreen.w + 0.5, max(roughnessFactor, 0.0525), ior);
+    pbLit += pbPasses * pbBehind.rgb;
+    diffuseColor.a *= 1.0 - dot(pbPasses, vec3(1.0 / 3.0)) * (1.0 - pbBehind.a);
+  #endif
 `;
 
 // Instead of the shading, once all that it needs is fetched.
@@ -129,7 +147,6 @@ const chosen = (code, isLit) => /* glsl */ `
     diffuseColor.a = 1.0;
   #endif
   ${isLit ? `
-  float pbOpacity = 1.0;
   vec3 pbNormal = inverseTransformDirection(normal, viewMatrix);
   vec3 pbViewer = inverseTransformDirection(normalize(vViewPosition), viewMatrix);
   float pbOcclusion = 1.0;
@@ -138,54 +155,17 @@ const chosen = (code, isLit) => /* glsl */ `
   #endif` : ''}
   ${isLit && code === SHADED.studio ? LAYERED : ''}
   gl_FragColor = vec4(${WRITTEN[code][isLit ? 0 : 1]}, ${code === 7 || code === 8 ? '1.0' : 'diffuseColor.a'});
-  ${isLit && code === SHADED.studio ? 'if (pbIsGlass) gl_FragColor = vec4(pbLit, pbOpacity) * (pbIsBlended ? diffuseColor.a : 1.0);' : ''}
   return;
 }
 `;
 
-/** The textures of glass, each with its channel, as three.js has them where it draws glass itself. */
-const GLASS_MAPS = [['transmissionMap', 'r'], ['thicknessMap', 'g']];
-
-/** Gives a program `pbThrough()`: the share of light that passes its material, and what the inside leaves of it, by channel. */
-function teachGlass(shader, material) {
-  const own = taught.get(material), maps = GLASS_MAPS.filter(([name]) => own.transmission > 0 && material[name]);
-  const { attenuationColor = new Vector3(1, 1, 1), attenuationDistance = Infinity, thickness = 0 } = material;
-  const depth = own.transmission > 0 && thickness > 0 && Number.isFinite(attenuationDistance) ? thickness / attenuationDistance : 0;
-  const color = attenuationColor.isColor ? new Vector3(...attenuationColor.toArray()) : attenuationColor;
-  Object.assign(shader.uniforms, {
-    pbGlass: { value: own.transmission }, pbDepth: { value: depth }, pbAttenuation: { value: color },
-  });
-  let declared = 'uniform float pbGlass, pbDepth;\nuniform vec3 pbAttenuation;\n', vertex = '', fetched = '';
-  for (const [name, channel] of maps) {
-    const texture = material[name], uv = texture.channel === 1 ? 'uv1' : 'uv', varying = `pb_${name}_uv`;
-    // three.js does so for textures that it reads itself.
-    if (texture.matrixAutoUpdate) texture.updateMatrix();
-    shader.uniforms[`pb_${name}`] = { value: texture };
-    shader.uniforms[`pb_${name}_transform`] = { value: texture.matrix };
-    declared += `uniform sampler2D pb_${name};\nvarying vec2 ${varying};\n`;
-    shader.vertexShader = `uniform mat3 pb_${name}_transform;\nvarying vec2 ${varying};\n${shader.vertexShader}`;
-    vertex += `  ${varying} = (pb_${name}_transform * vec3(${uv}, 1.0)).xy;\n`;
-    fetched += `  ${name === 'thicknessMap' ? 'depth' : 'passes'} *= texture2D(pb_${name}, ${varying}).${channel};\n`;
-  }
-  // Without USE_UV1 three.js declares no second set: nothing else reads it.
-  const second = vertex.includes('uv1') ? '#ifndef USE_UV1\nattribute vec2 uv1;\n#endif\n' : '';
-  shader.vertexShader = second + shader.vertexShader.replace('void main() {', `void main() {\n${vertex}`);
-  return `${declared}const bool pbIsGlass = ${own.transmission > 0}, pbIsBlended = ${own.blending.transparent};
-float pbThrough(out vec3 left) {
-  float passes = pbGlass, depth = pbDepth;
-${fetched}  left = exp(depth * log(max(pbAttenuation, vec3(1e-6))));
-  return passes;
-}
-`;
-}
-
-function patched(shader, material) {
+function patched(shader) {
   // Also where nothing of ours is shown: three.js keeps the uniforms of the program that it compiled last.
   Object.assign(shader.uniforms, uniforms);
   if (shown === SHADED.three) return;
   const place = ['#include <lights_physical_fragment>', '#include <opaque_fragment>'].find((p) => shader.fragmentShader.includes(p));
   const isLit = place !== '#include <opaque_fragment>';
-  const studio = isLit && shown === SHADED.studio ? STUDIO_GLSL + teachGlass(shader, material) : '';
+  const studio = isLit && shown === SHADED.studio ? STUDIO_GLSL : '';
   const declared = (shown === 8 ? CHECKER : '') + studio;
   if (shown === 8)
     shader.vertexShader = shader.vertexShader.replace('void main() {', 'varying vec2 pbUv;\nvoid main() {\n  pbUv = uv;');
@@ -194,25 +174,19 @@ function patched(shader, material) {
     .replace(place, `${chosen(shown, isLit)}\n${place}`);
 }
 
-/** What the program of glass depends on besides. */
-function glassKey(material) {
-  const own = taught.get(material);
-  return own?.transmission > 0 ? `${own.blending.transparent} ${GLASS_MAPS.map(([name]) => material[name]?.channel ?? '-').join('')}` : '';
-}
-
 /** Teaches a material to show its channels. */
 export function teach(material) {
   if (taught.has(material) || (!material.isMeshStandardMaterial && !material.isMeshBasicMaterial)) return;
-  const { transmission = 0, transparent, depthWrite, blending, blendSrc, blendDst } = material;
-  taught.set(material, { transmission, blending: { transparent, depthWrite, blending, blendSrc, blendDst } });
-  if (transmission > 0) showGlass(material, taught.get(material));
+  const { transmission = 0 } = material;
+  taught.set(material, transmission);
+  if (transmission > 0) showGlass(material, transmission);
   // Parallax maps come second: they change what is fetched, ours included.
   const { onBeforeCompile, customProgramCacheKey } = material;
   material.onBeforeCompile = function (shader, renderer) {
-    patched(shader, this);
+    patched(shader);
     onBeforeCompile.call(this, shader, renderer);
   };
-  material.customProgramCacheKey = function () { return `parbake ${shown} ${glassKey(this)} ${customProgramCacheKey.call(this)}`; };
+  material.customProgramCacheKey = function () { return `parbake ${shown} ${customProgramCacheKey.call(this)}`; };
 }
 
 /** Forgets a material that is shown no more. */

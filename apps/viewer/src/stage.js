@@ -6,7 +6,7 @@ import {
 import { Composer, LAYOUTS } from './compose.js';
 import { GpuTimer } from './gpu_timer.js';
 import { Lights, LIGHTS } from './lights.js';
-import { CHANNELS, SHADED, show, turnStudio } from './materials.js';
+import { CHANNELS, setUnit, show, showsGlass, turnStudio } from './materials.js';
 import { UvLayout } from './uv_layout.js';
 import { View } from './view.js';
 import { psnr } from './psnr.js';
@@ -57,6 +57,7 @@ export class Stage {
     const longest = Math.max(size.x, size.y, size.z);
     if (!(longest > 0) || !Number.isFinite(longest)) throw new Error('The model has no size: all its vertices lie at one point.');
     this.frame = { center: box.getCenter(new Vector3()), scale: 2 / longest };
+    setUnit(this.frame.scale);
     this.setLevels(levels);
     if (compare) this.place(compare, 1);
     this.view.radius = (this.frame.scale * size.length()) / 2;
@@ -111,7 +112,7 @@ export class Stage {
     this.lights.choose(light, turn);
     turnStudio(turn);
     const code = chosen.key === 'lit' ? lamp.shaded : chosen.code;
-    this.isShaded = code === SHADED.three;
+    this.showsGlass = showsGlass(code);
     show(code);
     return chosen.isColor ?? false;
   }
@@ -121,7 +122,7 @@ export class Stage {
     const scene = this.scenes[which], { renderer } = this;
     const owners = which === 0 ? this.levels.models : [this.compare];
     // What is seen through glass needs something behind it.
-    scene.background = this.isShaded && owners.some((model) => model.hasTransmission) ? new Color().setRGB(...background, 'srgb') : null;
+    scene.background = this.showsGlass && owners.some((model) => model.hasTransmission) ? new Color().setRGB(...background, 'srgb') : null;
     renderer.setRenderTarget(target);
     renderer.setClearColor(0x000000, 0);
     renderer.autoClear = true;
@@ -211,6 +212,7 @@ export class Stage {
    */
   still({ direction, size = 256, supersample = 2, radius = 3.5, which = 0, light = 'studio', channel = 'lit', background = 0 }) {
     const isColor = this.choose({ light, channel, turn: 0 });
+    const encode = (x) => (!isColor ? x : x > 0.0031308 ? 1.055 * x ** (1 / 2.4) - 0.055 : 12.92 * x);
     const fine = size * supersample, target = new WebGLRenderTarget(fine, fine, { type: FloatType });
     const camera = this.view.at(1).clone();
     camera.position.set(...direction).normalize().multiplyScalar(radius);
@@ -220,12 +222,17 @@ export class Stage {
     camera.far = radius + 4;
     camera.updateProjectionMatrix();
     camera.updateMatrixWorld();
-    this.picture(which, target, camera, { wireframe: false, background: [background, background, background] });
+    // Glass shows a picture of these pixels, whatever the samples: roughness blurs by a share of its width.
+    this.renderer.transmissionResolutionScale = 1 / supersample;
+    try {
+      this.picture(which, target, camera, { wireframe: false, background: Array(3).fill(encode(background)) });
+    } finally {
+      this.renderer.transmissionResolutionScale = 1;
+    }
     const raw = new Float32Array(4 * fine * fine);
     this.renderer.readRenderTargetPixels(target, 0, 0, fine, fine, raw);
     target.dispose();
     const out = new Uint8ClampedArray(4 * size * size), share = 1 / (supersample * supersample);
-    const encode = (x) => (!isColor ? x : x > 0.0031308 ? 1.055 * x ** (1 / 2.4) - 0.055 : 12.92 * x);
     for (let y = 0; y < size; y++)
       for (let x = 0; x < size; x++) {
         const sum = [0, 0, 0, 0];

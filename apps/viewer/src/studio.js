@@ -69,6 +69,7 @@ uniform float pbSharpness[${SOFT.length}];
 uniform vec3 pbLamp[${SOFT.length}];
 uniform highp sampler2D pbSplitSum;
 uniform mat3 pbTurn;
+uniform float pbUnit;
 const vec3 PB_AMBIENT = vec3(0.16, 0.165, 0.175);
 const vec3 PB_SUN = vec3(0.95, 0.92, 0.86);
 const vec3 PB_SUN_FROM = vec3(-0.2952407, 0.7873085, 0.5412746);

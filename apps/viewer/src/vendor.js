@@ -3,7 +3,7 @@ export {
   AnimationMixer, BackSide, Box3, BufferAttribute, BufferGeometry, ClampToEdgeWrapping, Color, CustomBlending,
   DataTexture, DirectionalLight, DoubleSide, EqualDepth, FloatType, Group, HalfFloatType, LinearFilter, LinearSRGBColorSpace, LineSegments,
   LoadingManager, Matrix3, MaxEquation, Mesh, MeshBasicMaterial, MeshDepthMaterial, MeshDistanceMaterial,
-  NearestFilter, NoColorSpace, OneFactor, OneMinusSrcAlphaFactor, OrthographicCamera, PerspectiveCamera, PlaneGeometry, PMREMGenerator,
+  NearestFilter, NoColorSpace, OneFactor, OrthographicCamera, PerspectiveCamera, PlaneGeometry, PMREMGenerator,
   RGFormat, Scene, ShaderChunk, ShaderMaterial, SphereGeometry, SRGBColorSpace, UnsignedByteType, Vector2, Vector3,
   Vector4, WebGLRenderer, WebGLRenderTarget, ZeroFactor,
 } from 'three';

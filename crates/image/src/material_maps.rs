@@ -48,7 +48,7 @@ pub fn transmits(material: &Material) -> bool {
     passing && !is_metal && !material.unlit
 }
 
-/// How the alpha of a material is shown by renderers without refraction, Parbake's own among them, and what
+/// How the alpha of a material is shown by fits, and by pictures without extensions, and what
 /// multiplies its opacity. Light that passes a dielectric (`KHR_materials_transmission` without a texture)
 /// is approximated by blending, of which some is left for what the surface reflects.
 pub fn fitted_alpha(material: &Material) -> (AlphaMode, f32) {

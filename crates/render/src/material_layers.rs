@@ -22,12 +22,13 @@
 //! - `KHR_materials_clearcoat`: a dielectric layer of strength k with a normal n_c and a roughness of its own,
 //!   `out = (1 − k F) base + k coat`, `F = F₀ + (1 − F₀) (1 − n_c·v)⁵`, `F₀ = 0.04`.
 //!
-//! What passes is not bent, blurred or dispersed: the surface is as thin as a sheet, whatever its thickness.
+//! `behind.rs` bends and blurs what passes; it is not dispersed.
 //!
 //! `metallic_roughness.rs` puts them together.
 //!
 //! Contract: forward only. What passes is from 0 to 1.
 
+use crate::behind::Refraction;
 use crate::lighting::{DirectionalLight, Lighting};
 use crate::real::Triple;
 use crate::split_sum::{LEAST_COSINE, LEAST_ROUGHNESS, fifth, scale_and_bias};
@@ -85,6 +86,8 @@ pub struct MaterialLayers {
     pub dielectric: Dielectric,
     /// What the inside leaves of light that passes, by channel, 0 to 1.
     pub attenuation: Vec3,
+    /// Where that light comes from.
+    pub refraction: Refraction,
     /// Over the base.
     pub sheen: Option<SheenLayer>,
     /// Above all else.
@@ -94,7 +97,13 @@ pub struct MaterialLayers {
 impl Default for MaterialLayers {
     /// Nothing but a material without extensions.
     fn default() -> Self {
-        Self { dielectric: Dielectric::default(), attenuation: Vec3::ONE, sheen: None, coat: None }
+        Self {
+            dielectric: Dielectric::default(),
+            attenuation: Vec3::ONE,
+            refraction: Refraction::default(),
+            sheen: None,
+            coat: None,
+        }
     }
 }
 

@@ -17,6 +17,7 @@ use crate::interpolate::{barycentrics, interpolate};
 use crate::interpretation::Interpretation;
 use crate::material_layers::MaterialLayers;
 use crate::on_screen::{AlphaClusters, OnScreen, Raster};
+pub use crate::picture::Picture;
 use crate::raster::{NOTHING, ScreenTriangle, ScreenTriangles, Visibility};
 pub use crate::scene_pyramids::unpack;
 use crate::scene_pyramids::{Map, Pyramids};
@@ -31,15 +32,6 @@ use parbake_model::{AlphaMode, Image, Material, Mesh};
 use rayon::prelude::*;
 use std::cell::Cell;
 
-/// A square picture in linear light: premultiplied RGB and coverage.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Picture {
-    /// Pixels along a side.
-    pub size: usize,
-    /// size² pixels, row 0 on top.
-    pub rgba: Vec<[f32; 4]>,
-}
-
 /// A point of the surface as a camera sees it.
 pub(crate) struct Seen {
     /// The normal's is in the tangent frame.
@@ -47,7 +39,7 @@ pub(crate) struct Seen {
     normal: Vec3,
     tangent: Vec3,
     handedness: f32,
-    to_viewer: Vec3,
+    pub to_viewer: Vec3,
     facing: f32,
     /// What extensions show there, if the interpretation asks for them.
     pub layers: Option<MaterialLayers>,
@@ -86,6 +78,8 @@ pub struct Scene {
     as_stored: bool,
     /// Where there are many triangles.
     pub(crate) clusters: Option<AlphaClusters>,
+    /// Length of the model's unit, which thicknesses are given in, in that of the mesh.
+    unit: f32,
 }
 
 impl Scene {
@@ -117,10 +111,15 @@ impl Scene {
         let pyramids = pyramids.all;
         let as_stored = !interpretation.decode_srgb;
         let face_normals = (0..mesh.triangles.len()).into_par_iter().map(|t| mesh.area_normal(t)).collect();
-        let mut scene = Self { mesh, surfaces, pyramids, face_normals, as_stored, clusters: None };
+        let mut scene = Self { mesh, surfaces, pyramids, face_normals, as_stored, clusters: None, unit: 1.0 };
         // Not when views first look at them: these wait for each other, and would leave cores idle.
         scene.clusters = scene.clustered();
         scene
+    }
+
+    /// The same where a length of 1 of the model, which thicknesses of glass are given in, is `unit` in the mesh.
+    pub fn with_unit(self, unit: f32) -> Self {
+        Self { unit, ..self }
     }
 
     fn clustered(&self) -> Option<AlphaClusters> {
@@ -423,8 +422,10 @@ impl Scene {
             values[MapKind::Normal] = fetch(map).extend(0.0) * surface.factors[MapKind::Normal];
         }
         let mut seen = Seen { values, normal, tangent, handedness, to_viewer, facing, layers: None };
-        seen.layers =
-            surface.layers.as_ref().map(|own| own.at(&fetch, &|m| seen.turned(m.unwrap_or(Vec3::Z))));
+        seen.layers = surface
+            .layers
+            .as_ref()
+            .map(|own| own.at(&fetch, &|m| seen.turned(m.unwrap_or(Vec3::Z)), self.unit));
         seen
     }
 

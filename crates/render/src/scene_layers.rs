@@ -4,11 +4,12 @@
 //! Contract: built only where the interpretation asks for extensions. Textures are filtered as those of the maps are.
 //! Iridescence, anisotropy, dispersion and diffuse transmission are not read.
 
+use crate::behind::Refraction;
 use crate::material_layers::{CoatLayer, Dielectric, MaterialLayers, SheenLayer};
 use crate::scene_pyramids::{Map, Pyramids, Use};
 use parbake_image::MapKind;
 use parbake_model::glam::Vec3;
-use parbake_model::{Material, TextureSlot, Volume};
+use parbake_model::{Material, TextureSlot};
 
 /// Channel of a texture of numbers.
 #[derive(Clone, Copy)]
@@ -71,12 +72,13 @@ pub(crate) struct SurfaceLayers {
     sheen: Option<(Color, Number)>,
     strength: Number,
     tint: Color,
-    /// Reflection at normal incidence of this index of refraction.
+    /// Index of refraction, and what is reflected at normal incidence for it.
+    index: f32,
     f0: f32,
     transmission: Number,
     thickness: Number,
-    /// Natural logarithm of what is left of light after a thickness of 1, by channel.
-    attenuation: Vec3,
+    /// What is left of light after a length, by channel, and that length; none where all of it is.
+    attenuation: Option<(Vec3, f32)>,
 }
 
 impl SurfaceLayers {
@@ -104,10 +106,13 @@ impl SurfaceLayers {
             roughness: Number::new(c.roughness, c.roughness_texture, Channel::Green, pyramids),
             normal: pyramids.map(MapKind::Normal, c.normal_texture).map(|map| (map, c.normal_scale)),
         });
-        // An index of 0 stands for one without bound.
         let f0 = if ior == 0.0 { 1.0 } else { ((ior - 1.0) / (ior + 1.0)).powi(2) };
-        let attenuation = attenuation(&volume);
-        Some(Self { coat, sheen, strength, tint, f0, transmission: passing, thickness, attenuation })
+        let distance = volume.attenuation_distance;
+        let attenuation =
+            distance.is_finite().then(|| (Vec3::from(volume.attenuation_color), distance.max(1e-12)));
+        // An index of 0 stands for one without bound.
+        let index = if ior == 0.0 { f32::INFINITY } else { ior };
+        Some(Self { coat, sheen, strength, tint, index, f0, transmission: passing, thickness, attenuation })
     }
 
     /// Whether light passes it.
@@ -116,18 +121,23 @@ impl SurfaceLayers {
     }
 
     /// The layers at a point, given what textures hold there. `frame` turns a mapped normal, or none, into a unit
-    /// vector on the viewer's side.
-    pub fn at(&self, fetch: &impl Fn(&Map) -> Vec3, frame: &impl Fn(Option<Vec3>) -> Vec3) -> MaterialLayers {
+    /// vector on the viewer's side; `unit` is the length of the model's unit in that of the mesh.
+    pub fn at(
+        &self,
+        fetch: &impl Fn(&Map) -> Vec3,
+        frame: &impl Fn(Option<Vec3>) -> Vec3,
+        unit: f32,
+    ) -> MaterialLayers {
         let strength = self.strength.at(fetch);
         let dielectric = Dielectric {
             f0: (self.f0 * self.tint.at(fetch)).min(Vec3::ONE) * strength,
             f90: strength,
             scatters: 1.0 - if self.transmits() { self.transmission.at(fetch) } else { 0.0 },
         };
-        let attenuation = match self.attenuation == Vec3::ZERO {
-            true => Vec3::ONE,
-            false => Vec3::from((self.attenuation * self.thickness.at(fetch)).to_array().map(f32::exp)),
-        };
+        let thickness = if self.thickness.factor > 0.0 { self.thickness.at(fetch) } else { 0.0 };
+        let left = |(color, distance): (Vec3, f32)| color.powf(thickness / distance);
+        let attenuation = self.attenuation.map_or(Vec3::ONE, left);
+        let refraction = Refraction { index: self.index, thickness: thickness * unit };
         let sheen = self
             .sheen
             .as_ref()
@@ -139,15 +149,6 @@ impl SurfaceLayers {
                 coat.normal.as_ref().map(|(map, scale)| fetch(map) * Vec3::new(*scale, *scale, 1.0)),
             ),
         });
-        MaterialLayers { dielectric, attenuation, sheen, coat }
-    }
-}
-
-/// Natural logarithm of what is left of light after a thickness of 1, by channel; finite.
-fn attenuation(volume: &Volume) -> Vec3 {
-    let per_length = |left: f32| left.max(1e-6).ln() / volume.attenuation_distance.max(1e-12);
-    match volume.attenuation_distance.is_finite() {
-        true => Vec3::from(volume.attenuation_color.map(per_length)),
-        false => Vec3::ZERO,
+        MaterialLayers { dielectric, attenuation, refraction, sheen, coat }
     }
 }

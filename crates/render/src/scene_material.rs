@@ -5,30 +5,31 @@
 //! of all blended surfaces in front of it, from front to back, with transmittance `T`:
 //!
 //! ```text
-//! light += T α c,  T ← T (1 − α + α p);  at last light += T c of the solid one,  coverage = 1 − T after it
+//! light += T α (c + p b),  coverage += T α (1 − p (1 − b_α)),  T ← T (1 − α);  at last the solid one with α = 1
 //! ```
 //!
-//! (Porter and Duff, Compositing Digital Images, 1984), in linear light; p is what passes a surface that transmits light
-//! (`material_layers.rs`), and of a tint coverage has the mean. What the maps hold is composited by the same
-//! transmittance, its mean over the channels. Samples of a pixel are averaged.
+//! (Porter and Duff, Compositing Digital Images, 1984), in linear light; p is what passes glass (`material_layers.rs`), else 0,
+//! and b with coverage b_α what comes from behind it, from a picture of all that is solid (`behind.rs`). As in viewers,
+//! glass hides what is blended behind it and other glass, but for the backs of double-sided glass, which are drawn into that picture. Of
+//! a tint coverage has the mean. What the maps hold is composited by how much each surface covers. Samples of a pixel
+//! are averaged.
 //!
-//! Contract: pictures are as in `scene.rs`. Bands of rows are independent, so nothing depends on the number of
-//! threads; memory grows with the layers of one band.
+//! `scene_stage.rs` draws them, band by band.
+//!
+//! Contract: pictures are as in `scene.rs`, and do not depend on the number of threads.
 
+use crate::behind::Behind;
 use crate::camera::Camera;
 use crate::frame::Orientation;
 use crate::interpolate::{barycentrics, interpolate};
-use crate::material_layers::LayeredLight;
-use crate::metallic_roughness::LEAST_ROUGHNESS;
 use crate::on_screen::OnScreen;
-use crate::raster::{NOTHING, ScreenTriangle, Visibility};
-use crate::scene::{Picture, Scene, Seen};
+use crate::raster::{ScreenTriangle, Visibility};
+use crate::scene::{Picture, Scene};
 use crate::scene_pyramids::Map;
+use crate::scene_stage::{BAND, Drawing, Drawn, InBand, Kind, Special, Stage};
 use crate::scene_textures::{SeenPoint, Surface};
 use crate::shade::Brdf;
-use crate::turning_normals::added_roughness;
 use parbake_image::MapValues;
-use parbake_image::maps::MapKind;
 use parbake_model::AlphaMode;
 use parbake_model::glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -41,49 +42,6 @@ pub struct MaterialPicture {
     /// What the maps hold there, premultiplied by coverage, row 0 on top; none unless asked for. Normals are unit
     /// vectors of the common frame that look to the viewer's side.
     pub values: Vec<MapValues>,
-}
-
-/// Rows of pixels in a band.
-const BAND: usize = 8;
-
-/// A triangle that takes more than a look at its depth.
-struct Special {
-    triangle: u32,
-    on_screen: ScreenTriangle,
-    is_blended: bool,
-}
-
-/// What a sample sees of a special triangle.
-struct Layer {
-    sample: usize,
-    nearness: f64,
-    /// Index among the special triangles.
-    special: usize,
-}
-
-/// The solid surface at a sample.
-#[derive(Clone, Copy)]
-enum Solid {
-    Nothing,
-    Plain(u32),
-    Special(usize),
-}
-
-/// What stands still during one view.
-struct Stage<'a, B> {
-    scene: &'a Scene,
-    brdf: &'a B,
-    camera: &'a Camera,
-    screen: OnScreen<'a>,
-    special: Vec<Special>,
-    /// Those that each band of rows may show, by their index in `special`, ascending.
-    by_band: Vec<Vec<u32>>,
-    /// Of all that is not special.
-    opaque: Visibility,
-    /// Samples along a side of the picture, and of a pixel.
-    fine: usize,
-    supersample: usize,
-    widens_highlights: bool,
 }
 
 impl Scene {
@@ -100,13 +58,13 @@ impl Scene {
         let fine = size * supersample;
         let screen = self.layer_on_screen(|mode, _| mode == AlphaMode::Opaque, camera, fine);
         let screen = screen.unwrap_or_else(|| self.on_screen(camera, fine));
-        let special = self.special(camera, &screen);
         let is_plain = |triangle: u32| {
             let triangle = triangle as usize;
             !self.surface(triangle).is_special() && !self.shows_its_back(camera, triangle)
         };
         let mut opaque = Visibility::default();
         screen.rasterise_some(fine, is_plain, &mut opaque);
+        let special = self.special(camera, &screen);
         let mut by_band = vec![Vec::new(); size.div_ceil(BAND)];
         for (index, special) in special.iter().enumerate() {
             let rows = special.on_screen.rows(fine);
@@ -115,6 +73,8 @@ impl Scene {
                 by_band[first..=last].iter_mut().for_each(|band| band.push(index as u32));
             }
         }
+        let shows = |kind: Kind| special.iter().any(|own| own.kind == kind);
+        let (has_backs, has_glass) = (shows(Kind::BackOfGlass), shows(Kind::Glass));
         let stage = Stage {
             scene: self,
             brdf,
@@ -127,16 +87,27 @@ impl Scene {
             supersample,
             widens_highlights,
         };
-        let mut light = Picture { size, rgba: vec![[0.0; 4]; size * size] };
-        let mut values = vec![MapValues::ZERO; if with_values { size * size } else { 0 }];
-        let bands = light.rgba.par_chunks_mut(size * BAND);
-        if with_values {
-            let bands = bands.zip(values.par_chunks_mut(size * BAND)).enumerate();
-            bands.for_each(|(band, (light, values))| stage.fill(band, light, values));
-        } else {
-            bands.enumerate().for_each(|(band, light)| stage.fill(band, light, &mut []));
+        let picture = |light, values| MaterialPicture { light: Picture { size, rgba: light }, values };
+        if !has_backs && !has_glass {
+            let all = Drawing { layers: true, behind: None, with_values, keeps_solid: false };
+            let Drawn { light, values, .. } = stage.drawn(|band| stage.band(band, &stage.visible(band), all));
+            return picture(light, values);
         }
-        MaterialPicture { light, values }
+        let seen: Vec<InBand> =
+            (0..stage.by_band.len()).into_par_iter().map(|band| stage.visible(band)).collect();
+        let alone = Drawing { layers: false, behind: None, with_values: false, keeps_solid: true };
+        let solid = stage.drawn(|band| stage.band(band, &seen[band], alone));
+        let mut behind = Behind::new(Picture { size, rgba: solid.light.clone() });
+        if has_backs {
+            let light = stage.over(&solid, &seen, &behind, |kind| kind == Kind::BackOfGlass);
+            behind = Behind::new(Picture { size, rgba: light });
+        }
+        if !with_values {
+            return picture(stage.over(&solid, &seen, &behind, |_| true), Vec::new());
+        }
+        let all = Drawing { layers: true, behind: Some(&behind), with_values, keeps_solid: false };
+        let Drawn { light, values, .. } = stage.drawn(|band| stage.band(band, &seen[band], all));
+        picture(light, values)
     }
 
     /// All triangles that are cut out or blended, but for those that show only their back.
@@ -146,28 +117,43 @@ impl Scene {
         }
         let special = |triangle: usize| {
             let surface = self.surface(triangle);
-            (surface.is_special() && !self.shows_its_back(camera, triangle)).then(|| Special {
-                triangle: triangle as u32,
-                on_screen: screen.triangle(triangle),
-                is_blended: surface.is_blended(),
+            let is_seen = surface.is_special() && !self.shows_its_back(camera, triangle);
+            is_seen.then(|| {
+                let kind = match (surface.is_glass(), surface.is_blended()) {
+                    (true, _) if self.is_turned_away(camera, triangle) => Kind::BackOfGlass,
+                    (true, _) => Kind::Glass,
+                    (false, true) => Kind::Blended,
+                    (false, false) => Kind::Cut,
+                };
+                Special { triangle: triangle as u32, on_screen: screen.triangle(triangle), kind }
             })
         };
         (0..self.mesh.triangles.len()).into_par_iter().filter_map(special).collect()
     }
 
-    fn surface(&self, triangle: usize) -> &Surface {
+    pub(crate) fn surface(&self, triangle: usize) -> &Surface {
         &self.surfaces[self.mesh.triangle_materials[triangle] as usize]
     }
 
     /// Whether a triangle is single-sided and seen from behind.
-    fn shows_its_back(&self, camera: &Camera, triangle: usize) -> bool {
-        let corner = || self.mesh.positions[self.mesh.triangles[triangle][0] as usize];
-        let is_turned = || camera.view_direction(corner()).dot(self.face_normals[triangle]) < 0.0;
-        !self.surface(triangle).is_double_sided && is_turned()
+    pub(crate) fn shows_its_back(&self, camera: &Camera, triangle: usize) -> bool {
+        !self.surface(triangle).is_double_sided && self.is_turned_away(camera, triangle)
+    }
+
+    /// Whether a triangle is seen from behind.
+    fn is_turned_away(&self, camera: &Camera, triangle: usize) -> bool {
+        let corner = self.mesh.positions[self.mesh.triangles[triangle][0] as usize];
+        camera.view_direction(corner).dot(self.face_normals[triangle]) < 0.0
     }
 
     /// Whether a point of a triangle is there at all: not left out by its cutout, nor below the cutoff of its mask.
-    fn is_there(&self, camera: &Camera, triangle: usize, on_screen: &ScreenTriangle, at: (f64, f64)) -> bool {
+    pub(crate) fn is_there(
+        &self,
+        camera: &Camera,
+        triangle: usize,
+        on_screen: &ScreenTriangle,
+        at: (f64, f64),
+    ) -> bool {
         let (surface, mesh) = (self.surface(triangle), &self.mesh);
         let corners = mesh.triangles[triangle].map(|i| i as usize);
         let b = barycentrics(on_screen, at.0, at.1);
@@ -188,148 +174,6 @@ impl Scene {
             Vec3::from(pyramid.fetch(along(b.weights), pyramid.lod(along(b.per_x), along(b.per_y))))
         };
         self.opacity(surface, corners, b.weights, &fetch) >= surface.alpha_cutoff
-    }
-}
-
-impl<B: Brdf<Orientation>> Stage<'_, B> {
-    /// Fills the pixels of a band.
-    fn fill(&self, band: usize, light: &mut [[f32; 4]], values: &mut [MapValues]) {
-        let size = self.fine / self.supersample;
-        let first = band * BAND * self.supersample;
-        let rows = first..first + light.len() / size * self.supersample;
-        let (solid, layers) = self.visible(band, rows.clone());
-        let share = 1.0 / (self.supersample * self.supersample) as f32;
-        let mut next = 0;
-        // Neighbouring samples mostly see the same triangle.
-        let mut last = (NOTHING, ScreenTriangle::HIDDEN);
-        for (sample, solid) in solid.into_iter().enumerate() {
-            let from = next;
-            next += layers[from..].iter().take_while(|layer| layer.sample == sample).count();
-            let (column, row) = (sample % self.fine, sample / self.fine);
-            let pixel = row / self.supersample * size + column / self.supersample;
-            let at = (column as f64 + 0.5, (rows.start + row) as f64 + 0.5);
-            let mut passed = Vec3::ONE;
-            let mut add = |triangle: u32, on_screen: &ScreenTriangle, is_blended: bool, passed: &mut Vec3| {
-                let (seen, lit) = self.shade(triangle as usize, on_screen, at);
-                let alpha = match self.scene.surface(triangle as usize).alpha_mode {
-                    AlphaMode::Blend => seen.values[MapKind::BaseColor].w.clamp(0.0, 1.0),
-                    _ => 1.0,
-                };
-                let passes = if is_blended { lit.passes } else { Vec3::ZERO };
-                let to = &mut light[pixel];
-                (0..3).for_each(|k| to[k] += lit.light[k] * (passed[k] * alpha * share));
-                let after = *passed * (1.0 - alpha * (1.0 - passes));
-                let weight = (*passed - after).element_sum() / 3.0 * share;
-                to[3] += weight;
-                if let Some(to) = values.get_mut(pixel) {
-                    for kind in MapKind::ALL {
-                        to[kind] += match kind {
-                            MapKind::Normal => seen.world_normal().extend(0.0),
-                            _ => seen.values[kind],
-                        } * weight;
-                    }
-                }
-                *passed = after;
-            };
-            for layer in &layers[from..next] {
-                let special = &self.special[layer.special];
-                add(special.triangle, &special.on_screen, true, &mut passed);
-            }
-            match solid {
-                Solid::Nothing => {}
-                Solid::Plain(triangle) => {
-                    if last.0 != triangle {
-                        last = (triangle, self.screen.triangle(triangle as usize));
-                    }
-                    add(triangle, &last.1, false, &mut passed);
-                }
-                Solid::Special(special) => {
-                    let special = &self.special[special];
-                    add(special.triangle, &special.on_screen, false, &mut passed);
-                }
-            }
-        }
-    }
-
-    /// The light of a triangle at a sample.
-    fn shade(&self, triangle: usize, on_screen: &ScreenTriangle, at: (f64, f64)) -> (Seen, LayeredLight) {
-        let reads = |kind| self.brdf.reads(kind);
-        let mut seen = self.scene.seen(self.camera, on_screen, triangle, at, 1.0, &reads);
-        let mut values = seen.values;
-        if self.widens_highlights {
-            let mesh = &self.scene.mesh;
-            let normals = mesh.triangles[triangle].map(|vertex| mesh.normals[vertex as usize]);
-            let added = added_roughness(self.camera, normals, &barycentrics(on_screen, at.0, at.1));
-            let roughness = &mut values[MapKind::MetallicRoughness].y;
-            let widened = |roughness: f32| (roughness.max(LEAST_ROUGHNESS) + added).min(1.0);
-            *roughness = widened(*roughness);
-            if let Some(coat) = seen.layers.as_mut().and_then(|layers| layers.coat.as_mut()) {
-                coat.roughness = widened(coat.roughness);
-            }
-        }
-        let solid = |light| LayeredLight { light, passes: Vec3::ZERO };
-        let light = match (self.scene.surface(triangle).is_unlit, &seen.layers) {
-            (true, _) => solid(seen.values[MapKind::BaseColor].truncate()),
-            (false, None) => solid(self.brdf.light(&seen.orientation(), &values)),
-            (false, Some(layers)) => self.brdf.light_in_layers(&seen.orientation(), &values, layers),
-        };
-        (seen, light)
-    }
-
-    /// What is seen in the rows of a band: the solid surface of each sample, and the blended ones in front of it, sample by
-    /// sample and from front to back.
-    fn visible(&self, band: usize, rows: std::ops::Range<usize>) -> (Vec<Solid>, Vec<Layer>) {
-        let begin = rows.start * self.fine;
-        let seen = &self.opaque.triangle[begin..rows.end * self.fine];
-        let place = |sample: usize| {
-            let (column, row) = (sample % self.fine, rows.start + sample / self.fine);
-            (column as f64 + 0.5, row as f64 + 0.5)
-        };
-        let solid = |&triangle: &u32| match triangle {
-            NOTHING => Solid::Nothing,
-            triangle => Solid::Plain(triangle),
-        };
-        if self.special.is_empty() {
-            return (seen.iter().map(solid).collect(), Vec::new());
-        }
-        let with_nearness = |(sample, triangle): (usize, &u32)| {
-            let (x, y) = place(sample);
-            let is_seen = *triangle != NOTHING;
-            let nearness = is_seen.then(|| self.screen.triangle(*triangle as usize).nearness_at(x, y));
-            (solid(triangle), nearness.unwrap_or(f64::NEG_INFINITY))
-        };
-        let mut solids: Vec<(Solid, f64)> = seen.iter().enumerate().map(with_nearness).collect();
-        let each = |is_blended: bool, found: &mut dyn FnMut(usize, usize, f64)| {
-            let all = self.by_band[band].iter().map(|&index| (index as usize, &self.special[index as usize]));
-            for (index, special) in all.filter(|(_, s)| s.is_blended == is_blended) {
-                let own = special.on_screen.rows(self.fine);
-                for row in rows.start.max(own.start)..rows.end.min(own.end) {
-                    for (column, nearness) in special.on_screen.on_row(row, self.fine) {
-                        found(index, (row - rows.start) * self.fine + column, nearness);
-                    }
-                }
-            }
-        };
-        let is_there = |index: usize, sample: usize| {
-            let special = &self.special[index];
-            self.scene.is_there(self.camera, special.triangle as usize, &special.on_screen, place(sample))
-        };
-        each(false, &mut |index, sample, nearness| {
-            if nearness > solids[sample].1 && is_there(index, sample) {
-                solids[sample] = (Solid::Special(index), nearness);
-            }
-        });
-        let mut layers = Vec::new();
-        each(true, &mut |index, sample, nearness| {
-            if nearness > solids[sample].1 && is_there(index, sample) {
-                layers.push(Layer { sample, nearness, special: index });
-            }
-        });
-        layers.sort_by(|a, b| {
-            let order = a.sample.cmp(&b.sample).then(b.nearness.total_cmp(&a.nearness));
-            order.then(a.special.cmp(&b.special))
-        });
-        (solids.into_iter().map(|(solid, _)| solid).collect(), layers)
     }
 }
 

@@ -5,8 +5,9 @@ use crate::camera::Projection;
 use crate::interpretation::Interpretation;
 use crate::lighting::{DirectionalLight, Lighting};
 use crate::metallic_roughness::MetallicRoughness;
+use parbake_image::maps::MapKind;
 use parbake_model::glam::Vec4;
-use parbake_model::{Clearcoat, Image, Material, Mesh, Sheen, Specular, TextureSlot, Transmission};
+use parbake_model::{Clearcoat, Image, Material, Mesh, Sheen, Specular, TextureSlot, Transmission, Volume};
 
 /// Squares of half a side across the z axis at these heights, each of a material of its own.
 fn squares(heights: &[f32], materials: &[Material]) -> Scene {
@@ -184,6 +185,99 @@ fn what_is_behind_glass_shows() {
     let alone = seen_from(&with_extensions(&[0.4], &[glass], &[image]), Vec3::Z).light;
     assert!((alone.rgba[8 * 16 + 3][3] - (1.0 - left[0] * 2.5 / 3.0)).abs() < 0.01);
     assert_eq!(alone.rgba[8 * 16 + 12][3], 1.0);
+}
+
+/// Protects glass in comparisons: a thick pane bends what is behind it, in lengths of the model, and hides other panes; the back of
+/// a double-sided pane shows through its front.
+#[test]
+fn thick_glass_bends_what_is_behind() {
+    let mut glass = Material { roughness: 0.0, metallic: 0.0, double_sided: false, ..Material::default() };
+    glass.extensions.transmission = Some(Transmission { factor: 1.0, ..Transmission::default() });
+    glass.extensions.volume = Some(Volume { thickness: 0.25, ..Volume::default() });
+    let camera = Camera::towards_origin(Vec3::Z, 3.5, Projection::Orthographic(0.4));
+    let dark = MetallicRoughness { lighting: Lighting::default() };
+    let seen = |scene: &Scene| scene.render_material(&dark, &camera, (32, 1), false, false).light;
+    // A pane whose normals lean to the right, before a square that covers the right half of the picture.
+    let scene = |glass: &Material, unit: f32, lean: f32| {
+        let square = glowing([1.0; 3], 1.0, AlphaMode::Opaque);
+        let mut scene = with_extensions(&[0.3, -0.3], &[glass.clone(), square], &[]).with_unit(unit);
+        scene.mesh.positions[4..].iter_mut().for_each(|p| p.x += 0.5);
+        scene.mesh.normals[..4].fill(Vec3::new(lean, 0.0, 1.0).normalize());
+        scene
+    };
+    let edge = |scene: &Scene| {
+        let picture = seen(scene);
+        picture.rgba[16 * 32..17 * 32].iter().filter(|pixel| pixel[3] > 0.5).count()
+    };
+    let straight = edge(&scene(&glass, 1.0, 0.0));
+    assert!((15..=17).contains(&straight), "{straight}");
+    // Snell: a ray that meets the pane at an angle whose sine is 0.6 goes on at asin(0.6 / 1.5) to the normal, 13.3° to the left of
+    // where it came from: 0.0575 in 0.25, which are 2.3 pixels. So what is seen lies to the left, and the edge moves to the right.
+    let (bent, twice) = (edge(&scene(&glass, 1.0, 0.75)), edge(&scene(&glass, 2.0, 0.75)));
+    assert!((2..=3).contains(&(straight - bent)) && (4..=5).contains(&(straight - twice)), "{bent} {twice}");
+    let mut pair = vec![glass.clone(); 2];
+    pair[1].base_color = [1.0, 0.0, 0.0, 1.0];
+    let square = glowing([1.0; 3], 1.0, AlphaMode::Opaque);
+    let panes = |materials: &[Material]| {
+        let all = [materials, std::slice::from_ref(&square)].concat();
+        let mut scene = with_extensions(&[0.3, 0.0, -0.3], &all, &[]);
+        scene.mesh.triangles[2..4].iter_mut().for_each(|corners| corners.swap(1, 2));
+        scene.face_normals[2..4].iter_mut().for_each(|normal| *normal = -*normal);
+        scene.mesh.normals[4..8].fill(-Vec3::Z);
+        seen(&scene).rgba[16 * 32 + 16]
+    };
+    // The red pane shows its back, which a single-sided one has not, before a white square.
+    let (without, with) = (panes(&pair), {
+        pair[1].double_sided = true;
+        panes(&pair)
+    });
+    assert!(without[1] > 0.9 && with[0] > 0.8 && with[1] < 0.01, "{without:?} {with:?}");
+    // With the maps' values all is drawn at once, else on top of what is solid.
+    let slanted = Camera::towards_origin(Vec3::new(0.3, 0.2, 1.0), 3.5, Projection::Orthographic(0.8));
+    let mut all = [&pair[..], &[square.clone(), glowing([0.0, 1.0, 0.0], 0.4, AlphaMode::Blend)]].concat();
+    all[0].extensions.transmission = Some(Transmission { factor: 0.7, ..Transmission::default() });
+    let mixed = with_extensions(&[0.3, 0.0, -0.3, 0.45], &all, &[]);
+    let [once, over] =
+        [true, false].map(|values| mixed.render_material(&dark, &slanted, (32, 2), false, values));
+    for (once, over) in once.light.rgba.iter().zip(&over.light.rgba) {
+        assert!((Vec4::from(*once) - Vec4::from(*over)).length() < 1e-5, "{once:?} {over:?}");
+    }
+    pair[1].double_sided = false;
+    let front = with_extensions(&[0.3, 0.0, -0.3], &[pair[0].clone(), pair[1].clone(), square.clone()], &[]);
+    let hidden = seen(&front).rgba[16 * 32 + 16];
+    assert!(hidden[1] > 0.9, "{hidden:?}");
+}
+
+/// Protects glass among other surfaces: a blended pane in front of it shows, one behind it does not, as in viewers; a mask of glass
+/// is cut out; unlit glass is solid; a camera that stands in a thick pane gets numbers.
+#[test]
+fn glass_hides_what_is_blended_behind_it() {
+    let mut glass = Material { roughness: 0.0, metallic: 0.0, ..Material::default() };
+    glass.extensions.transmission = Some(Transmission { factor: 1.0, ..Transmission::default() });
+    let pane = glowing([0.0, 1.0, 0.0], 0.5, AlphaMode::Blend);
+    let square = glowing([1.0, 0.0, 0.0], 1.0, AlphaMode::Opaque);
+    let middle = |heights: &[f32], materials: &[Material]| {
+        seen_from(&with_extensions(heights, materials, &[]), Vec3::Z).light.rgba[8 * 16 + 8]
+    };
+    let [in_front, behind] =
+        [0.4, 0.0].map(|height| middle(&[height, 0.2, -0.3], &[pane.clone(), glass.clone(), square.clone()]));
+    assert!((in_front[1] - 0.5).abs() < 1e-5 && (0.4..0.5).contains(&in_front[0]), "{in_front:?}");
+    assert!(behind[1] < 1e-5 && behind[0] > 0.9, "{behind:?}");
+    let cut = Material { alpha_mode: AlphaMode::Mask, base_color: [0.0, 0.0, 1.0, 0.1], ..glass.clone() };
+    assert_eq!(middle(&[0.2, -0.3], &[cut, square.clone()]), [1.0, 0.0, 0.0, 1.0]);
+    let unlit = Material { unlit: true, base_color: [0.0, 0.0, 1.0, 1.0], ..glass.clone() };
+    assert_eq!(middle(&[0.2, -0.3], &[unlit, square.clone()]), [0.0, 0.0, 1.0, 1.0]);
+    let mut thick = glass;
+    thick.extensions.ior = Some(0.0);
+    thick.extensions.volume = Some(Volume { thickness: 50.0, ..Volume::default() });
+    let mut scene = with_extensions(&[0.2, -0.3], &[thick, square], &[]);
+    scene.mesh.normals[..4].fill(-Vec3::Z);
+    let camera = Camera::towards_origin(Vec3::new(0.2, 0.1, 1.0), 3.5, Projection::Perspective(0.2));
+    let dark = MetallicRoughness { lighting: Lighting::default() };
+    for size in [1, 5] {
+        let picture = scene.render_material(&dark, &camera, (size, 2), true, false).light;
+        assert!(picture.rgba.iter().flatten().all(|value| value.is_finite()), "{picture:?}");
+    }
 }
 
 /// Protects varnish and cloth in comparisons: factors and textures of both arrive at the shading.

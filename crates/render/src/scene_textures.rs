@@ -178,9 +178,14 @@ impl Surface {
         }
     }
 
-    /// Whether what is behind it shows: it is blended, or light passes it in a way that is shown.
+    /// Whether what is behind it shows: it is blended, or glass.
     pub fn is_blended(&self) -> bool {
-        self.alpha_mode == AlphaMode::Blend || self.layers.as_ref().is_some_and(SurfaceLayers::transmits)
+        self.alpha_mode == AlphaMode::Blend || self.is_glass()
+    }
+
+    /// Whether light passes it in a way that is shown.
+    pub fn is_glass(&self) -> bool {
+        self.layers.as_ref().is_some_and(SurfaceLayers::transmits)
     }
 
     /// Whether it takes more than a look at depths to say what is seen of it: it is cut out, or blended.

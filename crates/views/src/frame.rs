@@ -40,5 +40,6 @@ pub fn needs_whole_material(model: &Model) -> bool {
 
 /// The model in the common frame, ready for rendering.
 pub fn scene(model: &Model, frame: &Placement, interpretation: Interpretation) -> Scene {
-    Scene::new(placed(model, frame), &model.materials, &model.images, interpretation)
+    let scene = Scene::new(placed(model, frame), &model.materials, &model.images, interpretation);
+    scene.with_unit(frame.scale)
 }
