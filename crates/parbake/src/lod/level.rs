@@ -48,7 +48,7 @@ pub struct LevelReport {
     /// How it was made.
     #[serde(default)]
     pub way: Way,
-    /// The ways that were tried; that with finer maps once more.
+    /// The ways that were tried; that with finer maps up to twice more.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub candidates: Vec<Candidate>,
     /// How the triangles of each layer (opaque, cut out, blended, transmitting) were found; empty where it has the

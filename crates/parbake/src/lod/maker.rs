@@ -3,7 +3,7 @@
 //!
 //! Contract: nothing here says which drafts are made, nor which one is taken (`ways.rs`, `target.rs`).
 
-use super::candidate::{Candidate, Way};
+use super::candidate::{Candidate, Shown, Way};
 use super::chain::{Chain, LevelWatcher, hurried};
 use super::options::LodOptions;
 use crate::bake::{Baked, bake_as, prepare_high_poly};
@@ -55,10 +55,10 @@ pub(crate) struct Draft {
 }
 
 impl Draft {
-    pub fn candidate(&self, psnr: f64) -> Candidate {
+    pub fn candidate(&self, Shown { psnr, close_up }: Shown) -> Candidate {
         let model = &self.baked.model;
         let (triangles, texture_size) = (model.mesh.triangles.len(), largest_texture(model));
-        Candidate { way: self.way, triangles, texture_size, psnr }
+        Candidate { way: self.way, triangles, texture_size, psnr, close_up }
     }
 }
 

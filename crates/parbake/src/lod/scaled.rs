@@ -59,7 +59,7 @@ pub(crate) fn scaled_draft(maker: &Maker, level: usize, model: Model, side: f64,
     Draft { low, layers: Vec::new(), baked, way: Way::Scaled, candidates: Vec::new(), seconds }
 }
 
-/// The model with scaled maps, and its PSNR: with the fewest texels that show nothing less, at most half of the original's.
+/// The model with scaled maps: with the fewest texels that show nothing less, at most half of the original's.
 /// `side` is how many texels along a line its surface needs. None where materials have no common maps, or time was too short for
 /// enough of them.
 pub(crate) fn scaled(
@@ -68,7 +68,7 @@ pub(crate) fn scaled(
     coarser: &Coarser,
     side: f64,
     is_over: &dyn Fn() -> bool,
-) -> Result<Option<(Model, f64)>, BakeError> {
+) -> Result<Option<Model>, BakeError> {
     let most = match texels_read(maker.model) {
         0 => PALETTE,
         texels => texels / 2,
@@ -78,7 +78,8 @@ pub(crate) fn scaled(
     };
     let unreduced =
         if model.materials == coarser.model.materials { coarser.psnr } else { score.psnr(&model)? };
-    with_fewer_texels(&model, most, unreduced, is_over, |reduced| score.psnr(reduced))
+    let fewer = with_fewer_texels(&model, most, unreduced, is_over, |reduced| score.psnr(reduced))?;
+    Ok(fewer.map(|(model, _)| model))
 }
 
 /// Texels of all images that triangles show.

@@ -8,8 +8,8 @@
 //!
 //! All are rendered with 2 × 2 samples a pixel, each shaded, so that vertices which stay in place lose
 //! nothing at edges, where a shift by a twentieth of a pixel already flips samples. Whole materials are rougher where vertex
-//! normals turn (`render/turning_normals.rs`). A level takes over at up to 1.7 times the size that it is made for, so maps
-//! may be worth twice as many texels along a side.
+//! normals turn (`render/turning_normals.rs`). A level takes over at up to 1.7 times the size that it is made for, and is
+//! looked at close up, so maps may be worth two or four times as many texels along a side.
 //!
 //! Contract: deterministic without a budget. A budget is for one bake; a watcher that says stop is heeded between pictures.
 
@@ -30,9 +30,12 @@ use std::time::Instant;
 const EXCELLENT: f64 = 50.0;
 /// Decibels by which another way has to be better than a new layout, and a bake than scaled maps.
 pub(crate) const WORTHWHILE: f64 = 0.3;
-/// Decibels that a bake has to lose by halving its maps for finer ones to be tried, and those that finer ones have to gain.
+/// Decibels that a bake has to lose by halving its maps for finer ones to be tried, and those that finer ones have to gain; at the
+/// level's sizes or close up.
 const SHOWN_BY_MAPS: f64 = 1.0;
 const GAINED_BY_MAPS: f64 = 0.5;
+/// How often a bake may get maps of twice the texels along a side.
+const MOST_REFINEMENTS: usize = 2;
 /// Share of a level's time budget for collapses and scaled maps; what was measured until then counts.
 const TRYING: f64 = 0.2;
 
@@ -70,11 +73,10 @@ pub(crate) fn draft(
     };
     let maps =
         own.as_ref().map(|own| scaled(maker, &score, own, side, &|| is_over(chain))).transpose()?.flatten();
-    let scaled = maps.map(|(model, psnr)| {
-        let draft = scaled_draft(maker, level, model, side, [begin.elapsed().as_secs_f64(), 0.0, 0.0]);
-        let candidate = draft.candidate(psnr);
-        (draft, candidate)
+    let scaled = maps.map(|model| {
+        score.tried(scaled_draft(maker, level, model, side, [begin.elapsed().as_secs_f64(), 0.0, 0.0]))
     });
+    let scaled = scaled.transpose()?;
     let finished = |chain: &Chain, mut draft: Draft, candidates: Vec<Candidate>| {
         draft.candidates = candidates;
         draft.seconds[2] = begin.elapsed().as_secs_f64() - draft.seconds[0] - draft.seconds[1];
@@ -114,11 +116,21 @@ pub(crate) fn draft(
             weigh(&mut best, score.tried(baked)?, WORTHWHILE, &mut candidates);
         }
     }
-    if may_bake(chain, &best)
-        && let Some(refined) = refined(maker, chain, &score, level, &best, own.as_ref())?
-        && !chain.stopped()
-    {
-        weigh(&mut best, score.tried(refined)?, GAINED_BY_MAPS, &mut candidates);
+    for _ in 0..MOST_REFINEMENTS {
+        if !may_bake(chain, &best) {
+            break;
+        }
+        let Some(refined) = refined(maker, chain, &score, level, &best, own.as_ref())? else { break };
+        if chain.stopped() {
+            break;
+        }
+        let refined = score.tried(refined)?;
+        candidates.push(refined.1);
+        let gained = refined.1.shown().above(&best.1.shown());
+        if gained < GAINED_BY_MAPS || refined.1.psnr < best.1.psnr - WORTHWHILE {
+            break;
+        }
+        best = refined;
     }
     finished(chain, best.0, candidates)
 }
@@ -141,7 +153,7 @@ fn weigh(best: &mut Tried, other: Tried, least: f64, candidates: &mut Vec<Candid
     }
 }
 
-/// The same bake with twice the texels along a side, where its maps show at this size and all of them still have at most
+/// The same bake with twice the texels along a side, where its maps show, at this size or close up, and all of them still have at most
 /// half of the model's texels.
 fn refined(
     maker: &Maker,
@@ -160,7 +172,8 @@ fn refined(
     let shows = |score: &PictureScore| -> Result<bool, BakeError> {
         let maps = level_maps(baked);
         let halved: Vec<Reduction> = maps.iter().map(|_| Reduction::Halved([1; 2])).collect();
-        Ok(score.psnr(&with_reductions(baked, &maps, &halved))? <= candidate.psnr - SHOWN_BY_MAPS)
+        let with_fewer = score.shown(&with_reductions(baked, &maps, &halved))?;
+        Ok(candidate.shown().above(&with_fewer) >= SHOWN_BY_MAPS)
     };
     match (draft.way, own) {
         (Way::New, _) if shows(score)? => maker.baked_again(chain, level, draft, size).map(Some),
@@ -221,14 +234,16 @@ mod tests {
         Model { name: "fields".into(), mesh, materials, images, ..Model::default() }
     }
 
-    /// Protects small print: a level has twice the texels along a side where these show.
+    /// Protects small print: a level has twice the texels along a side where these show, and once more twice as many.
     #[test]
     fn maps_are_finer_where_that_shows() {
         let options = LodOptions { screen_size: vec![24.0], triangles: vec![24], ..LodOptions::default() };
         let LevelReport { candidates, texture_size, way, .. } = level(&chequered(10), &options);
         let usual = candidates[0].texture_size;
-        assert_eq!(texture_size, 2 * usual, "{candidates:?}");
+        assert_eq!(texture_size, 4 * usual, "{candidates:?}");
         let of_size = |size| candidates.iter().find(|c| c.texture_size == size && c.way == way).unwrap().psnr;
-        assert!(of_size(texture_size) >= of_size(usual) + GAINED_BY_MAPS, "{candidates:?}");
+        for size in [2 * usual, 4 * usual] {
+            assert!(of_size(size) >= of_size(size / 2) + GAINED_BY_MAPS, "{candidates:?}");
+        }
     }
 }

@@ -70,9 +70,9 @@ fn ways(report: &LevelReport) -> String {
     }
     let mut out = String::from(concat!(
         "<h3>How it was made</h3>",
-        r#"<p class="note">Each row was finished and rendered. The best one is used; a new layout stays unless another way gains at least 0.3 dB, and finer maps have to gain 0.5 dB.</p>"#,
+        r#"<p class="note">Each row was finished and rendered: at the level’s size and, if that is small, at twice that; <em>close up</em> the model spans 300 pixels. A new layout stays unless another way gains at least 0.3 dB at the level’s size. Finer maps stay if they gain at least 0.5 dB in one of both columns.</p>"#,
         r#"<div class="wide"><table class="numbers-table"><thead><tr><th scope="col">way</th><th scope="col">triangles</th>"#,
-        r#"<th scope="col">largest texture</th><th scope="col">PSNR</th></tr></thead><tbody>"#
+        r#"<th scope="col">largest texture</th><th scope="col">PSNR</th><th scope="col">close up</th></tr></thead><tbody>"#
     ));
     for candidate in &report.candidates {
         let is_taken = candidate.way == report.way && candidate.texture_size == report.texture_size;
@@ -81,9 +81,11 @@ fn ways(report: &LevelReport) -> String {
             size => format!("{size} texels wide"),
         };
         let taken = if is_taken { ", taken" } else { "" };
+        let close_up =
+            candidate.close_up.map_or("–".into(), |psnr| format!("{}\u{202f}dB", decimal(psnr, 1)));
         let _ = write!(
             out,
-            "<tr><th scope=\"row\">{}{taken}</th><td>{}</td><td>{side}</td><td>{}\u{202f}dB</td></tr>",
+            "<tr><th scope=\"row\">{}{taken}</th><td>{}</td><td>{side}</td><td>{}\u{202f}dB</td><td>{close_up}</td></tr>",
             way_name(candidate.way),
             count(candidate.triangles),
             decimal(candidate.psnr, 1)

@@ -22,7 +22,13 @@ fn level(level: usize, target: Option<TargetReport>) -> LevelReport {
         draw_calls: 1,
         way: Way::New,
         candidates: [(Way::New, 31.5), (Way::Scaled, 29.0)]
-            .map(|(way, psnr)| Candidate { way, triangles: 90, texture_size: 64, psnr })
+            .map(|(way, psnr)| Candidate {
+                way,
+                triangles: 90,
+                texture_size: 64,
+                psnr,
+                close_up: Some(psnr - 3.0),
+            })
             .to_vec(),
         parts: Vec::new(),
         low_poly: vec![LayerReport {
@@ -81,6 +87,7 @@ fn a_chain_has_a_page() {
         "new layout, taken",
         "layout and maps</th>",
         "At its size: 60 pixels",
+        "<td>31.5\u{202f}dB</td><td>28.5\u{202f}dB</td>",
         "2.00\u{202f}MB",
     ] {
         assert!(html.contains(word), "{word}");
