@@ -24,7 +24,7 @@ use parbake_render::lighting::Lighting;
 use parbake_render::metallic_roughness::MetallicRoughness;
 use parbake_render::scene::{Picture, Scene};
 use parbake_render::scene_material::MaterialPicture;
-use parbake_views::frame::{common_frame, needs_whole_material, scene};
+use parbake_views::frame::{common_frame, needs_whole_material, placed as mesh_in_frame, scene};
 use parbake_views::high_poly::HEADLIGHT_BRDF;
 
 /// Renders models in one frame, all alike.
@@ -85,6 +85,11 @@ impl Renderer {
         let interpretation =
             Interpretation { extensions: self.whole.is_some(), ..self.options.interpretation() };
         PlacedModel(scene(model, &self.frame, interpretation))
+    }
+
+    /// Places a model that has the materials and images of one that stands there, and another mesh: textures are not unpacked again.
+    pub fn place_like(&self, model: &Model, placed: &PlacedModel) -> PlacedModel {
+        PlacedModel(placed.0.with_mesh(mesh_in_frame(model, &self.frame)))
     }
 
     /// Renders it from `direction`, of unit length: the camera stands there and looks at the

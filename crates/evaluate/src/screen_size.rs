@@ -4,7 +4,7 @@
 //! Both are rendered from some directions as viewers show them: whole materials under the built-in light, 2 × 2 samples
 //! a pixel, each shaded, on the grey 128 of 255, or on what is asked for. The figure is the PSNR over whole pictures in which the model's longest
 //! side spans five sevenths of the width, the mean over the directions. Sizes are tried in steps of a fifth from the one
-//! that the level was made for; the largest that passes before one does not counts.
+//! that the level was made for; the largest that passes counts.
 //!
 //! Contract: deterministic, and the same for the same models, whatever the bake was.
 
@@ -100,6 +100,14 @@ impl ScreenComparison {
         Ok(self.renderer(SIZES[0])?.place(model))
     }
 
+    /// The same for a model that has the materials and images of one that is ready: in less time.
+    ///
+    /// # Errors
+    /// Where the original has no extent.
+    pub fn place_like(&self, model: &Model, placed: &PlacedModel) -> Result<PlacedModel, EvaluateError> {
+        Ok(self.renderer(SIZES[0])?.place_like(model, placed))
+    }
+
     /// Takes a model's pictures at a size, on grey, to compare any number of others with.
     ///
     /// # Errors
@@ -130,12 +138,19 @@ impl ScreenComparison {
         self.compared(pictures, model).psnr
     }
 
-    /// The same with the errors of all pixels.
+    /// The same from every other direction: in half the time as much as tells maps of one surface apart.
+    pub fn psnr_of_half(&self, pictures: &Pictures, model: &PlacedModel) -> f64 {
+        let own =
+            |(direction, others): (Vec3, &Vec<Rgb>)| mean_psnr(others, &pictures.taken(model, direction));
+        let figures: Vec<f64> = pictures.seen_from().step_by(2).map(own).collect();
+        figures.iter().sum::<f64>() / figures.len() as f64
+    }
+
+    /// PSNR in dB as [`ScreenComparison::psnr`], with the errors of all pixels.
     pub fn compared(&self, pictures: &Pictures, model: &PlacedModel) -> Compared {
         let own = |(direction, others): (Vec3, &Vec<Rgb>)| {
             let own = pictures.taken(model, direction);
-            let psnr = others.iter().zip(&own).map(|(other, own)| psnr(other, own)).sum::<f64>();
-            (psnr / own.len() as f64, squared_differences(others, &own))
+            (mean_psnr(others, &own), squared_differences(others, &own))
         };
         let (figures, errors): (Vec<f64>, Vec<_>) = pictures.seen_from().map(own).unzip();
         Compared { psnr: figures.iter().sum::<f64>() / figures.len() as f64, errors }
@@ -156,8 +171,8 @@ impl ScreenComparison {
         Ok(AtSize { pixels, psnr: mean.psnr, ms_ssim: mean.ms_ssim, flip: mean.flip })
     }
 
-    /// The largest size at which `level` agrees with all of `others` by `same` decibels, searched from `start` on;
-    /// none where it does not even at the least size.
+    /// The largest size of [`STEP`]s from `start` at which `level` agrees with all of `others` by `same` decibels; none where it does
+    /// not even at the least size. Differences show less the smaller they are, so of the larger sizes the largest is tried first.
     ///
     /// # Errors
     /// Where the original has no extent.
@@ -172,20 +187,26 @@ impl ScreenComparison {
             let pictures = self.pictures(level, pixels)?;
             Ok(others.iter().all(|other| self.psnr(&pictures, other) >= same))
         };
-        let mut pixels = start.clamp(SIZES[0], SIZES[1]);
-        let goes_up = passes(pixels)?;
-        for _ in 0..MOST_STEPS[usize::from(!goes_up)] {
-            let next = if goes_up { pixels * STEP } else { pixels / STEP };
-            if !(SIZES[0]..=SIZES[1]).contains(&next) {
-                break;
+        let start = start.clamp(SIZES[0], SIZES[1]);
+        let sizes = |step: f64, most: usize| {
+            let sizes = (0..=most as i32).map(move |k| start * step.powi(k));
+            sizes.take_while(|pixels| (SIZES[0]..=SIZES[1]).contains(pixels)).skip(1)
+        };
+        if passes(start)? {
+            let larger: Vec<f64> = sizes(STEP, MOST_STEPS[0]).collect();
+            for &pixels in larger.iter().rev() {
+                if passes(pixels)? {
+                    return Ok(Some(pixels));
+                }
             }
-            match (goes_up, passes(next)?) {
-                (true, true) | (false, false) => pixels = next,
-                (true, false) => return Ok(Some(pixels)),
-                (false, true) => return Ok(Some(next)),
+            return Ok(Some(start));
+        }
+        for pixels in sizes(1.0 / STEP, MOST_STEPS[1]) {
+            if passes(pixels)? {
+                return Ok(Some(pixels));
             }
         }
-        Ok(goes_up.then_some(pixels))
+        Ok(None)
     }
 }
 
@@ -235,6 +256,10 @@ fn squared_differences(some: &[Rgb], others: &[Rgb]) -> Vec<f32> {
     sums
 }
 
-fn psnr(a: &Rgb, b: &Rgb) -> f64 {
-    parbake_metric::psnr_from_mse(parbake_metric::mean_squared_error(a, b).unwrap_or(f64::NAN))
+/// PSNR in dB, the mean over pairs of pictures.
+fn mean_psnr(some: &[Rgb], others: &[Rgb]) -> f64 {
+    let psnr = |(a, b): (&Rgb, &Rgb)| {
+        parbake_metric::psnr_from_mse(parbake_metric::mean_squared_error(a, b).unwrap_or(f64::NAN))
+    };
+    some.iter().zip(others).map(psnr).sum::<f64>() / others.len() as f64
 }

@@ -11,6 +11,7 @@ use crate::missed::{Lost, missed};
 use crate::search::INVISIBLE;
 use parbake_mesh::{Collapses, Seams, simplify_in_layout};
 use parbake_model::Mesh;
+use rayon::prelude::*;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -28,6 +29,8 @@ const COLLAPSES: [Collapses; FIRST_WAYS] = [
     way(Seams::Crossed, 0.1, 0.2, true, false),
     way(Seams::Crossed, 0.1, 0.5, true, true),
 ];
+/// How many of these copies are made at once: each takes memory for the whole mesh.
+const AT_ONCE: usize = 2;
 /// How large meshes are collapsed first.
 const BEGIN: Collapses = way(Seams::OfTextures, 0.5, 0.5, false, false);
 const fn way(seams: Seams, normal_weight: f32, uv_weight: f32, moves: bool, evens: bool) -> Collapses {
@@ -116,15 +119,9 @@ struct Tried<T> {
 }
 
 impl<J: Judge> Search<'_, J> {
-    /// The copy that a way makes; none where it leaves too many triangles.
-    fn copy(&self, way: Collapses, favoured: &[u32]) -> Option<Mesh> {
-        let copy = simplify_in_layout(self.mesh, self.triangles, way, favoured);
-        (!copy.triangles.is_empty() && copy.triangles.len() <= self.triangles).then_some(copy)
-    }
-
-    /// Tries a way.
-    fn weigh(&mut self, way: Collapses) -> Result<(), J::Error> {
-        let Some(copy) = self.copy(way, &[]) else {
+    /// Judges the copy that a way makes.
+    fn weigh(&mut self, way: Collapses, copy: Option<Mesh>) -> Result<(), J::Error> {
+        let Some(copy) = copy else {
             self.tried.push((way, f64::NEG_INFINITY));
             return Ok(());
         };
@@ -168,7 +165,8 @@ impl<J: Judge> Search<'_, J> {
                 break;
             }
             let favoured: Vec<u32> = at.favoured.iter().chain(&missing_now[..count]).copied().collect();
-            let copy = self.copy(at.way, &favoured).map(|copy| (fingerprint(&copy), copy));
+            let copy = collapsed(self.mesh, self.triangles, at.way, &favoured);
+            let copy = copy.map(|copy| (fingerprint(&copy), copy));
             if let Some((fingerprint, copy)) = copy
                 && !self.known.contains_key(&fingerprint)
             {
@@ -205,16 +203,21 @@ pub fn best_collapsed<J: Judge>(
     let mut search = Search { judge, mesh: &fine, triangles, effort, best: [None, None], tried, known };
     // With all triangles there is nothing to choose.
     let has_choice = mesh.triangles.len() > triangles;
-    for way in COLLAPSES.into_iter().take(if has_choice { COLLAPSES.len() } else { 1 }) {
+    let first = if has_choice { &COLLAPSES[..] } else { &COLLAPSES[..1] };
+    for ways in first.chunks(AT_ONCE) {
         if is_over() {
             break;
         }
-        search.weigh(way)?;
+        let copies: Vec<_> = ways.par_iter().map(|&way| collapsed(&fine, triangles, way, &[])).collect();
+        for (&way, copy) in ways.iter().zip(copies) {
+            search.weigh(way, copy)?;
+        }
     }
     for seams in [Seams::Kept, Seams::OfTextures, Seams::Crossed].into_iter().filter(|_| has_choice) {
         for _ in 0..effort.searched {
             let Some(next) = next(&search.tried, seams).filter(|_| !is_over()) else { break };
-            search.weigh(next)?;
+            let copy = collapsed(&fine, triangles, next, &[]);
+            search.weigh(next, copy)?;
         }
     }
     let mut starts: Vec<_> = std::mem::take(&mut search.best).into_iter().flatten().collect();
@@ -232,6 +235,12 @@ pub fn best_collapsed<J: Judge>(
         }
     }
     Ok(best.map(|best| (best.made, best.psnr)))
+}
+
+/// The copy that a way makes; none where it leaves too many triangles.
+fn collapsed(mesh: &Mesh, triangles: usize, way: Collapses, favoured: &[u32]) -> Option<Mesh> {
+    let copy = simplify_in_layout(mesh, triangles, way, favoured);
+    (!copy.triangles.is_empty() && copy.triangles.len() <= triangles).then_some(copy)
 }
 
 /// A number that meshes share whose triangles and vertices are the same to the bit.

@@ -12,6 +12,7 @@ use crate::maps::{
 };
 use crate::search::{INVISIBLE, error_of};
 use parbake_model::{Image, MaterialExtensions, Model};
+use rayon::prelude::*;
 
 /// Decibels that fewer texels may cost.
 const UNSEEN: f64 = 0.05;
@@ -20,19 +21,18 @@ const FREE: usize = 256 * 256;
 /// A map that alone costs so many times the error that may not be seen is not reduced further.
 const HOPELESS: f64 = 10.0;
 
-/// The model with reduced maps, and its PSNR in dB: with the fewest texels at which pictures look the same, at most `most`.
-/// `unreduced` is the PSNR with its maps as they are, `psnr` that of any other. None where no measured choice has at most
-/// `most` texels.
+/// The model with reduced maps: with the fewest texels at which pictures look the same, at most `most`. `psnr` is the PSNR in dB
+/// of the model with any maps; it may be of few pictures, since only differences count. None where no measured choice has at
+/// most `most` texels.
 ///
 /// # Errors
 /// Those of `psnr`.
-pub fn with_fewer_texels<E>(
+pub fn with_fewer_texels<E: Send>(
     model: &Model,
     most: usize,
-    unreduced: f64,
-    is_over: &dyn Fn() -> bool,
-    psnr: impl Fn(&Model) -> Result<f64, E>,
-) -> Result<Option<(Model, f64)>, E> {
+    is_over: &(dyn Fn() -> bool + Sync),
+    psnr: impl Fn(&Model) -> Result<f64, E> + Sync,
+) -> Result<Option<Model>, E> {
     let maps = oblong_level_maps(model);
     // The images of extensions are one more place, after all maps, if pictures show what they say; else they keep as many
     // texels as the finest map.
@@ -44,18 +44,16 @@ pub fn with_fewer_texels<E>(
     };
     let places = maps.len() + usize::from(are_shown);
     let reductions_of = |place: usize| maps.get(place).map_or(HALVINGS + 1, |map| map.reductions.len());
-    let shown = |choice: &[usize]| -> Result<(Model, f64), E> {
+    let reduced = |choice: &[usize]| -> Model {
         let reductions: Vec<Reduction> = maps.iter().zip(choice).map(|(map, &k)| map.reductions[k]).collect();
         let reduced = with_reductions(model, &maps, &reductions);
-        let reduced = with_halved_extensions(reduced, halvings_of_others(choice));
-        let shown = psnr(&reduced)?;
-        Ok((reduced, shown))
+        with_halved_extensions(reduced, halvings_of_others(choice))
     };
+    let unreduced = psnr(model)?;
     let whole = error_of(unreduced);
     let allowed = error_of((unreduced - UNSEEN).min(INVISIBLE));
     // What each map costs by itself; of all together about the sum.
-    let mut costs: Vec<Vec<f64>> = Vec::new();
-    for place in 0..places {
+    let costs_of = |place: usize| -> Result<Vec<f64>, E> {
         let mut own = vec![0.0];
         for reduction in 1..reductions_of(place) {
             if is_over() || own.iter().any(|cost| *cost > HOPELESS * allowed) {
@@ -63,10 +61,11 @@ pub fn with_fewer_texels<E>(
             }
             let mut choice = vec![0; places];
             choice[place] = reduction;
-            own.push((error_of(shown(&choice)?.1) - whole).max(0.0));
+            own.push((error_of(psnr(&reduced(&choice))?) - whole).max(0.0));
         }
-        costs.push(own);
-    }
+        Ok(own)
+    };
+    let costs: Vec<Vec<f64>> = (0..places).into_par_iter().map(costs_of).collect::<Result<_, _>>()?;
     let texels_of = |place: usize, reduction: usize| match maps[place].reductions[reduction] {
         Reduction::Factor => 0,
         Reduction::Halved([u, v]) => {
@@ -93,8 +92,7 @@ pub fn with_fewer_texels<E>(
             best = Some((rank, choice));
         }
     }
-    let Some((_, choice)) = best else { return Ok(None) };
-    shown(&choice).map(Some)
+    Ok(best.map(|(_, choice)| reduced(&choice)))
 }
 
 /// Whether pictures that are compared show what every texture of an extension says (`render/material_layers.rs`).
@@ -149,7 +147,7 @@ mod tests {
             Ok(if colors == 512 { 45.0 } else { 20.0 })
         };
         let sides = |model: &Model| {
-            let (reduced, _) = with_fewer_texels(model, usize::MAX, 45.0, &|| false, psnr).unwrap().unwrap();
+            let reduced = with_fewer_texels(model, usize::MAX, &|| false, psnr).unwrap().unwrap();
             reduced.images.iter().map(|image| image.width).collect::<Vec<_>>()
         };
         assert_eq!(sides(&model), [512, 64]);

@@ -4,6 +4,7 @@
 
 use parbake_evaluate::EvaluateError;
 use parbake_evaluate::differences::{Difference, Differences};
+use parbake_evaluate::renderer::PlacedModel;
 use parbake_evaluate::screen_size::{Compared, Pictures, ScreenComparison};
 use parbake_levels::collapses::Judge;
 use parbake_levels::face_frames::with_face_tangents;
@@ -14,8 +15,10 @@ use parbake_model::{Mesh, Model};
 pub(crate) struct Copies<'p, Finish> {
     screens: &'p ScreenComparison,
     pictures: &'p [Pictures],
-    /// Makes a model of a copy.
+    /// Makes a model of a copy; all have the same materials and images.
     finish: Finish,
+    /// The first copy, whose textures are those of all.
+    first: Option<PlacedModel>,
     /// For each set of pictures, once they are asked for.
     differences: Vec<Differences<'p>>,
 }
@@ -27,9 +30,9 @@ pub(crate) struct Copy {
 }
 
 impl<'p, Finish: FnMut(Mesh) -> Model> Copies<'p, Finish> {
-    /// `finish` makes a model of a copy, and is called once for each that is judged.
+    /// `finish` makes a model of a copy, always with the same materials and images, and is called once for each that is judged.
     pub fn new(screens: &'p ScreenComparison, pictures: &'p [Pictures], finish: Finish) -> Self {
-        Self { screens, pictures, finish, differences: Vec::new() }
+        Self { screens, pictures, finish, first: None, differences: Vec::new() }
     }
 }
 
@@ -39,10 +42,16 @@ impl<Finish: FnMut(Mesh) -> Model> Judge for Copies<'_, Finish> {
 
     fn judged(&mut self, copy: Mesh) -> Result<(Copy, f64), EvaluateError> {
         let model = (self.finish)(copy);
-        let placed = self.screens.place(&with_face_tangents(&model))?;
+        let shown = with_face_tangents(&model);
+        let placed = match &self.first {
+            Some(first) => self.screens.place_like(&shown, first)?,
+            None => self.screens.place(&shown)?,
+        };
         let compare = |pictures: &Pictures| self.screens.compared(pictures, &placed);
         let compared: Vec<Compared> = self.pictures.iter().map(compare).collect();
         let psnr = compared.iter().map(|own| own.psnr).sum::<f64>() / compared.len() as f64;
+        drop(shown);
+        self.first.get_or_insert(placed);
         Ok((Copy { mesh: model.mesh, compared }, psnr))
     }
 

@@ -31,6 +31,7 @@ use parbake_model::glam::{Vec2, Vec3, Vec4};
 use parbake_model::{AlphaMode, Image, Material, Mesh};
 use rayon::prelude::*;
 use std::cell::Cell;
+use std::sync::Arc;
 
 /// A point of the surface as a camera sees it.
 pub(crate) struct Seen {
@@ -71,11 +72,12 @@ impl Seen {
 pub struct Scene {
     pub(crate) mesh: Mesh,
     pub(crate) surfaces: Vec<Surface>,
-    pub(crate) pyramids: Vec<Pyramid<3>>,
+    /// Shared with scenes of the same materials.
+    pub(crate) pyramids: Arc<Vec<Pyramid<3>>>,
     /// 0 where a face is degenerate.
     pub(crate) face_normals: Vec<Vec3>,
-    /// Whether textures are read as they are stored; vertex colours, which are linear, are encoded then.
-    as_stored: bool,
+    /// Vertex colours, which are linear, are encoded where textures are read as they are stored.
+    interpretation: Interpretation,
     /// Where there are many triangles.
     pub(crate) clusters: Option<AlphaClusters>,
     /// Length of the model's unit, which thicknesses are given in, in that of the mesh.
@@ -97,21 +99,30 @@ impl Scene {
     /// Unpacks every texture that a material uses.
     ///
     /// The mesh must have normals, and tangents if a material has a normal map.
-    pub fn new(
+    pub fn new(mesh: Mesh, materials: &[Material], images: &[Image], interpretation: Interpretation) -> Self {
+        let mut pyramids = Pyramids::new(images, interpretation);
+        let surfaces = materials.iter().map(|m| Surface::new(m, &mut pyramids)).collect();
+        Self::of(mesh, surfaces, Arc::new(pyramids.all), interpretation)
+    }
+
+    /// The same materials on another mesh, which is as for [`Scene::new`]: no texture is unpacked again.
+    pub fn with_mesh(&self, mesh: Mesh) -> Self {
+        Self::of(mesh, self.surfaces.clone(), Arc::clone(&self.pyramids), self.interpretation)
+            .with_unit(self.unit)
+    }
+
+    fn of(
         mut mesh: Mesh,
-        materials: &[Material],
-        images: &[Image],
+        surfaces: Vec<Surface>,
+        pyramids: Arc<Vec<Pyramid<3>>>,
         interpretation: Interpretation,
     ) -> Self {
         if interpretation.parallax {
             mesh.apply_parallax_offsets();
         }
-        let mut pyramids = Pyramids::new(images, interpretation);
-        let surfaces = materials.iter().map(|m| Surface::new(m, &mut pyramids)).collect();
-        let pyramids = pyramids.all;
-        let as_stored = !interpretation.decode_srgb;
         let face_normals = (0..mesh.triangles.len()).into_par_iter().map(|t| mesh.area_normal(t)).collect();
-        let mut scene = Self { mesh, surfaces, pyramids, face_normals, as_stored, clusters: None, unit: 1.0 };
+        let mut scene =
+            Self { mesh, surfaces, pyramids, face_normals, interpretation, clusters: None, unit: 1.0 };
         // Not when views first look at them: these wait for each other, and would leave cores idle.
         scene.clusters = scene.clustered();
         scene
@@ -234,10 +245,10 @@ impl Scene {
         if !self.mesh.colors.is_empty() {
             let own: Vec4 = interpolate(corners.map(|i| self.mesh.colors[i]), weights);
             // Light is what is blended between vertices, whatever is stored.
-            let stored = |x: f32| if self.as_stored { encode_srgb(x) } else { x };
+            let stored = |x: f32| if self.interpretation.decode_srgb { x } else { encode_srgb(x) };
             values[MapKind::BaseColor] *= Vec3::from(own.truncate().to_array().map(stored)).extend(1.0);
         }
-        if let Some(sheen) = surface.sheen.as_ref().filter(|_| !self.as_stored) {
+        if let Some(sheen) = surface.sheen.as_ref().filter(|_| self.interpretation.decode_srgb) {
             let texture = sheen.texture.as_ref().map_or(Vec3::ONE, fetch);
             let (added, below) = sheen_as_color(sheen.color * texture, sheen.albedo);
             let color = values[MapKind::BaseColor];

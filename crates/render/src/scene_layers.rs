@@ -20,12 +20,14 @@ enum Channel {
 }
 
 /// A colour's factor and the texture that multiplies it.
+#[derive(Clone)]
 struct Color {
     factor: Vec3,
     texture: Option<Map>,
 }
 
 /// A number's factor, and the texture and its channel that multiply it.
+#[derive(Clone)]
 struct Number {
     factor: f32,
     texture: Option<(Map, Channel)>,
@@ -60,6 +62,7 @@ impl Number {
     }
 }
 
+#[derive(Clone)]
 struct Coat {
     strength: Number,
     roughness: Number,
@@ -67,6 +70,7 @@ struct Coat {
 }
 
 /// The extensions of a material; what it lacks has no effect.
+#[derive(Clone)]
 pub(crate) struct SurfaceLayers {
     coat: Option<Coat>,
     sheen: Option<(Color, Number)>,

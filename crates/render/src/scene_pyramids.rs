@@ -11,6 +11,7 @@ use parbake_model::{Image, Mesh, TextureSlot, UvTransform, Wrap};
 use rayon::prelude::*;
 
 /// One use of a texture, with what moves its coordinates.
+#[derive(Clone)]
 pub(crate) struct Map {
     slot: TextureSlot,
     /// Index into the scene's pyramids.

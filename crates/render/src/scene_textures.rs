@@ -23,6 +23,7 @@ use parbake_model::{AlphaMode, Material, Mesh};
 pub(crate) type Textures = [Option<Map>; KINDS];
 
 /// A look whose coordinates shift, by what, and what is left out of it.
+#[derive(Clone)]
 pub(crate) struct Shifted {
     pub textures: Textures,
     pub parallax: ParallaxCoefficients,
@@ -99,6 +100,7 @@ impl Shifted {
 }
 
 /// The gloss of cloth.
+#[derive(Clone)]
 pub(crate) struct Sheen {
     /// Linear.
     pub color: Vec3,
@@ -109,6 +111,7 @@ pub(crate) struct Sheen {
 }
 
 /// One material.
+#[derive(Clone)]
 pub(crate) struct Surface {
     /// What multiplies the textures, as they are read.
     pub factors: MapValues,

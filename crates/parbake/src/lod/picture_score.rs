@@ -37,9 +37,11 @@ impl<'m> PictureScore<'m> {
         Ok(Self { maker, pictures, close_up })
     }
 
-    /// PSNR in dB, the mean over the sizes.
-    pub(crate) fn psnr(&self, model: &Model) -> Result<f64, BakeError> {
-        Ok(self.mean(&self.maker.screens.place(&with_face_tangents(model))?))
+    /// PSNR in dB of half of the pictures, the mean over the sizes: to tell maps of one surface apart.
+    pub(crate) fn psnr_of_half(&self, model: &Model) -> Result<f64, BakeError> {
+        let placed = self.maker.screens.place(&with_face_tangents(model))?;
+        let psnr = |pictures| self.maker.screens.psnr_of_half(pictures, &placed);
+        Ok(self.pictures.iter().map(psnr).sum::<f64>() / self.pictures.len() as f64)
     }
 
     fn mean(&self, model: &PlacedModel) -> f64 {

@@ -67,7 +67,7 @@ pub(crate) fn scaled(
     score: &PictureScore,
     coarser: &Coarser,
     side: f64,
-    is_over: &dyn Fn() -> bool,
+    is_over: &(dyn Fn() -> bool + Sync),
 ) -> Result<Option<Model>, BakeError> {
     let most = match texels_read(maker.model) {
         0 => PALETTE,
@@ -76,10 +76,7 @@ pub(crate) fn scaled(
     let Some(model) = with_common_maps(&coarser.model, side, maker.options.max_texture_size, most) else {
         return Ok(None);
     };
-    let unreduced =
-        if model.materials == coarser.model.materials { coarser.psnr } else { score.psnr(&model)? };
-    let fewer = with_fewer_texels(&model, most, unreduced, is_over, |reduced| score.psnr(reduced))?;
-    Ok(fewer.map(|(model, _)| model))
+    with_fewer_texels(&model, most, is_over, |reduced| score.psnr_of_half(reduced))
 }
 
 /// Texels of all images that triangles show.

@@ -23,13 +23,19 @@ use crate::error::BakeError;
 use parbake_levels::maps::{Reduction, level_maps, with_reductions};
 use parbake_levels::screen::texels_of;
 use parbake_model::Model;
-use std::cell::Cell;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Decibels from which on nobody would see what other ways gain.
 const EXCELLENT: f64 = 50.0;
 /// Decibels by which another way has to be better than a new layout, and a bake than scaled maps.
 pub(crate) const WORTHWHILE: f64 = 0.3;
+/// Pixels and decibels from which on a new layout is not tried beside scaled maps: of twelve models' levels for 300 pixels all were at
+/// least 1.2 dB below by it.
+const LARGE: f64 = 150.0;
+const CLOSE: f64 = 42.0;
+/// Decibels by which a new layout is far below scaled maps.
+const FAR_BELOW: f64 = 3.0;
 /// Decibels that a bake has to lose by halving its maps for finer ones to be tried, and those that finer ones have to gain; at the
 /// level's sizes or close up.
 const SHOWN_BY_MAPS: f64 = 1.0;
@@ -40,8 +46,9 @@ const MOST_REFINEMENTS: usize = 2;
 const TRYING: f64 = 0.2;
 
 /// The level as that way makes it which shows most of the model. Ways are left out where they cannot win: a new layout
-/// where scaled maps are excellent, the delivered layout where its own vertices show less, even with maps of nearly all
-/// texels. `before` is the low-poly of the level before. None where the watcher said stop before there was a level.
+/// where scaled maps are excellent, or close in a large level; the delivered layout where its own vertices show less, even with maps of
+/// nearly all texels, or where it would have too few. `before` is the low-poly of the level before. None where the watcher said stop
+/// before there was a level.
 pub(crate) fn draft(
     maker: &Maker,
     chain: &mut Chain,
@@ -59,10 +66,10 @@ pub(crate) fn draft(
     chain.tell(level, 0);
     let score = PictureScore::new(maker, maker.options.screen_size[level])?;
     let enough = until.map(|until| begin + until.saturating_duration_since(begin).mul_f64(TRYING));
-    let is_cut = Cell::new(false);
+    let is_cut = AtomicBool::new(false);
     let is_over = |chain: &Chain| {
         let is_over = chain.stopped() || enough.is_some_and(|enough| Instant::now() > enough);
-        is_cut.set(is_cut.get() || is_over);
+        is_cut.fetch_or(is_over, Ordering::Relaxed);
         is_over
     };
     let side = maker.texels_along(maker.model, maker.options.screen_size[level]);
@@ -80,7 +87,7 @@ pub(crate) fn draft(
     let finished = |chain: &Chain, mut draft: Draft, candidates: Vec<Candidate>| {
         draft.candidates = candidates;
         draft.seconds[2] = begin.elapsed().as_secs_f64() - draft.seconds[0] - draft.seconds[1];
-        draft.baked.report.stopped_early |= is_cut.get() || chain.stopped();
+        draft.baked.report.stopped_early |= is_cut.load(Ordering::Relaxed) || chain.stopped();
         Ok(Some(draft))
     };
     let is_enough = |chain: &Chain, scaled: &Tried| scaled.1.psnr >= EXCELLENT || chain.stopped();
@@ -88,28 +95,18 @@ pub(crate) fn draft(
         Some(scaled) if is_enough(chain, &scaled) => return finished(chain, scaled.0, vec![scaled.1]),
         other => other,
     };
-    let new = maker.draft(chain, (level, 0), before, (triangles, None), until)?;
-    let (new, scaled) = match (new, scaled) {
-        // A bake that was cut short shows less than a level that is finished.
-        (_, Some(scaled)) if chain.stopped() => return finished(chain, scaled.0, vec![scaled.1]),
-        (Some(new), _) if chain.stopped() => return finished(chain, new, Vec::new()),
-        (Some(new), scaled) => (new, scaled),
-        (None, _) => return Ok(None),
-    };
-    let mut best = score.tried(new)?;
-    let mut candidates = vec![best.1];
-    if let Some(scaled) = scaled {
-        weigh(&mut best, scaled, WORTHWHILE, &mut candidates);
-    }
+    let first = first_ways(maker, chain, &score, (level, triangles), before, scaled, until)?;
+    let Some((mut best, mut candidates)) = first else { return Ok(None) };
     // A budget is for one bake.
     let may_bake =
         |chain: &Chain, best: &Tried| until.is_none() && best.1.psnr < EXCELLENT && !chain.stopped();
     let is_promising = |own: &&Coarser| best.1.way == Way::Scaled || own.psnr > best.1.psnr + WORTHWHILE;
+    let is_beside_scaled = best.1.way == Way::Scaled;
+    let size = is_beside_scaled.then(|| within_half(maker, side));
     if let Some(own) = own.as_ref().filter(is_promising)
+        && !size.is_some_and(|size| has_too_few_texels(size, &best.1, &candidates))
         && may_bake(chain, &best)
     {
-        let is_beside_scaled = best.1.way == Way::Scaled;
-        let size = is_beside_scaled.then(|| within_half(maker, side));
         let baked = baked_draft(maker, chain, level, own, size)?;
         let fits = !is_beside_scaled || 2 * texels_of(&baked.baked.model) <= texels_of(maker.model);
         if fits && !chain.stopped() {
@@ -133,6 +130,51 @@ pub(crate) fn draft(
         best = refined;
     }
     finished(chain, best.0, candidates)
+}
+
+/// Scaled maps and a new layout: the better one, and what is known of both. No new layout where scaled maps of a large level are close.
+/// None where the watcher said stop before there was one.
+fn first_ways(
+    maker: &Maker,
+    chain: &mut Chain,
+    score: &PictureScore,
+    (level, triangles): (usize, usize),
+    before: Option<&Model>,
+    scaled: Option<Tried>,
+    until: Option<Instant>,
+) -> Result<Option<(Tried, Vec<Candidate>)>, BakeError> {
+    let is_large = maker.options.screen_size[level] >= LARGE;
+    let is_close = |scaled: &&Tried| is_large && scaled.1.psnr >= CLOSE;
+    let new = match scaled.as_ref().filter(is_close) {
+        Some(_) => None,
+        None => maker.draft(chain, (level, 0), before, (triangles, None), until)?,
+    };
+    let known = match (new, scaled) {
+        // A bake that was cut short shows less than a level that is finished.
+        (new, Some(scaled)) if new.is_none() || chain.stopped() => {
+            let candidates = vec![scaled.1];
+            Some((scaled, candidates))
+        }
+        (Some(new), scaled) => {
+            let mut best = score.tried(new)?;
+            let mut candidates = vec![best.1];
+            if let Some(scaled) = scaled {
+                weigh(&mut best, scaled, WORTHWHILE, &mut candidates);
+            }
+            Some((best, candidates))
+        }
+        (None, _) => None,
+    };
+    Ok(known)
+}
+
+/// Whether a bake with so many texels along a side has too few to show as much as scaled maps with four times as many: a new layout
+/// with no fewer texels shows far less.
+fn has_too_few_texels(size: usize, scaled: &Candidate, candidates: &[Candidate]) -> bool {
+    let is_far_below = |own: &Candidate| {
+        own.way == Way::New && own.texture_size >= size && own.psnr + FAR_BELOW < scaled.psnr
+    };
+    4 * size <= scaled.texture_size && candidates.iter().any(is_far_below)
 }
 
 /// Texels along a side of a bake of the delivered layout of which two maps, the fewest that it has, would have at most half of the
@@ -232,6 +274,20 @@ mod tests {
         };
         let materials = vec![material.clone(), material];
         Model { name: "fields".into(), mesh, materials, images, ..Model::default() }
+    }
+
+    /// Protects time, and bakes that may win: only one of far fewer texels than scaled maps is left out, if a new layout with as many is
+    /// far below.
+    #[test]
+    fn bakes_of_too_few_texels_are_left_out() {
+        let of =
+            |way, texture_size, psnr| Candidate { way, triangles: 9, texture_size, psnr, close_up: None };
+        let scaled = of(Way::Scaled, 512, 40.0);
+        let is_left_out = |size, new| has_too_few_texels(size, &scaled, &[new, scaled]);
+        assert!(is_left_out(128, of(Way::New, 128, 36.0)));
+        assert!(!is_left_out(128, of(Way::New, 128, 38.0)), "a bake of its layout may be above");
+        assert!(!is_left_out(256, of(Way::New, 256, 36.0)), "it may have more texels");
+        assert!(!is_left_out(128, of(Way::New, 64, 36.0)), "a new layout with fewer texels says little");
     }
 
     /// Protects small print: a level has twice the texels along a side where these show, and once more twice as many.
