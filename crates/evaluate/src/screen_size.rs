@@ -4,7 +4,7 @@
 //! Both are rendered from some directions as viewers show them: whole materials under the built-in light, 2 × 2 samples
 //! a pixel, each shaded, on the grey 128 of 255, or on what is asked for. The figure is the PSNR over whole pictures in which the model's longest
 //! side spans five sevenths of the width, the mean over the directions. Sizes are tried in steps of a fifth from the one
-//! that the level was made for; the largest that passes counts.
+//! that the level was made for; the largest that passes before one does not counts.
 //!
 //! Contract: deterministic, and the same for the same models, whatever the bake was.
 
@@ -138,11 +138,14 @@ impl ScreenComparison {
         self.compared(pictures, model).psnr
     }
 
-    /// The same from every other direction: in half the time as much as tells maps of one surface apart.
-    pub fn psnr_of_half(&self, pictures: &Pictures, model: &PlacedModel) -> f64 {
-        let own =
-            |(direction, others): (Vec3, &Vec<Rgb>)| mean_psnr(others, &pictures.taken(model, direction));
-        let figures: Vec<f64> = pictures.seen_from().step_by(2).map(own).collect();
+    /// The same from some of the directions, which together see every side: enough to compare maps of one surface.
+    pub fn psnr_of_some(&self, pictures: &Pictures, model: &PlacedModel) -> f64 {
+        let count = pictures.views.len();
+        let some: Vec<_> = pictures.seen_from().enumerate().filter(|(k, _)| is_of_some(*k, count)).collect();
+        let own = |(_, (direction, others)): &(usize, (Vec3, &Vec<Rgb>))| {
+            mean_psnr(others, &pictures.taken(model, *direction))
+        };
+        let figures: Vec<f64> = some.par_iter().map(own).collect();
         figures.iter().sum::<f64>() / figures.len() as f64
     }
 
@@ -171,8 +174,9 @@ impl ScreenComparison {
         Ok(AtSize { pixels, psnr: mean.psnr, ms_ssim: mean.ms_ssim, flip: mean.flip })
     }
 
-    /// The largest size of [`STEP`]s from `start` at which `level` agrees with all of `others` by `same` decibels; none where it does
-    /// not even at the least size. Differences show less the smaller they are, so of the larger sizes the largest is tried first.
+    /// The largest size of [`STEP`]s from `start` on at which `level` agrees with all of `others` by `same` decibels, before one at
+    /// which it does not; none where it does not even at the least size. Large levels that agree at the largest size are taken to
+    /// agree at those before: differences show less the smaller they are.
     ///
     /// # Errors
     /// Where the original has no extent.
@@ -189,24 +193,34 @@ impl ScreenComparison {
         };
         let start = start.clamp(SIZES[0], SIZES[1]);
         let sizes = |step: f64, most: usize| {
-            let sizes = (0..=most as i32).map(move |k| start * step.powi(k));
-            sizes.take_while(|pixels| (SIZES[0]..=SIZES[1]).contains(pixels)).skip(1)
+            let next =
+                move |pixels: &f64| Some(pixels * step).filter(|next| (SIZES[0]..=SIZES[1]).contains(next));
+            std::iter::successors(Some(start), next).skip(1).take(most)
         };
-        if passes(start)? {
-            let larger: Vec<f64> = sizes(STEP, MOST_STEPS[0]).collect();
-            for &pixels in larger.iter().rev() {
+        if !passes(start)? {
+            for pixels in sizes(1.0 / STEP, MOST_STEPS[1]) {
                 if passes(pixels)? {
                     return Ok(Some(pixels));
                 }
             }
-            return Ok(Some(start));
+            return Ok(None);
         }
-        for pixels in sizes(1.0 / STEP, MOST_STEPS[1]) {
-            if passes(pixels)? {
-                return Ok(Some(pixels));
+        let mut larger: Vec<f64> = sizes(STEP, MOST_STEPS[0]).collect();
+        // Small sizes take little time, and pictures from other directions begin among them.
+        if start >= FEW_PIXELS
+            && let Some(largest) = larger.pop()
+            && passes(largest)?
+        {
+            return Ok(Some(largest));
+        }
+        let mut most = start;
+        for pixels in larger {
+            if !passes(pixels)? {
+                break;
             }
+            most = pixels;
         }
-        Ok(None)
+        Ok(Some(most))
     }
 }
 
@@ -243,6 +257,11 @@ fn directions(pixels: f64) -> Vec<Vec3> {
     fibonacci_sphere(if pixels < FEW_PIXELS { VIEWS_OF_FEW_PIXELS } else { VIEWS }, 0.0)
 }
 
+/// Whether a direction is one of some: every other one, and of six one more, without which a side would not be seen.
+fn is_of_some(direction: usize, count: usize) -> bool {
+    direction.is_multiple_of(2) || direction == count / 2
+}
+
 /// The squared differences at each pixel, the mean over channels and over pairs of pictures.
 fn squared_differences(some: &[Rgb], others: &[Rgb]) -> Vec<f32> {
     let mut sums = vec![0.0; some.first().map_or(0, |picture| picture.pixels.len())];
@@ -262,4 +281,23 @@ fn mean_psnr(some: &[Rgb], others: &[Rgb]) -> f64 {
         parbake_metric::psnr_from_mse(parbake_metric::mean_squared_error(a, b).unwrap_or(f64::NAN))
     };
     some.iter().zip(others).map(psnr).sum::<f64>() / others.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects maps that show on one side alone, such as a label in front: each side is seen from one of the directions by which maps
+    /// are compared, from where cameras stand.
+    #[test]
+    fn some_directions_see_every_side() {
+        for pixels in [100.0, 300.0] {
+            let all = directions(pixels);
+            let some = || (0..all.len()).filter(|&k| is_of_some(k, all.len())).map(|k| all[k]);
+            for side in [Vec3::X, Vec3::Y, Vec3::Z].into_iter().flat_map(|axis| [axis, -axis]) {
+                assert!(some().any(|direction| direction.dot(side) > 1.0 / 3.5), "{side} of {pixels}");
+            }
+            assert!(some().count() < all.len());
+        }
+    }
 }

@@ -210,7 +210,9 @@ pub fn best_collapsed<J: Judge>(
         }
         let copies: Vec<_> = ways.par_iter().map(|&way| collapsed(&fine, triangles, way, &[])).collect();
         for (&way, copy) in ways.iter().zip(copies) {
-            search.weigh(way, copy)?;
+            if !is_over() {
+                search.weigh(way, copy)?;
+            }
         }
     }
     for seams in [Seams::Kept, Seams::OfTextures, Seams::Crossed].into_iter().filter(|_| has_choice) {

@@ -18,6 +18,8 @@ use rayon::prelude::*;
 const UNSEEN: f64 = 0.05;
 /// Texels of all maps below which there is nothing to be gained by fewer.
 const FREE: usize = 256 * 256;
+/// How many maps are reduced at once: each time all of them are in memory once more.
+const AT_ONCE: usize = 2;
 /// A map that alone costs so many times the error that may not be seen is not reduced further.
 const HOPELESS: f64 = 10.0;
 
@@ -65,7 +67,11 @@ pub fn with_fewer_texels<E: Send>(
         }
         Ok(own)
     };
-    let costs: Vec<Vec<f64>> = (0..places).into_par_iter().map(costs_of).collect::<Result<_, _>>()?;
+    let mut costs: Vec<Vec<f64>> = Vec::new();
+    for some in (0..places).collect::<Vec<_>>().chunks(AT_ONCE) {
+        let of_some = some.par_iter().map(|&place| costs_of(place)).collect::<Result<Vec<_>, _>>()?;
+        costs.extend(of_some);
+    }
     let texels_of = |place: usize, reduction: usize| match maps[place].reductions[reduction] {
         Reduction::Factor => 0,
         Reduction::Halved([u, v]) => {

@@ -17,7 +17,7 @@ pub(crate) struct Copies<'p, Finish> {
     pictures: &'p [Pictures],
     /// Makes a model of a copy; all have the same materials and images.
     finish: Finish,
-    /// The first copy, whose textures are those of all.
+    /// The first copy, as long as others are judged: its textures are those of all.
     first: Option<PlacedModel>,
     /// For each set of pictures, once they are asked for.
     differences: Vec<Differences<'p>>,
@@ -42,15 +42,16 @@ impl<Finish: FnMut(Mesh) -> Model> Judge for Copies<'_, Finish> {
 
     fn judged(&mut self, copy: Mesh) -> Result<(Copy, f64), EvaluateError> {
         let model = (self.finish)(copy);
-        let shown = with_face_tangents(&model);
-        let placed = match &self.first {
-            Some(first) => self.screens.place_like(&shown, first)?,
-            None => self.screens.place(&shown)?,
+        let placed = {
+            let shown = with_face_tangents(&model);
+            match &self.first {
+                Some(first) => self.screens.place_like(&shown, first)?,
+                None => self.screens.place(&shown)?,
+            }
         };
         let compare = |pictures: &Pictures| self.screens.compared(pictures, &placed);
         let compared: Vec<Compared> = self.pictures.iter().map(compare).collect();
         let psnr = compared.iter().map(|own| own.psnr).sum::<f64>() / compared.len() as f64;
-        drop(shown);
         self.first.get_or_insert(placed);
         Ok((Copy { mesh: model.mesh, compared }, psnr))
     }

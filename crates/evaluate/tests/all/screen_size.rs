@@ -30,11 +30,28 @@ fn fine_differences_vanish_with_size() {
     let size = |same: f64| screens.largest_same(&mean, &[&fine], 300.0, same).unwrap();
     let between = size(0.5 * (small + large)).unwrap();
     assert!((100.0..400.0).contains(&between), "{between}");
-    assert!(size(large - 10.0).unwrap() > 400.0);
+    // Three steps of a fifth.
+    assert!((size(large - 10.0).unwrap() - 518.4).abs() < 0.1);
     let mut white = patterned(false);
     white.materials.iter_mut().for_each(|material| material.base_color = [1.0; 4]);
     let white = screens.place(&white).unwrap();
     assert_eq!(screens.largest_same(&white, &[&fine], 100.0, 40.0).unwrap(), None);
+}
+
+/// Protects copies that share textures with one that is placed already: they are shown as if they were placed by themselves.
+#[test]
+fn models_of_the_same_materials_share_textures() {
+    let (mut model, mut other) = (patterned(true), patterned(true));
+    let colors = |model: &Model| model.mesh.positions.iter().map(|p| (0.5 + 0.3 * *p).extend(1.0)).collect();
+    model.mesh.colors = colors(&model);
+    other.mesh.positions.iter_mut().for_each(|position| position.y *= 0.7);
+    other.mesh.colors = colors(&other);
+    let screens = ScreenComparison::new(&model);
+    let placed = screens.place(&model).unwrap();
+    let pictures = screens.pictures(&screens.place(&other).unwrap(), 64.0).unwrap();
+    let shared = screens.place_like(&other, &placed).unwrap();
+    assert!(screens.compared(&pictures, &shared).errors.iter().flatten().all(|error| *error == 0.0));
+    assert!(screens.psnr(&pictures, &placed) < 40.0);
 }
 
 /// Protects outlines: what has the colour of one background shows before others.

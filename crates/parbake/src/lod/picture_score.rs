@@ -37,10 +37,10 @@ impl<'m> PictureScore<'m> {
         Ok(Self { maker, pictures, close_up })
     }
 
-    /// PSNR in dB of half of the pictures, the mean over the sizes: to tell maps of one surface apart.
-    pub(crate) fn psnr_of_half(&self, model: &Model) -> Result<f64, BakeError> {
+    /// PSNR in dB from some of the directions, the mean over the sizes: enough to compare maps of one surface.
+    pub(crate) fn psnr_of_some(&self, model: &Model) -> Result<f64, BakeError> {
         let placed = self.maker.screens.place(&with_face_tangents(model))?;
-        let psnr = |pictures| self.maker.screens.psnr_of_half(pictures, &placed);
+        let psnr = |pictures| self.maker.screens.psnr_of_some(pictures, &placed);
         Ok(self.pictures.iter().map(psnr).sum::<f64>() / self.pictures.len() as f64)
     }
 
@@ -49,7 +49,7 @@ impl<'m> PictureScore<'m> {
         self.pictures.iter().map(psnr).sum::<f64>() / self.pictures.len() as f64
     }
 
-    /// The same, and close up.
+    /// PSNR in dB of all pictures, the mean over the sizes, and close up.
     pub(crate) fn shown(&self, model: &Model) -> Result<Shown, BakeError> {
         let placed = self.maker.screens.place(&with_face_tangents(model))?;
         let close_up = self.close_up.as_ref().map(|pictures| self.maker.screens.psnr(pictures, &placed));

@@ -76,7 +76,7 @@ pub(crate) fn scaled(
     let Some(model) = with_common_maps(&coarser.model, side, maker.options.max_texture_size, most) else {
         return Ok(None);
     };
-    with_fewer_texels(&model, most, is_over, |reduced| score.psnr_of_half(reduced))
+    with_fewer_texels(&model, most, is_over, |reduced| score.psnr_of_some(reduced))
 }
 
 /// Texels of all images that triangles show.

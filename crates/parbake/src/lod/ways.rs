@@ -30,9 +30,10 @@ use std::time::Instant;
 const EXCELLENT: f64 = 50.0;
 /// Decibels by which another way has to be better than a new layout, and a bake than scaled maps.
 pub(crate) const WORTHWHILE: f64 = 0.3;
-/// Pixels and decibels from which on a new layout is not tried beside scaled maps: of twelve models' levels for 300 pixels all were at
-/// least 1.2 dB below by it.
+/// Pixels from which on a level is large. At 300 pixels a new layout was 1.2 dB or more below scaled maps on all of twelve models, and at
+/// 100 above on some.
 const LARGE: f64 = 150.0;
+/// Decibels of scaled maps from which on no new layout of a large level is tried.
 const CLOSE: f64 = 42.0;
 /// Decibels by which a new layout is far below scaled maps.
 const FAR_BELOW: f64 = 3.0;
@@ -45,9 +46,9 @@ const MOST_REFINEMENTS: usize = 2;
 /// Share of a level's time budget for collapses and scaled maps; what was measured until then counts.
 const TRYING: f64 = 0.2;
 
-/// The level as that way makes it which shows most of the model. Ways are left out where they cannot win: a new layout
+/// The level as that way makes it which shows most of the model. Ways are left out that hardly ever win: a new layout
 /// where scaled maps are excellent, or close in a large level; the delivered layout where its own vertices show less, even with maps of
-/// nearly all texels, or where it would have too few. `before` is the low-poly of the level before. None where the watcher said stop
+/// nearly all texels, or where it would have too few texels. `before` is the low-poly of the level before. None where the watcher said stop
 /// before there was a level.
 pub(crate) fn draft(
     maker: &Maker,
@@ -95,8 +96,25 @@ pub(crate) fn draft(
         Some(scaled) if is_enough(chain, &scaled) => return finished(chain, scaled.0, vec![scaled.1]),
         other => other,
     };
-    let first = first_ways(maker, chain, &score, (level, triangles), before, scaled, until)?;
-    let Some((mut best, mut candidates)) = first else { return Ok(None) };
+    let new = new_layout(maker, chain, level, before, triangles, scaled.as_ref(), until)?;
+    let (mut best, mut candidates) = match (new, scaled) {
+        // A bake that was cut short shows less than a level that is finished.
+        (_, Some(scaled)) if chain.stopped() => return finished(chain, scaled.0, vec![scaled.1]),
+        (Some(new), _) if chain.stopped() => return finished(chain, new, Vec::new()),
+        (Some(new), scaled) => {
+            let mut best = score.tried(new)?;
+            let mut candidates = vec![best.1];
+            if let Some(scaled) = scaled {
+                weigh(&mut best, scaled, WORTHWHILE, &mut candidates);
+            }
+            (best, candidates)
+        }
+        (None, Some(scaled)) => {
+            let candidates = vec![scaled.1];
+            (scaled, candidates)
+        }
+        (None, None) => return Ok(None),
+    };
     // A budget is for one bake.
     let may_bake =
         |chain: &Chain, best: &Tried| until.is_none() && best.1.psnr < EXCELLENT && !chain.stopped();
@@ -104,7 +122,9 @@ pub(crate) fn draft(
     let is_beside_scaled = best.1.way == Way::Scaled;
     let size = is_beside_scaled.then(|| within_half(maker, side));
     if let Some(own) = own.as_ref().filter(is_promising)
-        && !size.is_some_and(|size| has_too_few_texels(size, &best.1, &candidates))
+        && !size.is_some_and(|size| {
+            has_too_few_texels(size, best.1.psnr, texels_of(&best.0.baked.model), &candidates)
+        })
         && may_bake(chain, &best)
     {
         let baked = baked_draft(maker, chain, level, own, size)?;
@@ -132,49 +152,31 @@ pub(crate) fn draft(
     finished(chain, best.0, candidates)
 }
 
-/// Scaled maps and a new layout: the better one, and what is known of both. No new layout where scaled maps of a large level are close.
-/// None where the watcher said stop before there was one.
-fn first_ways(
+/// A new layout, where one may win: not beside scaled maps of a large level that are close. None also where the watcher said stop before
+/// its triangles were chosen.
+fn new_layout(
     maker: &Maker,
     chain: &mut Chain,
-    score: &PictureScore,
-    (level, triangles): (usize, usize),
+    level: usize,
     before: Option<&Model>,
-    scaled: Option<Tried>,
+    triangles: usize,
+    scaled: Option<&Tried>,
     until: Option<Instant>,
-) -> Result<Option<(Tried, Vec<Candidate>)>, BakeError> {
+) -> Result<Option<Draft>, BakeError> {
     let is_large = maker.options.screen_size[level] >= LARGE;
-    let is_close = |scaled: &&Tried| is_large && scaled.1.psnr >= CLOSE;
-    let new = match scaled.as_ref().filter(is_close) {
-        Some(_) => None,
-        None => maker.draft(chain, (level, 0), before, (triangles, None), until)?,
-    };
-    let known = match (new, scaled) {
-        // A bake that was cut short shows less than a level that is finished.
-        (new, Some(scaled)) if new.is_none() || chain.stopped() => {
-            let candidates = vec![scaled.1];
-            Some((scaled, candidates))
-        }
-        (Some(new), scaled) => {
-            let mut best = score.tried(new)?;
-            let mut candidates = vec![best.1];
-            if let Some(scaled) = scaled {
-                weigh(&mut best, scaled, WORTHWHILE, &mut candidates);
-            }
-            Some((best, candidates))
-        }
-        (None, _) => None,
-    };
-    Ok(known)
+    if scaled.is_some_and(|(_, scaled)| is_large && scaled.psnr >= CLOSE) {
+        return Ok(None);
+    }
+    maker.draft(chain, (level, 0), before, (triangles, None), until)
 }
 
-/// Whether a bake with so many texels along a side has too few to show as much as scaled maps with four times as many: a new layout
-/// with no fewer texels shows far less.
-fn has_too_few_texels(size: usize, scaled: &Candidate, candidates: &[Candidate]) -> bool {
-    let is_far_below = |own: &Candidate| {
-        own.way == Way::New && own.texture_size >= size && own.psnr + FAR_BELOW < scaled.psnr
-    };
-    4 * size <= scaled.texture_size && candidates.iter().any(is_far_below)
+/// Whether a bake with so many texels along a side has too few to show as much as scaled maps with sixteen times as many: a new layout
+/// with no fewer shows far less.
+fn has_too_few_texels(size: usize, psnr: f64, scaled_texels: usize, candidates: &[Candidate]) -> bool {
+    let is_far_below =
+        |own: &Candidate| own.way == Way::New && own.texture_size >= size && own.psnr + FAR_BELOW < psnr;
+    // Two maps are the fewest that a bake has.
+    16 * 2 * size * size <= scaled_texels && candidates.iter().any(is_far_below)
 }
 
 /// Texels along a side of a bake of the delivered layout of which two maps, the fewest that it has, would have at most half of the
@@ -280,14 +282,14 @@ mod tests {
     /// far below.
     #[test]
     fn bakes_of_too_few_texels_are_left_out() {
-        let of =
-            |way, texture_size, psnr| Candidate { way, triangles: 9, texture_size, psnr, close_up: None };
-        let scaled = of(Way::Scaled, 512, 40.0);
-        let is_left_out = |size, new| has_too_few_texels(size, &scaled, &[new, scaled]);
-        assert!(is_left_out(128, of(Way::New, 128, 36.0)));
-        assert!(!is_left_out(128, of(Way::New, 128, 38.0)), "a bake of its layout may be above");
-        assert!(!is_left_out(256, of(Way::New, 256, 36.0)), "it may have more texels");
-        assert!(!is_left_out(128, of(Way::New, 64, 36.0)), "a new layout with fewer texels says little");
+        let new = |texture_size, psnr| {
+            [Candidate { way: Way::New, triangles: 9, texture_size, psnr, close_up: None }]
+        };
+        let is_left_out = |size, new: [Candidate; 1]| has_too_few_texels(size, 40.0, 3 * 512 * 512, &new);
+        assert!(is_left_out(128, new(128, 36.0)));
+        assert!(!is_left_out(128, new(128, 38.0)), "a bake of its layout may be above");
+        assert!(!is_left_out(256, new(256, 36.0)), "it may have more texels");
+        assert!(!is_left_out(128, new(64, 36.0)), "a new layout with fewer texels says little");
     }
 
     /// Protects small print: a level has twice the texels along a side where these show, and once more twice as many.
