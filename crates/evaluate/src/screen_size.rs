@@ -174,7 +174,7 @@ impl ScreenComparison {
         Ok(AtSize { pixels, psnr: mean.psnr, ms_ssim: mean.ms_ssim, flip: mean.flip })
     }
 
-    /// The largest size of [`STEP`]s from `start` on at which `level` agrees with all of `others` by `same` decibels, before one at
+    /// The largest size, in steps of a fifth from `start` on, at which `level` agrees with all of `others` by `same` decibels, before one at
     /// which it does not; none where it does not even at the least size. Large levels that agree at the largest size are taken to
     /// agree at those before: differences show less the smaller they are.
     ///
