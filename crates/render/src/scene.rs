@@ -76,7 +76,7 @@ pub struct Scene {
     pub(crate) pyramids: Arc<Vec<Pyramid<3>>>,
     /// 0 where a face is degenerate.
     pub(crate) face_normals: Vec<Vec3>,
-    /// Vertex colours, which are linear, are encoded where textures are read as they are stored.
+    /// How textures and vertex colours are read.
     interpretation: Interpretation,
     /// Where there are many triangles.
     pub(crate) clusters: Option<AlphaClusters>,
