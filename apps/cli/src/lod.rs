@@ -79,7 +79,7 @@ pub fn run(command: &LodCommand, given: &ArgMatches) -> Result<Ending, Failure> 
         let turned: Vec<_> = levels.iter().map(|level| with_normal_y(level, options.normal_y)).collect();
         let all: Vec<&Model> = turned.iter().map(AsRef::as_ref).collect();
         write_lod_glb(&command.output.join(&all_file), &all, &coverages(&reports), &write)?;
-        let document = LodDocument::new(&model, options, all_file.clone(), written);
+        let document = LodDocument::new(&model, options, all_file.clone(), console.seconds(), written);
         let json =
             serde_json::to_string_pretty(&document).map_err(|e| Failure::Output(format!("no JSON: {e}")))?;
         write_file(&command.output.join(DOCUMENT), json.as_bytes())?;

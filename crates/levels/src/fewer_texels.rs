@@ -1,8 +1,8 @@
 //! A model's own maps with fewer texels: how much each may lose is found by pictures.
 //!
-//! Each map is reduced by itself, step by step; of all together the errors add up, nearly enough. Of all choices within a
-//! number of texels, the one with the fewest is taken at which pictures look the same; where none does, the one whose
-//! pictures are closest.
+//! Each map is reduced by itself, step by step, until that shows; of all together the errors add up, nearly enough. Of all choices
+//! within a number of texels, the one with the fewest is taken at which pictures look the same. Where there is none, maps are reduced
+//! further, and the choice is taken whose pictures are closest.
 //!
 //! Contract: the surface stays as it is. What was measured until `is_over` says yes counts.
 
@@ -20,7 +20,8 @@ const UNSEEN: f64 = 0.05;
 const FREE: usize = 256 * 256;
 /// How many maps are reduced at once: each time all of them are in memory once more.
 const AT_ONCE: usize = 2;
-/// A map that alone costs so many times the error that may not be seen is not reduced further.
+/// A map that alone costs so many times the error that all may have is not reduced further, nor is one a factor that costs so many times
+/// what may be seen when it is halved.
 const HOPELESS: f64 = 10.0;
 
 /// The model with reduced maps: with the fewest texels at which pictures look the same, at most `most`. `psnr` is the PSNR in dB
@@ -45,7 +46,10 @@ pub fn with_fewer_texels<E: Send>(
         false => halvings_of_extensions(&maps, choice),
     };
     let places = maps.len() + usize::from(are_shown);
-    let reductions_of = |place: usize| maps.get(place).map_or(HALVINGS + 1, |map| map.reductions.len());
+    let reductions_of = |place: usize| match maps.get(place) {
+        Some(map) => map.reductions.clone(),
+        None => (0..=HALVINGS).map(|times| Reduction::Halved([times; 2])).collect(),
+    };
     let reduced = |choice: &[usize]| -> Model {
         let reductions: Vec<Reduction> = maps.iter().zip(choice).map(|(map, &k)| map.reductions[k]).collect();
         let reduced = with_reductions(model, &maps, &reductions);
@@ -54,24 +58,20 @@ pub fn with_fewer_texels<E: Send>(
     let unreduced = psnr(model)?;
     let whole = error_of(unreduced);
     let allowed = error_of((unreduced - UNSEEN).min(INVISIBLE));
-    // What each map costs by itself; of all together about the sum.
-    let costs_of = |place: usize| -> Result<Vec<f64>, E> {
-        let mut own = vec![0.0];
-        for reduction in 1..reductions_of(place) {
-            if is_over() || own.iter().any(|cost| *cost > HOPELESS * allowed) {
-                break;
-            }
-            let mut choice = vec![0; places];
-            choice[place] = reduction;
-            own.push((error_of(psnr(&reduced(&choice))?) - whole).max(0.0));
-        }
-        Ok(own)
+    let cost = |place: usize, reduction: usize| -> Result<f64, E> {
+        let mut choice = vec![0; places];
+        choice[place] = reduction;
+        Ok((error_of(psnr(&reduced(&choice))?) - whole).max(0.0))
     };
-    let mut costs: Vec<Vec<f64>> = Vec::new();
-    for some in (0..places).collect::<Vec<_>>().chunks(AT_ONCE) {
-        let of_some = some.par_iter().map(|&place| costs_of(place)).collect::<Result<Vec<_>, _>>()?;
-        costs.extend(of_some);
-    }
+    let mut costs: Vec<Costs> = (0..places).map(|place| Costs::new(reductions_of(place))).collect();
+    let measure = |costs: &mut [Costs], most: f64| -> Result<(), E> {
+        for (some, first) in costs.chunks_mut(AT_ONCE).zip((0..).step_by(AT_ONCE)) {
+            some.par_iter_mut().enumerate().try_for_each(|(k, own)| {
+                own.measure(most, is_over, |reduction| cost(first + k, reduction))
+            })?;
+        }
+        Ok(())
+    };
     let texels_of = |place: usize, reduction: usize| match maps[place].reductions[reduction] {
         Reduction::Factor => 0,
         Reduction::Halved([u, v]) => {
@@ -84,21 +84,88 @@ pub fn with_fewer_texels<E: Send>(
         let texels = |image: &Image| (image.width >> u).max(1) * (image.height >> v).max(1);
         others.iter().map(|(image, _)| texels(&model.images[*image])).sum()
     };
-    let mut best: Option<((bool, f64, f64), Vec<usize>)> = None;
-    for choice in choices(&costs.iter().map(Vec::len).collect::<Vec<_>>()) {
-        let texels =
-            choice.iter().take(maps.len()).enumerate().map(|(place, &k)| texels_of(place, k)).sum::<usize>()
-                + texels_of_others(&choice);
-        let error = whole + choice.iter().enumerate().map(|(place, &k)| costs[place][k]).sum::<f64>();
-        let is_seen = error > allowed;
-        // Where something is lost anyway, the least; else the fewest texels.
-        let rank =
-            if is_seen { (true, error, texels as f64) } else { (false, texels.max(FREE) as f64, error) };
-        if texels <= most && best.as_ref().is_none_or(|(least, _)| rank < *least) {
-            best = Some((rank, choice));
+    let best = |costs: &[Costs]| {
+        let mut best: Option<(Rank, Vec<usize>)> = None;
+        for choice in choices(&costs.iter().map(Costs::known).collect::<Vec<_>>()) {
+            let of_maps = choice.iter().take(maps.len()).enumerate();
+            let texels =
+                of_maps.map(|(place, &k)| texels_of(place, k)).sum::<usize>() + texels_of_others(&choice);
+            let of_choice = choice.iter().zip(costs).map(|(&k, own)| own.costs[k].unwrap_or(f64::INFINITY));
+            let error = whole + of_choice.sum::<f64>();
+            let is_seen = error > allowed;
+            // Where something is lost anyway, the least; else the fewest texels.
+            let rank =
+                if is_seen { (true, error, texels as f64) } else { (false, texels.max(FREE) as f64, error) };
+            if texels <= most && best.as_ref().is_none_or(|(least, _)| rank < *least) {
+                best = Some((rank, choice));
+            }
         }
+        best
+    };
+    // What is seen by itself is not needed where enough else is unseen.
+    measure(&mut costs, allowed - whole)?;
+    let mut found = best(&costs);
+    if found.as_ref().is_none_or(|(rank, _)| rank.0) {
+        measure(&mut costs, HOPELESS * allowed)?;
+        found = best(&costs);
     }
-    Ok(best.map(|(_, choice)| reduced(&choice)))
+    Ok(found.map(|(_, choice)| reduced(&choice)))
+}
+
+/// Of a choice: whether something is seen, and what is to be small, first and then.
+type Rank = (bool, f64, f64);
+
+/// What reductions of one map cost by themselves, as mean squared errors; of all maps together about the sum.
+struct Costs {
+    reductions: Vec<Reduction>,
+    /// None where that is not known.
+    costs: Vec<Option<f64>>,
+}
+
+impl Costs {
+    fn new(reductions: Vec<Reduction>) -> Self {
+        let costs = (0..reductions.len()).map(|k| (k == 0).then_some(0.0)).collect();
+        Self { reductions, costs }
+    }
+
+    /// Adds what is not known, but for reductions that leave less than one which costs more than `most`: they are taken to cost more, too.
+    /// A factor is the mean of what the surface shows, and halved maps bleed from chart to chart, so a factor may cost less than one that
+    /// costs a little more.
+    fn measure<E>(
+        &mut self,
+        most: f64,
+        is_over: &(dyn Fn() -> bool + Sync),
+        cost: impl Fn(usize) -> Result<f64, E>,
+    ) -> Result<(), E> {
+        for k in 1..self.reductions.len() {
+            let limit = if self.reductions[k] == Reduction::Factor { HOPELESS * most } else { most };
+            let is_worse = |other: usize| {
+                self.costs[other].is_some_and(|cost| cost > limit)
+                    && leaves_less(self.reductions[k], self.reductions[other])
+            };
+            if is_over() {
+                break;
+            }
+            if self.costs[k].is_none() && !(0..k).any(is_worse) {
+                self.costs[k] = Some(cost(k)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// Reductions whose costs are known.
+    fn known(&self) -> Vec<usize> {
+        (0..self.costs.len()).filter(|&k| self.costs[k].is_some()).collect()
+    }
+}
+
+/// Whether a reduction leaves no more texels along either side than another one.
+fn leaves_less(reduction: Reduction, than: Reduction) -> bool {
+    match (reduction, than) {
+        (Reduction::Factor, _) => true,
+        (Reduction::Halved(_), Reduction::Factor) => false,
+        (Reduction::Halved([u, v]), Reduction::Halved([other_u, other_v])) => u >= other_u && v >= other_v,
+    }
 }
 
 /// Whether pictures that are compared show what every texture of an extension says (`render/material_layers.rs`).
@@ -118,11 +185,11 @@ fn halvings_of_extensions(maps: &[LevelMap], choice: &[usize]) -> [usize; 2] {
     halved.min_by_key(|[u, v]| u + v).unwrap_or([2; 2])
 }
 
-/// All choices of one of so many for each place.
-fn choices(counts: &[usize]) -> Vec<Vec<usize>> {
-    counts.iter().fold(vec![Vec::new()], |all, &count| {
+/// All choices of one of these for each place.
+fn choices(places: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    places.iter().fold(vec![Vec::new()], |all, some| {
         let longer = |choice: &Vec<usize>| -> Vec<Vec<usize>> {
-            (0..count).map(|k| choice.iter().copied().chain([k]).collect()).collect()
+            some.iter().map(|&k| choice.iter().copied().chain([k]).collect()).collect()
         };
         all.iter().flat_map(longer).collect()
     })
@@ -165,6 +232,23 @@ mod tests {
     /// Protects from choices that are forgotten.
     #[test]
     fn all_choices_are_weighed() {
-        assert_eq!(choices(&[2, 1, 2]), [[0, 0, 0], [0, 0, 1], [1, 0, 0], [1, 0, 1]]);
+        let places = [vec![0, 3], vec![0], vec![0, 1]];
+        assert_eq!(choices(&places), [[0, 0, 0], [0, 0, 1], [3, 0, 0], [3, 0, 1]]);
+    }
+
+    /// Protects time, and maps that are narrower than high: what leaves less than something that shows is not looked at, and all
+    /// else is.
+    #[test]
+    fn what_is_worse_than_something_seen_is_not_measured() {
+        let reductions = [[0, 0], [1, 0], [0, 1], [1, 1], [1, 2]].map(Reduction::Halved).to_vec();
+        let mut costs = Costs::new([reductions, vec![Reduction::Factor]].concat());
+        // Halving along u shows, along v it does not.
+        let cost = |k: usize| -> Result<f64, Infallible> { Ok([0.0, 2.0, 0.1, 3.0, 4.0, 9.0][k]) };
+        costs.measure(0.15, &|| false, cost).unwrap();
+        assert_eq!(costs.costs, [Some(0.0), Some(2.0), Some(0.1), None, None, None]);
+        assert_eq!(costs.known(), [0, 1, 2]);
+        costs.measure(3.5, &|| false, cost).unwrap();
+        // A factor does not bleed.
+        assert_eq!(costs.costs, [0.0, 2.0, 0.1, 3.0, 4.0, 9.0].map(Some));
     }
 }

@@ -76,7 +76,7 @@ pub fn bake(
 ) -> Result<Baked, BakeError> {
     options.check()?;
     let begin = Instant::now();
-    run(&prepare(high, options)?, &rigged(high, low), Work::Bake, options, watcher, begin)
+    run(&prepare(high, options)?, &rigged(high, low), Work::Bake, true, options, watcher, begin)
 }
 
 /// Prepares a high-poly for any number of bakes with [`bake_prepared`]: its frame, its scene, its
@@ -102,7 +102,7 @@ pub fn bake_prepared(
     bake_as(Work::Bake, high, low, options, watcher)
 }
 
-/// The same as a work of this kind.
+/// The same as a work of this kind. A level is compared by who asks for it: [`Baked::ray_cast`] is then only what the bake began with.
 pub(crate) fn bake_as(
     work: Work,
     high: &HighPoly,
@@ -114,7 +114,7 @@ pub(crate) fn bake_as(
     if high.conventions != conventions(options) {
         return Err(BakeError::OtherConventions { model: high.name.clone() });
     }
-    run(high, low, work, options, watcher, Instant::now())
+    run(high, low, work, work != Work::Level, options, watcher, Instant::now())
 }
 
 /// Bakes a model onto itself, triangle by triangle; `low` is the same with other texture coordinates, or the same.
@@ -137,7 +137,7 @@ pub(crate) fn bake_prepared_onto_itself(
     watcher: &dyn Watcher,
     begin: Instant,
 ) -> Result<Baked, BakeError> {
-    run(prepared, low, Work::Compress, options, watcher, begin)
+    run(prepared, low, Work::Compress, true, options, watcher, begin)
 }
 
 pub(crate) fn conventions(options: &BakeOptions) -> Conventions {
@@ -175,11 +175,12 @@ pub(crate) fn told_before(
     Ok(baked)
 }
 
-/// A bake from its first stage to its report; it began at `begin`.
+/// A bake from its first stage to its report; it began at `begin`. Without `has_baseline` nothing is cast for [`Baked::ray_cast`].
 pub(crate) fn run(
     high: &HighPoly,
     low: &Model,
     work: Work,
+    has_baseline: bool,
     options: &BakeOptions,
     watcher: &dyn Watcher,
     begin: Instant,
@@ -262,7 +263,9 @@ pub(crate) fn run(
     warnings.tell(unfit.map(|text| format!("{}: {text}", high.name)));
 
     let missed_texels = projected.missed;
-    let ray_cast = match other_baseline(delivered, repaired, &prepared, work, high, options) {
+    let baseline =
+        has_baseline.then(|| other_baseline(delivered, repaired, &prepared, work, high, options)).flatten();
+    let ray_cast = match baseline {
         // What was projected to begin with makes room for what is projected now.
         Some(baseline) => {
             drop(projected);

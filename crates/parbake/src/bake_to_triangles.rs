@@ -36,6 +36,6 @@ pub fn bake_to_triangles(
     let told = left_out(options, Work::Bake, is_whole).into_iter().chain(idle).collect();
     told_before(told, watcher, || {
         let (low, _) = low_poly(&prepared, high, &start, None, triangles, options, watcher)?;
-        run(&prepared, &low, Work::Level, options, watcher, begin)
+        run(&prepared, &low, Work::Level, true, options, watcher, begin)
     })
 }

@@ -36,6 +36,9 @@ pub struct LodDocument {
     pub switch_psnr: f64,
     /// The file that holds all levels, with `MSFT_lod`.
     pub all_levels: String,
+    /// Of the whole run until all levels were written. Those of levels overlap: while one is baked, the next one is begun.
+    #[serde(default)]
+    pub seconds: f64,
     /// From fine to coarse.
     pub levels: Vec<LodEntry>,
 }
@@ -58,11 +61,12 @@ pub struct LodEntry {
 }
 
 impl LodDocument {
-    /// Of a chain whose levels were written to these files.
+    /// Of a chain whose levels were written to these files, in so many seconds.
     pub fn new(
         model: &Model,
         options: &LodOptions,
         all_levels: String,
+        seconds: f64,
         levels: Vec<(String, u64, LevelReport)>,
     ) -> Self {
         let bounds = Bounds::of(&model.mesh);
@@ -87,6 +91,7 @@ impl LodDocument {
             viewport_height: options.viewport_height,
             switch_psnr: options.switch_psnr,
             all_levels,
+            seconds,
             levels: levels.into_iter().enumerate().map(entry).collect(),
         }
     }

@@ -12,8 +12,8 @@
 //! Each level is made for a size on screen. From that follow how far its surface may be off, hence its triangles, and
 //! how many texels it needs.
 //!
-//! Contract: levels have fewer and fewer triangles. Each is finished before the next one begins, and handed over;
-//! a chain that is stopped keeps those that are finished. Deterministic.
+//! Contract: levels have fewer and fewer triangles. They are finished and handed over in order; what the next one may keep of the
+//! model is found meanwhile. A chain that is stopped keeps those that are finished. Deterministic.
 
 mod candidate;
 pub(crate) mod chain;
@@ -23,6 +23,7 @@ pub mod layout;
 mod level;
 mod maker;
 pub mod options;
+mod own_vertices;
 mod picture_score;
 mod scaled;
 pub mod target;
@@ -30,11 +31,13 @@ mod ways;
 mod written;
 
 use crate::error::BakeError;
+use crate::threads::join;
 pub use candidate::{Candidate, Way};
 use chain::Chain;
 pub use level::{Level, LevelReport};
 use maker::{Draft, Maker};
 use options::LodOptions;
+use own_vertices::{OwnVertices, own_vertices};
 use parbake_evaluate::renderer::PlacedModel;
 use parbake_levels::face_frames::with_face_tangents;
 use parbake_levels::screen::{largest_texture, texels_of};
@@ -48,7 +51,7 @@ use std::borrow::Cow;
 use std::time::Instant;
 use written::as_written;
 
-/// Makes the levels of a model one by one and hands each over as soon as it is finished. Returns how many there are:
+/// Makes the levels of a model and hands them over one by one, before the next one is baked. Returns how many there are:
 /// fewer than asked for where the watcher said stop, or where a level would have no fewer triangles than the one
 /// before.
 ///
@@ -71,54 +74,93 @@ pub fn make_levels<E: From<BakeError>>(
     let sizes = (0..options.screen_size.len())
         .map(|level| (maker.wanted[level], maker.texture_size(model, options.screen_size[level])));
     let mut chain = Chain::new(watcher, start, options, &sizes.collect::<Vec<_>>());
-    let mut before: Option<(Model, PlacedModel)> = None;
+    let (mut before, mut ahead): (Option<Before>, Option<OwnVertices>) = (None, None);
     let mut count = 0;
     for index in 0..options.screen_size.len() {
-        let finer = before.as_ref().map(|(low, _)| low);
-        let made = match options.target_psnr {
-            Some(target) => target::find(&maker, &mut chain, index, finer, target)?
-                .map(|found| (found.draft, found.write, Some(found.report))),
-            None => {
-                let most = finer.map_or(maker.high.triangles, |low| low.mesh.triangles.len());
-                let (wanted, until) = (maker.wanted[index].min(most), chain.level_until(index));
-                let draft = ways::draft(&maker, &mut chain, index, finer, wanted, until)?;
-                draft.map(|draft| (draft, options.write, None))
-            }
+        let most = before.as_ref().map_or(maker.high.triangles, |before| before.low.mesh.triangles.len());
+        let (triangles, until) = (maker.wanted[index].min(most), chain.level_until(index));
+        chain.tell(index, 0);
+        let own = match ahead.take().filter(|own| own.triangles == triangles) {
+            None if options.target_psnr.is_none() => own_vertices(&maker, index, triangles, until, watcher)?,
+            own => own,
         };
-        let Some((draft, write, target)) = made else { break };
-        let begin = Instant::now();
-        let written = as_written(&draft.baked.model, &write, options.normal_y)?.model;
-        let placed = maker.screens.place(&with_face_tangents(&written)).map_err(BakeError::from)?;
-        let figures = maker.figures(index, &placed, before.as_ref().map(|(_, placed)| placed))?;
-        let Draft { low, layers, baked, way, candidates, seconds: [chosen, fitted, compared] } = draft;
-        let mip = baked.report.options.smallest_mip.unwrap_or(0.0);
-        let gutter = baked.report.uv.gutter.as_ref().map(|gutter| (gutter.texels, mip));
-        let report = LevelReport {
-            level: index,
-            screen_size: options.screen_size[index],
-            triangles: baked.model.mesh.triangles.len(),
-            texture_size: largest_texture(&baked.model),
-            texels: texels_of(&baked.model),
-            gutter: gutter.map(|(texels, _)| texels),
-            smallest_gutter: gutter.map(|(texels, mip)| texels / mip.exp2()),
-            draw_calls: draw_calls(&baked.model),
-            parts: part_reports(&baked.model),
-            way,
-            candidates,
-            low_poly: layers,
-            at_screen_size: figures.at_screen_size,
-            switch_pixels: figures.switch_pixels,
-            switch_coverage: figures.switch_pixels.map(|pixels| (pixels / options.viewport_height).min(1.0)),
-            against_before: figures.against_before,
-            target,
-            stopped_early: baked.report.stopped_early,
-            seconds: [chosen, fitted, compared + begin.elapsed().as_secs_f64()],
-        };
-        before = Some((low, placed));
+        // Of the next level as much as does not depend on this one: much of either keeps one core busy alone. A budget is shared out
+        // to levels that are made one after the other.
+        let is_ahead = options.target_psnr.is_none() && until.is_none() && rayon::current_num_threads() > 1;
+        let next = (index + 1..options.screen_size.len()).next();
+        let next = next.filter(|&next| is_ahead && !watcher.stopped() && maker.wanted[next] < triangles);
+        let (made, own) = join(
+            || made(&maker, &mut chain, index, triangles, before.as_ref(), own, until),
+            || next.map(|next| own_vertices(&maker, next, maker.wanted[next], None, watcher)).transpose(),
+        );
+        let Some((level, low)) = made? else { break };
+        before = Some(low);
         count += 1;
-        on_level(Level { baked, write, report })?;
+        on_level(level)?;
+        if watcher.stopped() {
+            break;
+        }
+        ahead = own?.flatten();
     }
     Ok(count)
+}
+
+/// What the level after one needs of it.
+struct Before {
+    /// Its triangles as they were chosen.
+    low: Model,
+    placed: PlacedModel,
+}
+
+/// A level of at most so many triangles with its figures; `own` is what it may keep of the model. None where the watcher said stop before
+/// there was one.
+fn made(
+    maker: &Maker,
+    chain: &mut Chain,
+    index: usize,
+    triangles: usize,
+    before: Option<&Before>,
+    own: Option<OwnVertices>,
+    until: Option<Instant>,
+) -> Result<Option<(Level, Before)>, BakeError> {
+    let options = maker.options;
+    let finer = before.map(|before| &before.low);
+    let drafted = match options.target_psnr {
+        Some(target) => target::find(maker, chain, index, finer, target)?
+            .map(|found| (found.draft, found.write, Some(found.report))),
+        None => ways::draft(maker, chain, index, finer, triangles, own, until)?
+            .map(|draft| (draft, options.write, None)),
+    };
+    let Some((draft, write, target)) = drafted else { return Ok(None) };
+    let begin = Instant::now();
+    let written = as_written(&draft.baked.model, &write, options.normal_y)?.model;
+    let placed = maker.screens.place(&with_face_tangents(&written))?;
+    let figures = maker.figures(index, &placed, before.map(|before| &before.placed))?;
+    let Draft { low, layers, baked, way, candidates, seconds: [chosen, fitted, compared] } = draft;
+    let mip = baked.report.options.smallest_mip.unwrap_or(0.0);
+    let gutter = baked.report.uv.gutter.as_ref().map(|gutter| (gutter.texels, mip));
+    let report = LevelReport {
+        level: index,
+        screen_size: options.screen_size[index],
+        triangles: baked.model.mesh.triangles.len(),
+        texture_size: largest_texture(&baked.model),
+        texels: texels_of(&baked.model),
+        gutter: gutter.map(|(texels, _)| texels),
+        smallest_gutter: gutter.map(|(texels, mip)| texels / mip.exp2()),
+        draw_calls: draw_calls(&baked.model),
+        parts: part_reports(&baked.model),
+        way,
+        candidates,
+        low_poly: layers,
+        at_screen_size: figures.at_screen_size,
+        switch_pixels: figures.switch_pixels,
+        switch_coverage: figures.switch_pixels.map(|pixels| (pixels / options.viewport_height).min(1.0)),
+        against_before: figures.against_before,
+        target,
+        stopped_early: baked.report.stopped_early,
+        seconds: [chosen, fitted, compared + begin.elapsed().as_secs_f64()],
+    };
+    Ok(Some((Level { baked, write, report }, Before { low, placed })))
 }
 
 /// The model without parts that no view from outside shows. One that moves may show them, and parts that were named stay.
@@ -152,9 +194,11 @@ fn with_settled_alpha<'a>(model: &'a Model, watcher: &dyn Watcher) -> Cow<'a, Mo
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::threads::with_threads;
     use parbake_model::glam::Vec3;
     use parbake_model::{Material, Mesh};
     use std::sync::Mutex;
+    use std::sync::atomic::{AtomicBool, Ordering};
 
     struct Warnings(Mutex<Vec<String>>);
 
@@ -178,6 +222,62 @@ mod tests {
         }
         mesh.triangle_materials = vec![0; mesh.triangles.len()];
         Model { name: "nested".into(), mesh, materials: vec![Material::default()], ..Model::default() }
+    }
+
+    /// A ball of 512 triangles, and options for two levels of it.
+    fn ball() -> (Model, LodOptions) {
+        let mut mesh = nested().mesh;
+        mesh.triangles.truncate(8);
+        mesh.triangle_materials.truncate(8);
+        for _ in 0..3 {
+            mesh = parbake_mesh::subdivide(&mesh);
+        }
+        mesh.positions.iter_mut().for_each(|p| *p = p.normalize());
+        let options = LodOptions {
+            screen_size: vec![32.0, 16.0],
+            triangles: vec![60, 24],
+            max_texture_size: 32,
+            ..LodOptions::default()
+        };
+        (Model { mesh, ..nested() }, options)
+    }
+
+    /// Protects levels that are begun while others are baked: they are the same as those of one thread, which begins none early.
+    #[test]
+    fn levels_that_are_begun_early_are_the_same() {
+        let (model, options) = ball();
+        let made = |threads: usize| {
+            let mut made = Vec::new();
+            let count = with_threads(threads, || {
+                make_levels::<BakeError>(&model, &options, &(), |level| {
+                    made.push((level.baked.model, level.report.at_screen_size));
+                    Ok(())
+                })
+            });
+            assert_eq!(count.unwrap().unwrap(), 2);
+            made
+        };
+        assert!(made(1) == made(3));
+    }
+
+    struct StopsAfterLevel(AtomicBool);
+
+    impl Watcher for StopsAfterLevel {
+        fn stopped(&self) -> bool {
+            self.0.load(Ordering::Relaxed)
+        }
+    }
+
+    /// Protects Ctrl-C: no level follows the one that is finished, though the next one was begun.
+    #[test]
+    fn a_level_that_was_begun_early_does_not_follow_a_stop() {
+        let (model, options) = ball();
+        let watcher = StopsAfterLevel(AtomicBool::new(false));
+        let made = make_levels::<BakeError>(&model, &options, &watcher, |_| {
+            watcher.0.store(true, Ordering::Relaxed);
+            Ok(())
+        });
+        assert_eq!(made.unwrap(), 1);
     }
 
     /// Protects triangles and texels from going to what nobody sees, and users who want hidden parts all the same.

@@ -1,7 +1,7 @@
 //! Which way a level is made: several are finished, and the one whose pictures show most of the model is taken.
 //!
 //! ```text
-//! its own maps, scaled (scaled.rs) ──── excellent? taken; else ─┐
+//! its own maps (own_vertices.rs) ────── excellent? taken; else ─┐
 //! triangles chosen by pictures, new layout ─────────────────────┼─ the best ─ a bake whose maps show? again with finer ones
 //! its own layout, baked (delivered.rs) ─────────────────────────┘
 //! ```
@@ -15,15 +15,14 @@
 
 use super::candidate::{Candidate, Way};
 use super::chain::Chain;
-use super::delivered::{Coarser, baked_draft, coarser, may_keep_vertices};
+use super::delivered::{Coarser, baked_draft};
 use super::maker::{Draft, Maker};
+use super::own_vertices::OwnVertices;
 use super::picture_score::{PictureScore, Tried};
-use super::scaled::{scaled, scaled_draft};
 use crate::error::BakeError;
 use parbake_levels::maps::{Reduction, level_maps, with_reductions};
 use parbake_levels::screen::texels_of;
 use parbake_model::Model;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Decibels from which on nobody would see what other ways gain.
@@ -41,54 +40,33 @@ const FAR_BELOW: f64 = 3.0;
 /// level's sizes or close up.
 const SHOWN_BY_MAPS: f64 = 1.0;
 const GAINED_BY_MAPS: f64 = 0.5;
+/// Decibels below which, where that is what finer maps gained, twice as many texels would hardly gain anything.
+const HARDLY_MORE: f64 = 1.0;
 /// How often a bake may get maps of twice the texels along a side.
 const MOST_REFINEMENTS: usize = 2;
-/// Share of a level's time budget for collapses and scaled maps; what was measured until then counts.
-const TRYING: f64 = 0.2;
 
 /// The level as that way makes it which shows most of the model. Ways are left out that hardly ever win: a new layout
 /// where scaled maps are excellent, or close in a large level; the delivered layout where its own vertices show less, even with maps of
-/// nearly all texels, or where it would have too few texels. `before` is the low-poly of the level before. None where the watcher said stop
-/// before there was a level.
+/// nearly all texels, or where it would have too few texels. `own` is what the level may keep of the model, `before` the low-poly of the
+/// level before. None where the watcher said stop before there was a level.
 pub(crate) fn draft(
     maker: &Maker,
     chain: &mut Chain,
     level: usize,
     before: Option<&Model>,
     triangles: usize,
+    own: Option<OwnVertices>,
     until: Option<Instant>,
 ) -> Result<Option<Draft>, BakeError> {
-    let keeps = may_keep_vertices(maker);
-    // Nothing to compare: one bake, whose maps cannot grow either.
-    if !keeps && (until.is_some() || texels_of(maker.model) == 0) {
-        return maker.draft(chain, (level, 0), before, (triangles, None), until);
-    }
+    // Nothing to compare.
+    let Some(own) = own else { return maker.draft(chain, (level, 0), before, (triangles, None), until) };
     let begin = Instant::now();
-    chain.tell(level, 0);
-    let score = PictureScore::new(maker, maker.options.screen_size[level])?;
-    let enough = until.map(|until| begin + until.saturating_duration_since(begin).mul_f64(TRYING));
-    let is_cut = AtomicBool::new(false);
-    let is_over = |chain: &Chain| {
-        let is_over = chain.stopped() || enough.is_some_and(|enough| Instant::now() > enough);
-        is_cut.fetch_or(is_over, Ordering::Relaxed);
-        is_over
-    };
+    let OwnVertices { score, coarser: own, scaled, is_cut, seconds: tried, .. } = own;
     let side = maker.texels_along(maker.model, maker.options.screen_size[level]);
-    let own = if keeps {
-        coarser(maker, &score, triangles, side, until.is_none(), &|| is_over(chain))?
-    } else {
-        None
-    };
-    let maps =
-        own.as_ref().map(|own| scaled(maker, &score, own, side, &|| is_over(chain))).transpose()?.flatten();
-    let scaled = maps.map(|model| {
-        score.tried(scaled_draft(maker, level, model, side, [begin.elapsed().as_secs_f64(), 0.0, 0.0]))
-    });
-    let scaled = scaled.transpose()?;
     let finished = |chain: &Chain, mut draft: Draft, candidates: Vec<Candidate>| {
         draft.candidates = candidates;
-        draft.seconds[2] = begin.elapsed().as_secs_f64() - draft.seconds[0] - draft.seconds[1];
-        draft.baked.report.stopped_early |= is_cut.load(Ordering::Relaxed) || chain.stopped();
+        draft.seconds[2] = tried + begin.elapsed().as_secs_f64() - draft.seconds[0] - draft.seconds[1];
+        draft.baked.report.stopped_early |= is_cut || chain.stopped();
         Ok(Some(draft))
     };
     let is_enough = |chain: &Chain, scaled: &Tried| scaled.1.psnr >= EXCELLENT || chain.stopped();
@@ -148,6 +126,9 @@ pub(crate) fn draft(
             break;
         }
         best = refined;
+        if gained < HARDLY_MORE {
+            break;
+        }
     }
     finished(chain, best.0, candidates)
 }

@@ -3,7 +3,7 @@
 use crate::page::section;
 use crate::page::text::{NOTHING, count, decimal, duration, escape, share};
 use parbake::LodOptions;
-use parbake::lod::document::{LodDocument, LodEntry};
+use parbake::lod::document::LodDocument;
 use std::fmt::Write;
 
 /// Name, all levels, facts, and the table of figures.
@@ -40,13 +40,12 @@ pub fn overview(
         );
     }
     out += r#"</div><dl class="facts">"#;
-    let seconds: f64 = chain.levels.iter().map(seconds).sum();
     let sizes: Vec<String> = options.screen_size.iter().map(f64::to_string).collect();
     let mut facts = vec![
         ("levels", chain.levels.len().to_string()),
         ("made for", format!("{} pixels", sizes.join(", "))),
         ("all in one file", escape(&chain.all_levels)),
-        ("made in", duration(seconds)),
+        ("made in", duration(chain.seconds)),
     ];
     if let Some(target) = options.target_psnr {
         facts.insert(2, ("target", format!("{} dB", decimal(target, 1))));
@@ -68,11 +67,6 @@ pub fn overview(
         &format!(r#"<div class="wide">{}</div>{}"#, table(chain), ranges(chain)),
     );
     out
-}
-
-/// Seconds that a level took.
-pub fn seconds(entry: &LodEntry) -> f64 {
-    entry.report.seconds.iter().sum()
 }
 
 /// Bytes of a file of any size as people read them.

@@ -76,7 +76,7 @@ fn a_chain_has_a_page() {
     ];
     let mut original = high.clone();
     original.name = "<script>".into();
-    let document = LodDocument::new(&original, &options, "a_lods.glb".into(), files);
+    let document = LodDocument::new(&original, &options, "a_lods.glb".into(), 200.0, files);
     let html = lod_report(&original, &document, &[low.clone(), low], &options, &()).unwrap();
     for word in [
         "1 of its levels are missing",
