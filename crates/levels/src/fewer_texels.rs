@@ -20,8 +20,8 @@ const UNSEEN: f64 = 0.05;
 const FREE: usize = 256 * 256;
 /// How many maps are reduced at once: each time all of them are in memory once more.
 const AT_ONCE: usize = 2;
-/// A map that alone costs so many times the error that all may have is not reduced further, nor is one a factor that costs so many times
-/// what may be seen when it is halved.
+/// A map that alone costs so many times the error that all may have is not reduced further. A factor is not tried where halving costs so
+/// many times what may be lost.
 const HOPELESS: f64 = 10.0;
 
 /// The model with reduced maps: with the fewest texels at which pictures look the same, at most `most`. `psnr` is the PSNR in dB
@@ -112,7 +112,7 @@ pub fn with_fewer_texels<E: Send>(
     Ok(found.map(|(_, choice)| reduced(&choice)))
 }
 
-/// Of a choice: whether something is seen, and what is to be small, first and then.
+/// Orders choices, the best first: whether a loss is seen; then the error where it is, the texels where not; then the other one of both.
 type Rank = (bool, f64, f64);
 
 /// What reductions of one map cost by themselves, as mean squared errors; of all maps together about the sum.
@@ -128,9 +128,9 @@ impl Costs {
         Self { reductions, costs }
     }
 
-    /// Adds what is not known, but for reductions that leave less than one which costs more than `most`: they are taken to cost more, too.
-    /// A factor is the mean of what the surface shows, and halved maps bleed from chart to chart, so a factor may cost less than one that
-    /// costs a little more.
+    /// Measures what is not known yet. A reduction that leaves less than one which costs more than `most` is taken to cost more, too, and
+    /// is left out. A factor is left out only beyond `HOPELESS` times that: it is the mean of what the surface shows, and may cost
+    /// less than halved maps, which bleed from chart to chart.
     fn measure<E>(
         &mut self,
         most: f64,

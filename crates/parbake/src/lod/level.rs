@@ -70,6 +70,6 @@ pub struct LevelReport {
     #[serde(default)]
     pub stopped_early: bool,
     /// Seconds that triangles, bake and figures took; of a search for a PSNR those of all its bakes. Ways that were not
-    /// taken count with the figures. Those in which the level before was baked as well are counted with both.
+    /// taken count with the figures. What was found while the level before was baked counts with both.
     pub seconds: [f64; 3],
 }

@@ -29,6 +29,7 @@ pub(crate) struct OwnVertices<'m> {
     pub scaled: Option<Tried>,
     /// Whether there was too little time for all that might have been tried.
     pub is_cut: bool,
+    /// That finding all this took.
     pub seconds: f64,
 }
 
