@@ -4,22 +4,27 @@ use crate::arguments::EvalCommand;
 use crate::bake::read_pair;
 use crate::document::write_document;
 use crate::failure::{Ending, Failure};
-use crate::outputs::{check_json, is_stdout};
+use crate::outputs::{check_beside, is_stdout};
 use crate::printed::print;
 use crate::progress::Console;
 use crate::rules;
 use clap::ArgMatches;
-use parbake::{ViewFigures, evaluate, with_threads};
+use parbake::{ViewFigures, evaluate, with_threads, write_file};
+use parbake_report::evaluation_report;
 
 /// Runs the command.
 pub fn run(command: &EvalCommand, given: &ArgMatches) -> Result<Ending, Failure> {
     rules::check_eval(&command.evaluate, given)?;
     command.evaluate.check()?;
-    check_json(command.json.as_ref(), &[&command.high, &command.low])?;
+    check_beside(None, command.json.as_ref(), command.report.as_ref(), &[&command.high, &command.low])?;
     let console = Console::new(command.talk).confined(command.reading).with_stage_times();
     with_threads(command.threads, || {
         let pair = read_pair(&command.high, &command.low, &console)?;
         let evaluation = evaluate(&pair.high, &pair.low, &command.evaluate, &console)?;
+        if let Some(path) = &command.report {
+            let page = evaluation_report(&pair.high, &pair.low, &evaluation, &console)?;
+            write_file(path, page.as_bytes())?;
+        }
         console.finish();
         let to_stdout = command.json.as_ref().is_some_and(|path| is_stdout(path));
         if let Some(path) = &command.json {

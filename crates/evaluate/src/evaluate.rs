@@ -9,7 +9,6 @@ use crate::options::EvaluateOptions;
 use crate::renderer::{PlacedModel, RenderedView, Renderer};
 use parbake_model::Model;
 use parbake_progress::{Message, Stage, Watcher};
-use parbake_render::camera::fibonacci_sphere;
 use parbake_views::lost::not_compared;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -132,7 +131,7 @@ pub fn evaluate_each(
         false => Vec::new(),
     };
     let done = AtomicUsize::new(0);
-    let views = fibonacci_sphere(options.views, 0.0).into_par_iter().map(|direction| {
+    let views = options.directions().into_par_iter().map(|direction| {
         let render = |model: &PlacedModel| match channels.is_empty() {
             true => renderer.render(model, direction),
             false => renderer.render_with_channels(model, direction),

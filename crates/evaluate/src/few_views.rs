@@ -8,7 +8,6 @@ use crate::renderer::{RenderedView, Renderer};
 use parbake_metric::{mean_squared_error, psnr_from_mse};
 use parbake_model::Model;
 use parbake_model::glam::Vec3;
-use parbake_render::camera::fibonacci_sphere;
 use rayon::prelude::*;
 
 /// Compares models with an original.
@@ -31,7 +30,7 @@ impl<'a> FewViews<'a> {
     ) -> Result<Self, EvaluateError> {
         let renderer = Renderer::new(original, options)?;
         let original = renderer.place(original);
-        let directions = fibonacci_sphere(options.views, 0.0).into_par_iter();
+        let directions = options.directions().into_par_iter();
         let views = directions.map(|direction| (direction, renderer.render(&original, direction))).collect();
         Ok(Self { renderer, views, backgrounds })
     }

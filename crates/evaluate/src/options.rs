@@ -3,7 +3,8 @@
 use crate::conventions::{Convention, GREY, Shading, check_shading};
 use crate::error::EvaluateError;
 use parbake_image::display::Display;
-use parbake_render::camera::Projection;
+use parbake_model::glam::Vec3;
+use parbake_render::camera::{Projection, fibonacci_sphere};
 use parbake_render::interpretation::Interpretation;
 use serde::{Deserialize, Serialize};
 
@@ -99,6 +100,11 @@ impl EvaluateOptions {
     pub fn display(&self) -> Display {
         let own = self.convention.display();
         Display { gain: self.gain.unwrap_or(own.gain), ..own }
+    }
+
+    /// Directions from the model to the cameras, of unit length: one for each view.
+    pub fn directions(&self) -> Vec<Vec3> {
+        fibonacci_sphere(self.views, 0.0)
     }
 
     /// Checks every range; the error names the option and what it may be.

@@ -2,9 +2,10 @@
 //! how their pictures are stored, and what was left out.
 
 use crate::ktx2;
+use image::ImageFormat;
 use serde::Serialize;
 
-/// How a picture is stored, by its first bytes.
+/// How a picture is stored, by its first bytes; TGA, which has none of its own, by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PictureFormat {
@@ -16,6 +17,14 @@ pub enum PictureFormat {
     Webp,
     /// KTX2 with Basis Universal.
     Ktx2,
+    /// BMP.
+    Bmp,
+    /// GIF, of which the first frame is read.
+    Gif,
+    /// TGA.
+    Tga,
+    /// TIFF.
+    Tiff,
 }
 
 impl PictureFormat {
@@ -26,19 +35,38 @@ impl PictureFormat {
             Self::Jpeg => "JPEG",
             Self::Webp => "WebP",
             Self::Ktx2 => "KTX2",
+            Self::Bmp => "BMP",
+            Self::Gif => "GIF",
+            Self::Tga => "TGA",
+            Self::Tiff => "TIFF",
         }
     }
 
-    /// None for bytes that no reader here takes.
-    pub(crate) fn of(bytes: &[u8]) -> Option<Self> {
+    /// None for bytes that no reader here takes; `name` is the picture's file name, if it has one.
+    pub(crate) fn of(name: &str, bytes: &[u8]) -> Option<Self> {
         if ktx2::is_ktx2(bytes) {
             return Some(Self::Ktx2);
         }
-        match image::guess_format(bytes).ok()? {
-            image::ImageFormat::Png => Some(Self::Png),
-            image::ImageFormat::Jpeg => Some(Self::Jpeg),
-            image::ImageFormat::WebP => Some(Self::Webp),
-            _ => None,
+        match image::guess_format(bytes) {
+            Ok(format) => Self::ALL_BUT_KTX2.into_iter().find(|own| own.decoder() == Some(format)),
+            Err(_) => name.to_ascii_lowercase().ends_with(".tga").then_some(Self::Tga),
+        }
+    }
+
+    const ALL_BUT_KTX2: [Self; 7] =
+        [Self::Png, Self::Jpeg, Self::Webp, Self::Bmp, Self::Gif, Self::Tga, Self::Tiff];
+
+    /// What reads it; none where that is `ktx2.rs`.
+    pub(crate) fn decoder(self) -> Option<ImageFormat> {
+        match self {
+            Self::Png => Some(ImageFormat::Png),
+            Self::Jpeg => Some(ImageFormat::Jpeg),
+            Self::Webp => Some(ImageFormat::WebP),
+            Self::Ktx2 => None,
+            Self::Bmp => Some(ImageFormat::Bmp),
+            Self::Gif => Some(ImageFormat::Gif),
+            Self::Tga => Some(ImageFormat::Tga),
+            Self::Tiff => Some(ImageFormat::Tiff),
         }
     }
 }

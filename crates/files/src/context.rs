@@ -217,7 +217,7 @@ impl<'a> Context<'a> {
         // All sizes are known to be within the limits before memory is reserved for any.
         let mut total = 0u64;
         for (name, bytes) in pictures {
-            let texels = texels(bytes, self.limits)
+            let texels = texels(name, bytes, self.limits)
                 .map_err(|trouble| trouble.into_error(self.path, place(name), self.limits))?;
             total = total.saturating_add(texels);
             self.within(place(name), "texels of all images together", total, self.limits.max_total_pixels)?;
@@ -233,7 +233,7 @@ impl<'a> Context<'a> {
         let stored = images.iter().zip(pictures).filter_map(|(image, (name, bytes))| {
             Some(StoredPicture {
                 name: shown(name),
-                format: PictureFormat::of(bytes)?,
+                format: PictureFormat::of(name, bytes)?,
                 width: image.width,
                 height: image.height,
                 bytes: bytes.len() as u64,

@@ -1,12 +1,14 @@
-//! Pictures in: PNG, JPEG, WebP and KTX2 (`ktx2.rs`) to 8-bit RGBA.
+//! Pictures in: PNG, JPEG, WebP and KTX2 (`ktx2.rs`), which glTF knows, and TGA, BMP, TIFF and GIF, which lie beside
+//! OBJ files, to 8-bit RGBA.
 //!
-//! The format is told by the first bytes, not by the name. Samples of 16 bits are
+//! The format is told by the first bytes, not by the name, but for TGA, which starts with none of its own. Samples of 16 bits are
 //! rounded to 8, greys and palettes become RGB, a missing alpha becomes 255. Colour
 //! profiles, gamma chunks and EXIF turns are ignored, as glTF 2.0 asks (3.8.2).
 //!
 //! Contract: the declared size is held against the limits before any pixel memory
 //! is reserved.
 
+use crate::contents::PictureFormat;
 use crate::guard::guarded;
 use crate::image_trouble::ImageTrouble;
 use crate::ktx2;
@@ -19,11 +21,14 @@ use std::path::Path;
 
 /// The most pixels that one byte of a whole file can stand for: a PNG of one bit a
 /// pixel, at the 1032 bytes that deflate makes of one; a JPEG's 64 pixels a bit, and
-/// as much again to be on the safe side. Lossless WebP knows no such bound.
+/// as much again to be on the safe side; a TGA's 128 pixels in two bytes; a GIF's 4096 in nine bits.
+/// Lossless WebP, BMP, whose rows may be skipped, and TIFF know no such bound.
 fn most_pixels_a_byte(format: ImageFormat) -> u64 {
     match format {
         ImageFormat::Png => 8 * 1032,
         ImageFormat::Jpeg => 2 * 8 * 64,
+        ImageFormat::Tga => 64,
+        ImageFormat::Gif => 4096,
         _ => u64::MAX,
     }
 }
@@ -52,13 +57,13 @@ pub fn decode_image(name: &str, bytes: &[u8], limits: &Limits) -> Result<Image, 
 
 /// The number of texels that a picture declares, if that is believable and within
 /// the limits. Costs next to nothing.
-pub(crate) fn texels(bytes: &[u8], limits: &Limits) -> Result<u64, ImageTrouble> {
+pub(crate) fn texels(name: &str, bytes: &[u8], limits: &Limits) -> Result<u64, ImageTrouble> {
     let (width, height) = if ktx2::is_ktx2(bytes) {
         let header = ktx2::header(bytes)?;
         within(header.width, header.height, limits)?;
         (header.width, header.height)
     } else {
-        open(bytes, limits)?.0.dimensions()
+        open(name, bytes, limits)?.0.dimensions()
     };
     Ok(u64::from(width) * u64::from(height))
 }
@@ -71,7 +76,7 @@ pub(crate) fn decode(name: &str, bytes: &[u8], limits: &Limits) -> Result<Image,
         let (width, height) = (header.width as usize, header.height as usize);
         return Ok(Image { name: name.into(), width, height, pixels });
     }
-    let (decoder, format) = open(bytes, limits)?;
+    let (decoder, format) = open(name, bytes, limits)?;
     // The decoder would fill up what is missing with grey.
     if format == ImageFormat::Jpeg && !jpeg_has_end(bytes) {
         return Err(ImageTrouble::Damaged("the picture is cut off".into()));
@@ -87,13 +92,12 @@ pub(crate) fn decode(name: &str, bytes: &[u8], limits: &Limits) -> Result<Image,
 
 /// Reads the header and holds it against the limits.
 fn open<'b>(
+    name: &str,
     bytes: &'b [u8],
     limits: &Limits,
 ) -> Result<(impl ImageDecoder + use<'b>, ImageFormat), ImageTrouble> {
-    let format = match image::guess_format(bytes) {
-        Ok(f @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) => f,
-        _ => return Err(ImageTrouble::UnknownFormat),
-    };
+    let format = PictureFormat::of(name, bytes).and_then(PictureFormat::decoder);
+    let format = format.ok_or(ImageTrouble::UnknownFormat)?;
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     reader.limits(decoder_limits(limits));
     let decoder = reader.into_decoder().map_err(damaged)?;

@@ -47,11 +47,42 @@ fn crc32(bytes: &[u8]) -> u32 {
     })
 }
 
+/// Protects textures beside OBJ files: the pictures come back in each format that only these have, a TGA is known by its name alone, and
+/// limits and cut files are told as of all others.
+#[test]
+fn pictures_of_old_files_come_back() {
+    let mut image = Image::solid("a", 33, 20, [9, 8, 7, 255]);
+    image.pixels[4] = [200, 2, 3, 255];
+    let written = |format: ImageFormat| {
+        let bytes = image.pixels.as_flattened().to_vec();
+        let picture = image::RgbaImage::from_raw(33, 20, bytes).unwrap();
+        let mut file = Cursor::new(Vec::new());
+        DynamicImage::from(picture).write_to(&mut file, format).unwrap();
+        file.into_inner()
+    };
+    for (name, format) in [
+        ("a.TGA", ImageFormat::Tga),
+        ("b", ImageFormat::Bmp),
+        ("c", ImageFormat::Tiff),
+        ("d", ImageFormat::Gif),
+    ] {
+        let bytes = written(format);
+        let read = decode_image(name, &bytes, &Limits::default()).unwrap();
+        assert_eq!((read.width, read.height, &read.pixels), (33, 20, &image.pixels), "{name}");
+        let limits = Limits { max_image_pixels: 600, ..Limits::default() };
+        assert!(decode_image(name, &bytes, &limits).unwrap_err().to_string().contains("660"), "{name}");
+        let error = decode_image(name, &bytes[..bytes.len() / 3], &Limits::default()).unwrap_err();
+        assert!(error.to_string().contains("decoded") || error.to_string().contains("bytes"), "{error}");
+    }
+    let unnamed = decode_image("a.png", &written(ImageFormat::Tga), &Limits::default()).unwrap_err();
+    assert!(unnamed.to_string().contains("TGA"), "{unnamed}");
+}
+
 /// Protects the messages about other formats and damaged files.
 #[test]
 fn other_bytes_are_named() {
-    let error = decode_image("a.tga", b"nonsense", &Limits::default()).unwrap_err().to_string();
-    assert!(error.starts_with("a.tga") && error.contains("WebP"), "{error}");
+    let error = decode_image("a.xyz", b"nonsense", &Limits::default()).unwrap_err().to_string();
+    assert!(error.starts_with("a.xyz") && error.contains("WebP"), "{error}");
     let bytes = png(40, 40);
     let error = decode_image("b.png", &bytes[..60], &Limits::default()).unwrap_err().to_string();
     assert!(error.starts_with("b.png") && error.contains("decoded"), "{error}");

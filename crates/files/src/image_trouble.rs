@@ -5,7 +5,7 @@
 use crate::{FileError, Limits, Place};
 use std::path::Path;
 
-const SUPPORTED: &str = "PNG, JPEG, WebP and KTX2 (Basis Universal)";
+const SUPPORTED: &str = "PNG, JPEG, WebP, KTX2 (Basis Universal), TGA, BMP, TIFF and GIF";
 
 /// Why a picture could not be had, before it is known whose picture it is.
 #[derive(Debug)]

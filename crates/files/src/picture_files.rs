@@ -37,7 +37,7 @@ pub(crate) struct PictureFile {
 impl PictureFiles {
     /// Keeps a picture's file if it is a JPEG that every viewer shows alike, or a 16-bit PNG.
     pub(crate) fn keep(&mut self, image: &Image, bytes: &[u8]) {
-        let format = match PictureFormat::of(bytes) {
+        let format = match PictureFormat::of(&image.name, bytes) {
             Some(PictureFormat::Jpeg) if is_plain(bytes) => PictureFormat::Jpeg,
             Some(PictureFormat::Png) if bytes.get(BIT_DEPTH_AT) == Some(&16) => PictureFormat::Png,
             _ => return,

@@ -7,6 +7,7 @@
 //! Contract: pixels are the stored values, row 0 on top, of the picture's size.
 
 use parbake::{BakeError, EvaluateOptions, Renderer};
+use parbake_image::display::decode_srgb;
 use parbake_metric::Rgb;
 use parbake_model::glam::Vec3;
 use parbake_model::{Image, Model};
@@ -27,7 +28,7 @@ pub fn as_shown(plane: &Model, picture: &Image) -> Result<Rgb, BakeError> {
     let (left, top) = ((square.width - picture.width) / 2, (square.height - picture.height) / 2);
     let pixels = (0..picture.height)
         .flat_map(|y| (0..picture.width).map(move |x| (x, y)))
-        .map(|(x, y)| square.pixels[(top + y) * square.width + left + x].map(linear))
+        .map(|(x, y)| square.pixels[(top + y) * square.width + left + x].map(decode_srgb))
         .collect();
     Ok(Rgb { width: picture.width, height: picture.height, pixels })
 }
@@ -36,11 +37,6 @@ pub fn as_shown(plane: &Model, picture: &Image) -> Result<Rgb, BakeError> {
 pub fn wanted(picture: &Image) -> Rgb {
     let pixels = picture.pixels.iter().map(|&[r, g, b, _]| [r, g, b].map(|x| f32::from(x) / 255.0)).collect();
     Rgb { width: picture.width, height: picture.height, pixels }
-}
-
-/// Takes the display's sRGB curve off (IEC 61966-2-1).
-fn linear(shown: f32) -> f32 {
-    if shown <= 0.040_45 { shown / 12.92 } else { ((shown + 0.055) / 1.055).powf(2.4) }
 }
 
 #[cfg(test)]

@@ -20,6 +20,10 @@ pub struct EvalCommand {
     #[arg(long, value_name = "FILE", help_heading = IO)]
     pub json: Option<PathBuf>,
 
+    /// Write a page with pictures of the views that differ most, and all figures, to this .html file
+    #[arg(long, value_name = "FILE", help_heading = IO)]
+    pub report: Option<PathBuf>,
+
     /// Print the figures of each view
     #[arg(long, help_heading = IO)]
     pub per_view: bool,

@@ -16,6 +16,7 @@ use super::textures::TextureReader;
 use crate::context::Context;
 use crate::words::shown;
 use crate::{FileError, Place};
+use parbake_image::display::{decode_srgb, encode_srgb};
 use parbake_model::{Image, Material, TextureSlot};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -92,15 +93,11 @@ fn metallic(diffuse: [f32; 3], specular: [f32; 3]) -> ([f32; 3], f32) {
 
 /// sRGB's transfer function for all bytes.
 fn linear() -> [f32; 256] {
-    std::array::from_fn(|i| {
-        let x = i as f32 / 255.0;
-        if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
-    })
+    std::array::from_fn(|i| decode_srgb(i as f32 / 255.0))
 }
 
 fn encoded(x: f32) -> u8 {
-    let x = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
-    byte(x)
+    byte(encode_srgb(x))
 }
 
 fn byte(x: f32) -> u8 {

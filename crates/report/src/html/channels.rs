@@ -4,8 +4,9 @@ use super::pictures::{AMPLIFIED, PIXELS, SUPERSAMPLE, front};
 use super::scenes::Scenes;
 use crate::page::text::{NOTHING, change, decimal, escape, verdict};
 use crate::page::{amplified_difference, embed_rgb};
-use parbake::{BakeError, Channel, Comparison, OnChannel, PlacedModel};
+use parbake::{BakeError, Channel, Comparison, PlacedModel, Renderer};
 use parbake_metric::Rgb;
+use parbake_render::camera::Camera;
 use rayon::prelude::*;
 use std::fmt::Write;
 
@@ -16,35 +17,48 @@ const GREY: f32 = 0.22;
 pub struct ChannelRow {
     channel: Channel,
     high: Rgb,
-    baked: Rgb,
+    low: Rgb,
     difference: Rgb,
 }
 
 /// Renders the front of high-poly and result, channel by channel.
 pub fn rows(scenes: &Scenes, compared: &Comparison) -> Vec<ChannelRow> {
-    if compared.channels.is_empty() {
+    let channels: Vec<Channel> = compared.channels.iter().map(|on| on.channel).collect();
+    rows_of(&scenes.renderer, [&scenes.high, &scenes.baked], &front(&scenes.all()), &channels)
+}
+
+/// The same of any two models, the high-poly first, as a camera sees them.
+pub(crate) fn rows_of(
+    renderer: &Renderer,
+    models: [&PlacedModel; 2],
+    camera: &Camera,
+    channels: &[Channel],
+) -> Vec<ChannelRow> {
+    if channels.is_empty() {
         return Vec::new();
     }
-    let camera = front(&scenes.all());
-    let render =
-        |model: &PlacedModel| scenes.renderer.render_from(model, &camera, (PIXELS, SUPERSAMPLE), true);
-    let (high, baked) = (render(&scenes.high), render(&scenes.baked));
-    let row = |on: &OnChannel| {
-        let ([a, b], _) = on.channel.pair(&high, &baked);
+    let [high, low] = models.map(|model| renderer.render_from(model, camera, (PIXELS, SUPERSAMPLE), true));
+    let row = |&channel: &Channel| {
+        let ([a, b], _) = channel.pair(&high, &low);
         ChannelRow {
-            channel: on.channel,
-            high: on.channel.picture(&high, GREY),
-            baked: on.channel.picture(&baked, GREY),
+            channel,
+            high: channel.picture(&high, GREY),
+            low: channel.picture(&low, GREY),
             difference: amplified_difference(&a, &b, AMPLIFIED),
         }
     };
-    compared.channels.par_iter().map(row).collect()
+    channels.par_iter().map(row).collect()
 }
 
 /// The figures of all channels, ray-cast and baked, and the pictures below them.
 pub fn channels(compared: &Comparison, rows: &[ChannelRow]) -> Result<String, BakeError> {
-    let rows: Result<Vec<String>, BakeError> = rows.par_iter().map(pictures).collect();
-    Ok(table(compared) + &rows?.concat())
+    Ok(table(compared) + &pictures(rows, "baked")?)
+}
+
+/// The pictures of all channels; `low` is what the compared model is called.
+pub(crate) fn pictures(rows: &[ChannelRow], low: &str) -> Result<String, BakeError> {
+    let rows: Result<Vec<String>, BakeError> = rows.par_iter().map(|row| pictures_of(row, low)).collect();
+    Ok(rows?.concat())
 }
 
 fn table(compared: &Comparison) -> String {
@@ -76,7 +90,7 @@ fn table(compared: &Comparison) -> String {
     out + "</tbody></table>"
 }
 
-fn pictures(row: &ChannelRow) -> Result<String, BakeError> {
+fn pictures_of(row: &ChannelRow, low: &str) -> Result<String, BakeError> {
     let name = row.channel.label();
     let figure = |what: &str, picture: &Rgb| {
         let address = embed_rgb(what, picture)?.address;
@@ -95,7 +109,7 @@ fn pictures(row: &ChannelRow) -> Result<String, BakeError> {
     Ok(format!(
         r#"<section class="side"><h3>{name}</h3><div class="pictures channel">{}{}{}</div></section>"#,
         figure("high-poly", &row.high)?,
-        figure("baked", &row.baked)?,
-        figure(&format!("baked − high, ×{AMPLIFIED}"), &row.difference)?
+        figure(low, &row.low)?,
+        figure(&format!("{low} − high, ×{AMPLIFIED}"), &row.difference)?
     ))
 }

@@ -16,12 +16,12 @@
 //! asked: whoever stopped a bake wants to see what came of it, the more so, and
 //! drawing takes a bounded time, which depends on the models' sizes only.
 
-mod channels;
+pub(crate) mod channels;
 mod figures;
-mod gallery;
+pub(crate) mod gallery;
 mod loss_curve;
 mod model_view;
-mod page;
+pub(crate) mod page;
 pub(crate) mod pictures;
 mod scenes;
 mod settings;

@@ -125,7 +125,7 @@ pub fn page(
 }
 
 /// How pictures and figures are lit.
-fn lighting(shading: Shading) -> &'static str {
+pub(crate) fn lighting(shading: Shading) -> &'static str {
     match shading {
         Shading::Pbr => {
             "The whole material is shown, under a built-in light: a room with soft lamps, and one far away."
