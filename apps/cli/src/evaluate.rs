@@ -21,10 +21,6 @@ pub fn run(command: &EvalCommand, given: &ArgMatches) -> Result<Ending, Failure>
     with_threads(command.threads, || {
         let pair = read_pair(&command.high, &command.low, &console)?;
         let evaluation = evaluate(&pair.high, &pair.low, &command.evaluate, &console)?;
-        if let Some(path) = &command.report {
-            let page = evaluation_report(&pair.high, &pair.low, &evaluation, &console)?;
-            write_file(path, page.as_bytes())?;
-        }
         console.finish();
         let to_stdout = command.json.as_ref().is_some_and(|path| is_stdout(path));
         if let Some(path) = &command.json {
@@ -35,7 +31,7 @@ pub fn run(command: &EvalCommand, given: &ArgMatches) -> Result<Ending, Failure>
             let mut table = String::from("view    PSNR dB   MS-SSIM   FLIP");
             let shown = if command.per_view { &evaluation.views[..] } else { &[] };
             for (index, view) in shown.iter().enumerate() {
-                table += &format!("\n{index:4}  {}", figures(view));
+                table += &format!("\n{:4}  {}", index + 1, figures(view));
             }
             table += &format!("\nmean  {}", figures(&evaluation.mean));
             if !evaluation.channels.is_empty() {
@@ -45,6 +41,11 @@ pub fn run(command: &EvalCommand, given: &ArgMatches) -> Result<Ending, Failure>
                 table += &format!("\n{:13}{}", of.channel.label(), figures(&of.mean));
             }
             print(&table)?;
+        }
+        if let Some(path) = &command.report {
+            let page = evaluation_report(&pair.high, &pair.low, &evaluation, &console)?;
+            write_file(path, page.as_bytes())?;
+            console.finish();
         }
         Ok(Ending::Finished)
     })?

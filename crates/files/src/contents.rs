@@ -23,8 +23,6 @@ pub enum PictureFormat {
     Gif,
     /// TGA.
     Tga,
-    /// TIFF.
-    Tiff,
 }
 
 impl PictureFormat {
@@ -38,8 +36,12 @@ impl PictureFormat {
             Self::Bmp => "BMP",
             Self::Gif => "GIF",
             Self::Tga => "TGA",
-            Self::Tiff => "TIFF",
         }
+    }
+
+    /// Whether glTF, or an extension of it that is read, has pictures in this format.
+    pub(crate) fn is_of_gltf(self) -> bool {
+        matches!(self, Self::Png | Self::Jpeg | Self::Webp | Self::Ktx2)
     }
 
     /// None for bytes that no reader here takes; `name` is the picture's file name, if it has one.
@@ -53,8 +55,7 @@ impl PictureFormat {
         }
     }
 
-    const ALL_BUT_KTX2: [Self; 7] =
-        [Self::Png, Self::Jpeg, Self::Webp, Self::Bmp, Self::Gif, Self::Tga, Self::Tiff];
+    const ALL_BUT_KTX2: [Self; 6] = [Self::Png, Self::Jpeg, Self::Webp, Self::Bmp, Self::Gif, Self::Tga];
 
     /// What reads it; none where that is `ktx2.rs`.
     pub(crate) fn decoder(self) -> Option<ImageFormat> {
@@ -66,7 +67,6 @@ impl PictureFormat {
             Self::Bmp => Some(ImageFormat::Bmp),
             Self::Gif => Some(ImageFormat::Gif),
             Self::Tga => Some(ImageFormat::Tga),
-            Self::Tiff => Some(ImageFormat::Tiff),
         }
     }
 }

@@ -2,7 +2,7 @@
 //! warnings so far.
 
 use crate::contents::{PictureFormat, StoredPicture};
-use crate::image_in::{decode, texels};
+use crate::image_in::{Origin, decode, texels};
 use crate::picture_files::PictureFiles;
 use crate::search;
 use crate::words::shown;
@@ -212,18 +212,22 @@ impl<'a> Context<'a> {
 
     /// Decodes all of the model's pictures, side by side. Each has a name, by which
     /// errors call it. To be called once, as the texels of all are counted together.
-    pub fn decode_images(&self, pictures: &[NamedBytes<'_>]) -> Result<Vec<Image>, FileError> {
+    pub fn decode_images(
+        &self,
+        pictures: &[NamedBytes<'_>],
+        origin: Origin,
+    ) -> Result<Vec<Image>, FileError> {
         let place = |name: &str| Place::Image(shown(name));
         // All sizes are known to be within the limits before memory is reserved for any.
         let mut total = 0u64;
         for (name, bytes) in pictures {
-            let texels = texels(name, bytes, self.limits)
+            let texels = texels(name, bytes, origin, self.limits)
                 .map_err(|trouble| trouble.into_error(self.path, place(name), self.limits))?;
             total = total.saturating_add(texels);
             self.within(place(name), "texels of all images together", total, self.limits.max_total_pixels)?;
         }
         let images: Vec<_> =
-            pictures.par_iter().map(|(name, bytes)| decode(name, bytes, self.limits)).collect();
+            pictures.par_iter().map(|(name, bytes)| decode(name, bytes, origin, self.limits)).collect();
         let named = images.into_iter().zip(pictures);
         let images: Vec<Image> = named
             .map(|(image, (name, _))| {
@@ -261,7 +265,7 @@ mod tests {
         let run = |max_total_pixels| {
             let limits = Limits { max_total_pixels, ..Limits::default() };
             let context = Context::new(Path::new("a"), &NoResources, &limits, Textures::Decode);
-            context.decode_images(&pictures).map_err(|e| e.to_string())
+            context.decode_images(&pictures, Origin::Other).map_err(|e| e.to_string())
         };
         let names: Vec<_> = run(300).unwrap().into_iter().map(|image| image.name).collect();
         assert_eq!(names, ["p0", "p1", "p2"]);

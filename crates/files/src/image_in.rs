@@ -1,18 +1,18 @@
-//! Pictures in: PNG, JPEG, WebP and KTX2 (`ktx2.rs`), which glTF knows, and TGA, BMP, TIFF and GIF, which lie beside
-//! OBJ files, to 8-bit RGBA.
+//! Pictures in: PNG, JPEG, WebP and KTX2 (`ktx2.rs`), and beside OBJ files TGA, BMP and GIF, to 8-bit RGBA.
 //!
 //! The format is told by the first bytes, not by the name, but for TGA, which starts with none of its own. Samples of 16 bits are
 //! rounded to 8, greys and palettes become RGB, a missing alpha becomes 255. Colour
 //! profiles, gamma chunks and EXIF turns are ignored, as glTF 2.0 asks (3.8.2).
 //!
 //! Contract: the declared size is held against the limits before any pixel memory
-//! is reserved.
+//! is reserved. TIFF is not read: its decoder reserves what a file asks for, and decodes pictures of any size inside of it.
 
 use crate::contents::PictureFormat;
 use crate::guard::guarded;
 use crate::image_trouble::ImageTrouble;
 use crate::ktx2;
 use crate::resources::read_file;
+use crate::words::shown;
 use crate::{FileError, Limits, Place};
 use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use parbake_model::Image;
@@ -22,7 +22,7 @@ use std::path::Path;
 /// The most pixels that one byte of a whole file can stand for: a PNG of one bit a
 /// pixel, at the 1032 bytes that deflate makes of one; a JPEG's 64 pixels a bit, and
 /// as much again to be on the safe side; a TGA's 128 pixels in two bytes; a GIF's 4096 in nine bits.
-/// Lossless WebP, BMP, whose rows may be skipped, and TIFF know no such bound.
+/// Lossless WebP, BMP, whose rows may be skipped, know no such bound.
 fn most_pixels_a_byte(format: ImageFormat) -> u64 {
     match format {
         ImageFormat::Png => 8 * 1032,
@@ -30,6 +30,25 @@ fn most_pixels_a_byte(format: ImageFormat) -> u64 {
         ImageFormat::Tga => 64,
         ImageFormat::Gif => 4096,
         _ => u64::MAX,
+    }
+}
+
+/// Where a picture belongs, and so which formats it may have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// To a glTF: what this and its extensions know.
+    Gltf,
+    /// To an OBJ, or to nothing.
+    Other,
+}
+
+impl Origin {
+    /// The formats in words.
+    fn formats(self) -> &'static str {
+        match self {
+            Self::Gltf => "PNG, JPEG, WebP and KTX2 (Basis Universal)",
+            Self::Other => "PNG, JPEG, WebP, KTX2 (Basis Universal), TGA, BMP and GIF",
+        }
     }
 }
 
@@ -44,7 +63,8 @@ pub fn read_image(path: &Path, limits: &Limits) -> Result<Image, FileError> {
         source,
     })?;
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    decode(&name, &bytes, limits).map_err(|trouble| trouble.into_error(path, Place::File, limits))
+    decode(&name, &bytes, Origin::Other, limits)
+        .map_err(|trouble| trouble.into_error(path, Place::File, limits))
 }
 
 /// Decodes a picture in memory. `name` becomes the image's, and the errors', name.
@@ -52,23 +72,29 @@ pub fn read_image(path: &Path, limits: &Limits) -> Result<Image, FileError> {
 /// # Errors
 /// When it is of another format, is damaged, or is over the limits.
 pub fn decode_image(name: &str, bytes: &[u8], limits: &Limits) -> Result<Image, FileError> {
-    decode(name, bytes, limits).map_err(|trouble| trouble.into_error(Path::new(name), Place::File, limits))
+    decode(name, bytes, Origin::Other, limits)
+        .map_err(|trouble| trouble.into_error(Path::new(name), Place::File, limits))
 }
 
 /// The number of texels that a picture declares, if that is believable and within
 /// the limits. Costs next to nothing.
-pub(crate) fn texels(name: &str, bytes: &[u8], limits: &Limits) -> Result<u64, ImageTrouble> {
+pub(crate) fn texels(name: &str, bytes: &[u8], origin: Origin, limits: &Limits) -> Result<u64, ImageTrouble> {
     let (width, height) = if ktx2::is_ktx2(bytes) {
         let header = ktx2::header(bytes)?;
         within(header.width, header.height, limits)?;
         (header.width, header.height)
     } else {
-        open(name, bytes, limits)?.0.dimensions()
+        open(name, bytes, origin, limits)?.0.dimensions()
     };
     Ok(u64::from(width) * u64::from(height))
 }
 
-pub(crate) fn decode(name: &str, bytes: &[u8], limits: &Limits) -> Result<Image, ImageTrouble> {
+pub(crate) fn decode(
+    name: &str,
+    bytes: &[u8],
+    origin: Origin,
+    limits: &Limits,
+) -> Result<Image, ImageTrouble> {
     if ktx2::is_ktx2(bytes) {
         let header = ktx2::header(bytes)?;
         within(header.width, header.height, limits)?;
@@ -76,17 +102,15 @@ pub(crate) fn decode(name: &str, bytes: &[u8], limits: &Limits) -> Result<Image,
         let (width, height) = (header.width as usize, header.height as usize);
         return Ok(Image { name: name.into(), width, height, pixels });
     }
-    let (decoder, format) = open(name, bytes, limits)?;
+    let (decoder, format) = open(name, bytes, origin, limits)?;
     // The decoder would fill up what is missing with grey.
     if format == ImageFormat::Jpeg && !jpeg_has_end(bytes) {
         return Err(ImageTrouble::Damaged("the picture is cut off".into()));
     }
     let (width, height) = decoder.dimensions();
     let (width, height) = (width as usize, height as usize);
-    // None of these decoders is known to panic; what a stranger sent must not be what finds one that does.
-    let pixels = guarded(|| rgba(decoder, width * height))
-        .unwrap_or_else(|| Err(ImageError::IoError(std::io::Error::other("the decoder failed"))))
-        .map_err(damaged)?;
+    let pixels =
+        guarded(|| rgba(decoder, width * height)).unwrap_or_else(|| Err(failed())).map_err(damaged)?;
     Ok(Image { name: name.into(), width, height, pixels })
 }
 
@@ -94,13 +118,17 @@ pub(crate) fn decode(name: &str, bytes: &[u8], limits: &Limits) -> Result<Image,
 fn open<'b>(
     name: &str,
     bytes: &'b [u8],
+    origin: Origin,
     limits: &Limits,
 ) -> Result<(impl ImageDecoder + use<'b>, ImageFormat), ImageTrouble> {
-    let format = PictureFormat::of(name, bytes).and_then(PictureFormat::decoder);
-    let format = format.ok_or(ImageTrouble::UnknownFormat)?;
+    let format = PictureFormat::of(name, bytes)
+        .filter(|format| origin == Origin::Other || format.is_of_gltf())
+        .and_then(PictureFormat::decoder)
+        .ok_or(ImageTrouble::UnknownFormat(origin.formats()))?;
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    reader.limits(decoder_limits(limits));
-    let decoder = reader.into_decoder().map_err(damaged)?;
+    reader.limits(decoder_limits(limits.max_image_pixels));
+    // None of these decoders is known to panic; what a stranger sent must not be what finds one that does.
+    let mut decoder = guarded(|| reader.into_decoder()).unwrap_or_else(|| Err(failed())).map_err(damaged)?;
     let (width, height) = decoder.dimensions();
     let pixels = within(width, height, limits)?;
     if pixels > most_pixels_a_byte(format).saturating_mul(bytes.len() as u64) {
@@ -109,7 +137,13 @@ fn open<'b>(
             bytes.len()
         )));
     }
+    // A GIF's frame may be larger than the picture that it is put into.
+    decoder.set_limits(decoder_limits(pixels)).map_err(damaged)?;
     Ok((decoder, format))
+}
+
+fn failed() -> ImageError {
+    ImageError::IoError(std::io::Error::other("the decoder failed"))
 }
 
 /// The number of texels, if it is within the limits.
@@ -129,7 +163,7 @@ fn within(width: u32, height: u32, limits: &Limits) -> Result<u64, ImageTrouble>
 }
 
 fn damaged(error: ImageError) -> ImageTrouble {
-    ImageTrouble::Damaged(format!("the picture cannot be decoded: {}", tidy(&error)))
+    ImageTrouble::Damaged(format!("the picture cannot be decoded: {}", shown(&tidy(&error))))
 }
 
 /// All pixels, with no more copies in memory than needed: textures are large.
@@ -212,9 +246,9 @@ fn tidy(error: &ImageError) -> String {
 /// Sizes are checked by us, so that the message can say what the limit is; the
 /// decoder is told how much memory it may take: four 16-bit channels a texel,
 /// and as much again for its own tables and rows.
-fn decoder_limits(limits: &Limits) -> image::Limits {
+fn decoder_limits(pixels: u64) -> image::Limits {
     let mut told = image::Limits::no_limits();
-    told.max_alloc = Some(limits.max_image_pixels.saturating_mul(16).saturating_add(64 << 20));
+    told.max_alloc = Some(pixels.saturating_mul(16).saturating_add(64 << 20));
     told
 }
 

@@ -5,12 +5,11 @@
 use crate::{FileError, Limits, Place};
 use std::path::Path;
 
-const SUPPORTED: &str = "PNG, JPEG, WebP, KTX2 (Basis Universal), TGA, BMP, TIFF and GIF";
-
 /// Why a picture could not be had, before it is known whose picture it is.
 #[derive(Debug)]
 pub(crate) enum ImageTrouble {
-    UnknownFormat,
+    /// None of these.
+    UnknownFormat(&'static str),
     Side(u64),
     Pixels(u64),
     Damaged(String),
@@ -20,14 +19,14 @@ impl ImageTrouble {
     pub fn into_error(self, path: &Path, place: Place, limits: &Limits) -> FileError {
         let path = path.to_path_buf();
         match self {
-            Self::UnknownFormat if place == Place::File => {
-                FileError::UnknownFormat { path, supported: SUPPORTED }
+            Self::UnknownFormat(supported) if place == Place::File => {
+                FileError::UnknownFormat { path, supported }
             }
-            Self::UnknownFormat => FileError::Unsupported {
+            Self::UnknownFormat(supported) => FileError::Unsupported {
                 path,
                 place,
                 feature: "this picture's format".into(),
-                advice: format!("convert it to one of {SUPPORTED}"),
+                advice: format!("convert it to one of {supported}"),
             },
             Self::Side(found) => FileError::OverLimit {
                 path,

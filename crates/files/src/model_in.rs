@@ -174,6 +174,22 @@ mod tests {
         assert_eq!(warnings[0].kind, WarningKind::MissingTexture);
     }
 
+    /// Protects old assets: an OBJ's texture may be a TGA, which is known by its name alone, also by an absolute one, and is counted as one.
+    #[test]
+    fn textures_of_old_files_are_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
+        // One pixel of 24 bits, blue first.
+        write("Oak.TGA", &[0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 24, 0x20, 7, 8, 9]);
+        write("m.obj", format!("mtllib m.mtl\n{TRIANGLE}").as_bytes());
+        for name in ["Oak.TGA", "C:\\textures\\Oak.TGA"] {
+            write("m.mtl", format!("newmtl a\nmap_Kd {name}\n").as_bytes());
+            let loaded = read_model(&folder.path().join("m.obj"), &Limits::default()).unwrap();
+            assert_eq!(loaded.model.images[0].pixels, [[9, 8, 7, 255]], "{name}");
+            assert_eq!(loaded.contents.pictures[0].format, crate::PictureFormat::Tga);
+        }
+    }
+
     const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n";
 
     fn confined() -> Limits {

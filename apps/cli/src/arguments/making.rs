@@ -185,7 +185,7 @@ pub struct CompressCommand {
 /// Arguments of `image`.
 #[derive(Args, Debug)]
 pub struct ImageCommand {
-    /// The picture: .png, .jpg, .webp or .ktx2
+    /// The picture: .png, .jpg, .webp, .ktx2, .tga, .bmp or .gif
     pub picture: PathBuf,
 
     /// File to write: .glb, or .obj with .mtl and .png beside it

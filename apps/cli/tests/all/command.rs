@@ -206,3 +206,28 @@ fn obj_and_glb_look_the_same() {
     let same = crate::common::psnr(folder, "a.glb".as_ref(), "a.obj".as_ref());
     assert!(same > 60.0, "{same} dB");
 }
+
+/// Protects who compares models: a page besides the figures, which go where they went before, and views that have one number in both.
+#[test]
+fn eval_writes_a_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    demo_pair(folder);
+    let small = ["--views", "3", "--resolution", "32", "--no-flip", "--report", "page.html"];
+    let eval = |more: &[&str]| {
+        text(&run(folder, &[&["eval", "demo_high.glb", "demo_low.glb"][..], &small, more].concat()).stdout)
+    };
+    let table = eval(&["--per-view"]);
+    let psnr = |view: usize| {
+        let row = table.lines().find(|line| line.trim_start().starts_with(&format!("{view} "))).unwrap();
+        row.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap()
+    };
+    let page = fs::read_to_string(folder.join("page.html")).unwrap();
+    for view in 1..=3 {
+        assert!(page.contains(&format!("view {view}: {:.2} dB", psnr(view))), "{table}");
+    }
+    fs::remove_file(folder.join("page.html")).unwrap();
+    let figures: serde_json::Value = serde_json::from_str(&eval(&["--json", "-"])).unwrap();
+    assert_eq!(figures["views"].as_array().unwrap().len(), 3);
+    assert!(folder.join("page.html").exists());
+}

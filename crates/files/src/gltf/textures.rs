@@ -10,6 +10,7 @@ use super::json_texture::{TextureInfo, TextureTransform};
 use super::uri::{Uri, parse};
 use super::uv_sets::{self, UvSets};
 use crate::context::{NamedBytes, Textures};
+use crate::image_in::Origin;
 use crate::{FileError, WarningKind};
 use parbake_model::glam::Vec2;
 use parbake_model::{Image, TextureSlot, UvTransform, Wrap};
@@ -33,7 +34,7 @@ impl<'a, 'd> TextureReader<'a, 'd> {
 
     /// The images of all slots so far, in their order.
     pub fn decode(&self) -> Result<Vec<Image>, FileError> {
-        self.buffers.context.decode_images(&self.pictures)
+        self.buffers.context.decode_images(&self.pictures, Origin::Gltf)
     }
 
     /// One use of a texture; `None`, with a warning, when its picture cannot be found.

@@ -14,6 +14,7 @@ use super::lex::text;
 use super::mtl::{self, Found};
 use super::pictures::Pictures;
 use crate::context::Context;
+use crate::image_in::Origin;
 use crate::search::is_absolute;
 use crate::{FileError, WarningKind};
 use parbake_model::{AlphaMode, Image, Material};
@@ -50,7 +51,7 @@ pub(super) fn build(
         }
         materials.push(material);
     }
-    let images = context.decode_images(&pictures.found)?;
+    let images = context.decode_images(&pictures.found, Origin::Other)?;
     for (material, file) in doubtful {
         let slot = &mut materials[material].normal_texture;
         if slot.is_some_and(|slot| !looks_like_normals(&images[slot.image])) {

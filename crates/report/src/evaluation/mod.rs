@@ -39,7 +39,7 @@ pub fn evaluation_report(
     let options = EvaluateOptions { resolution, shading: evaluation.shading, ..evaluation.options.clone() };
     let renderer = Renderer::new(high, &options)?;
     let placed = [high, low].map(|model| renderer.place(model));
-    let chosen = views::chosen(&evaluation.views);
+    let chosen = views::chosen(&evaluation.views[..evaluation.views.len().min(options.views)]);
     let total = chosen.len() + 1;
     let mut shown: Vec<ShownView> = Vec::with_capacity(chosen.len());
     for view in &chosen {

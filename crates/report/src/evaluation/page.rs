@@ -24,7 +24,10 @@ pub fn page(
     rows: &[ChannelRow],
 ) -> Result<String, BakeError> {
     let [high, low] = models.map(name);
-    let title = format!("{low} beside {high}");
+    let title = match low == high {
+        true => format!("{high}: {LOW} beside high-poly"),
+        false => format!("{low} beside {high}"),
+    };
     let mut out = header(&title, models, evaluation);
     let measured = evaluation.options.resolution;
     let how = if resolution == measured {
@@ -140,6 +143,8 @@ fn gallery(shown: &[ShownView], resolution: usize) -> Result<String, BakeError> 
 /// The mean figures, and how to get them again.
 fn figures(evaluation: &Evaluation) -> String {
     let Evaluation { options, mean, .. } = evaluation;
+    // As it can be typed.
+    let options = EvaluateOptions { background: options.background.replace(' ', ""), ..options.clone() };
     let mut out = String::from(r#"<table class="texels"><tbody>"#);
     for (what, value) in texts(mean) {
         let _ = write!(out, r#"<tr><th scope="row">{what}</th><td>{value}</td></tr>"#);
@@ -152,7 +157,7 @@ fn figures(evaluation: &Evaluation) -> String {
         ),
         options.views,
         options.resolution,
-        flags(options, &EvaluateOptions::default())
+        flags(&options, &EvaluateOptions::default())
     );
     out
 }

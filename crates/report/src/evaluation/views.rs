@@ -1,7 +1,7 @@
 //! Which views of a comparison are looked at, and their pictures.
 //!
 //! Contract: those that differ most come first, then the one in the middle and the best, none twice; of views that are
-//! alike the first one.
+//! alike the first one. Where all are alike one is shown.
 
 use crate::html::pictures::AMPLIFIED;
 use crate::page::amplified_difference;
@@ -40,6 +40,11 @@ pub fn chosen(views: &[ViewFigures]) -> Vec<ChosenView> {
     order.sort_by(|&a, &b| views[a].psnr.total_cmp(&views[b].psnr));
     let places = WORST.into_iter().enumerate();
     let others = [(views.len() / 2, "in the middle"), (views.len().saturating_sub(1), "best")];
+    if let [first, .., last] = order[..]
+        && views[first].psnr == views[last].psnr
+    {
+        return vec![ChosenView { index: first, why: "as close as all others", psnr: views[first].psnr }];
+    }
     let mut chosen: Vec<ChosenView> = Vec::new();
     for (place, why) in places.chain(others) {
         let Some(&index) = order.get(place) else { continue };
@@ -50,7 +55,7 @@ pub fn chosen(views: &[ViewFigures]) -> Vec<ChosenView> {
     chosen
 }
 
-/// Renders a view of high-poly and low-poly on the background that they were compared on.
+/// Renders a view, one of the options', of high-poly and low-poly on the background that they were compared on.
 ///
 /// # Errors
 /// A background that is none.
