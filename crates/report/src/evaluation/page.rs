@@ -1,7 +1,7 @@
 //! The page of a comparison: what is most important, then pictures, then tables.
 
 use super::views::ShownView;
-use crate::html::channels::{ChannelRow, pictures};
+use crate::html::channels::{ChannelRow, MEANING, pictures};
 use crate::html::flags;
 use crate::html::gallery::{Beside, row};
 use crate::html::page::lighting;
@@ -62,8 +62,7 @@ pub fn page(
             &mut out,
             "channels",
             "Channel by channel",
-            "What each map holds where a camera looks. PSNR is that of pixels that both models cover; of opacity, which \
-             is their coverage, of pixels that either covers. FLIP is for colours. The pictures are of the front.",
+            &format!("{MEANING} The pictures are of the front."),
             &(channels(evaluation) + &pictures(rows, LOW)?),
         );
     }

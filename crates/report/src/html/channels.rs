@@ -13,6 +13,10 @@ use std::fmt::Write;
 /// What lies behind the models, display-referred: that of the page's other pictures.
 const GREY: f32 = 0.22;
 
+/// What the figures of channels are, for who reads them.
+pub(crate) const MEANING: &str = "What each map holds where a camera looks. PSNR is that of pixels that both models cover; of opacity, \
+                                  which is their coverage, of pixels that either covers. FLIP is for colours.";
+
 /// The pictures of a channel.
 pub struct ChannelRow {
     channel: Channel,

@@ -1,6 +1,6 @@
 //! The page: its head, what is most important, its sections in order.
 
-use super::channels::{ChannelRow, channels};
+use super::channels::{ChannelRow, MEANING, channels};
 use super::gallery::gallery;
 use super::loss_curve::loss_curve;
 use super::model_view::{SCRIPT, model_view};
@@ -74,14 +74,7 @@ pub fn page(
         ),
     );
     if !compared.channels.is_empty() {
-        section(
-            &mut out,
-            "channels",
-            "Channel by channel",
-            "What each map holds where a camera looks. PSNR is that of pixels that both models cover; of opacity, which \
-             is their coverage, of pixels that either covers. FLIP is for colours.",
-            &channels(compared, rows)?,
-        );
+        section(&mut out, "channels", "Channel by channel", MEANING, &channels(compared, rows)?);
     }
     section(
         &mut out,
