@@ -193,7 +193,7 @@ fn chart(views: &[ViewFigures]) -> String {
 /// The figures of each channel.
 fn channels(evaluation: &Evaluation) -> String {
     let mut out = String::from(concat!(
-        r#"<table class="figures"><thead><tr><th scope="col">channel</th><th scope="col">PSNR</th>"#,
+        r#"<table class="numbers-table"><thead><tr><th scope="col">channel</th><th scope="col">PSNR</th>"#,
         r#"<th scope="col">MS-SSIM</th><th scope="col">FLIP</th></tr></thead><tbody>"#
     ));
     for of in &evaluation.channels {
