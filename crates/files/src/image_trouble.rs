@@ -8,7 +8,7 @@ use std::path::Path;
 /// Why a picture could not be had, before it is known whose picture it is.
 #[derive(Debug)]
 pub(crate) enum ImageTrouble {
-    /// None of these.
+    /// It is of none of these formats, in words.
     UnknownFormat(&'static str),
     Side(u64),
     Pixels(u64),

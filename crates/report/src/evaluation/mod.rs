@@ -15,7 +15,7 @@ mod tests;
 mod views;
 
 use crate::html::channels::rows_of;
-use crate::html::pictures::front;
+use crate::html::pictures::{PIXELS, front};
 use parbake::{BakeError, Channel, EvaluateOptions, Evaluation, Message, Renderer, Stage, Watcher};
 use parbake_model::Model;
 use views::ShownView;
@@ -34,8 +34,8 @@ pub fn evaluation_report(
     evaluation: &Evaluation,
     watcher: &dyn Watcher,
 ) -> Result<String, BakeError> {
-    // Another number of pixels changes nothing else.
-    let resolution = evaluation.options.resolution.min(crate::html::pictures::PIXELS);
+    // Wide enough to look at, in a page of bounded size.
+    let resolution = evaluation.options.resolution.min(PIXELS);
     let options = EvaluateOptions { resolution, shading: evaluation.shading, ..evaluation.options.clone() };
     let renderer = Renderer::new(high, &options)?;
     let placed = [high, low].map(|model| renderer.place(model));

@@ -6,7 +6,7 @@ use crate::html::flags;
 use crate::html::gallery::{Beside, row};
 use crate::html::page::lighting;
 use crate::html::pictures::{AMPLIFIED, PIXELS};
-use crate::page::text::{NOTHING, count, decimal, escape};
+use crate::page::text::{NOTHING, count, decimal, escape, model_name};
 use crate::page::{Axes, document, section};
 use parbake::{BakeError, EvaluateOptions, Evaluation, ViewFigures};
 use parbake_model::Model;
@@ -23,7 +23,7 @@ pub fn page(
     shown: &[ShownView],
     rows: &[ChannelRow],
 ) -> Result<String, BakeError> {
-    let [high, low] = models.map(name);
+    let [high, low] = models.map(|model| model_name(&model.name));
     let title = match low == high {
         true => format!("{high}: {LOW} beside high-poly"),
         false => format!("{low} beside {high}"),
@@ -49,13 +49,9 @@ pub fn page(
     section(
         &mut out,
         "figures",
-        "Figures",
+        "PSNR of each view",
         "",
-        &format!(
-            r#"<div class="pair"><div>{}</div><div><h3>PSNR of each view</h3>{}</div></div>"#,
-            figures(evaluation),
-            chart(&evaluation.views)
-        ),
+        &(chart(&evaluation.views) + &again(&evaluation.options)),
     );
     if !evaluation.channels.is_empty() {
         section(
@@ -67,13 +63,6 @@ pub fn page(
         );
     }
     Ok(document(&title, &out))
-}
-
-fn name(model: &Model) -> String {
-    match model.name.trim() {
-        "" => "a model without a name".into(),
-        name => escape(name),
-    }
 }
 
 /// Name, headline figures and facts.
@@ -111,7 +100,7 @@ fn header(title: &str, models: [&Model; 2], evaluation: &Evaluation) -> String {
             "<div><dt>{what}</dt><dd>{} triangles, {} <small>({})</small></dd></div>",
             count(model.mesh.triangles.len()),
             textures(model.images.len(), texels),
-            name(model)
+            model_name(&model.name)
         );
     }
     out + "</dl></header>"
@@ -139,35 +128,19 @@ fn gallery(shown: &[ShownView], resolution: usize) -> Result<String, BakeError> 
     })
 }
 
-/// The mean figures, and how to get them again.
-fn figures(evaluation: &Evaluation) -> String {
-    let Evaluation { options, mean, .. } = evaluation;
+/// What all figures are of, and how to get them again.
+fn again(options: &EvaluateOptions) -> String {
     // As it can be typed.
     let options = EvaluateOptions { background: options.background.replace(' ', ""), ..options.clone() };
-    let mut out = String::from(r#"<table class="texels"><tbody>"#);
-    for (what, value) in texts(mean) {
-        let _ = write!(out, r#"<tr><th scope="row">{what}</th><td>{value}</td></tr>"#);
-    }
-    let _ = write!(
-        out,
+    format!(
         concat!(
-            r#"</tbody></table><p class="note">Means over {} views around the model, {} pixels wide; PSNR in decibels; ↑ more is better, ↓ less. "#,
-            "The same figures by <code>parbake eval HIGH LOW{}</code>.</p>"
+            r#"<p class="note">The figures at the top are means over {} views around the model, {} pixels wide. "#,
+            "The same by <code>parbake eval HIGH LOW{}</code>.</p>"
         ),
         options.views,
         options.resolution,
         flags(&options, &EvaluateOptions::default())
-    );
-    out
-}
-
-fn texts(figures: &ViewFigures) -> [(&'static str, String); 3] {
-    let optional = |x: Option<f64>| x.map_or(NOTHING.into(), |x| decimal(x, 4));
-    [
-        ("PSNR\u{a0}↑", decimal(figures.psnr, 2)),
-        ("MS-SSIM\u{a0}↑", optional(figures.ms_ssim)),
-        ("FLIP\u{a0}↓", optional(figures.flip)),
-    ]
+    )
 }
 
 /// A mark for each view.
@@ -197,11 +170,14 @@ fn channels(evaluation: &Evaluation) -> String {
         r#"<th scope="col">MS-SSIM</th><th scope="col">FLIP</th></tr></thead><tbody>"#
     ));
     for of in &evaluation.channels {
-        let [psnr, ms_ssim, flip] = texts(&of.mean).map(|(_, value)| value);
+        let optional = |x: Option<f64>| x.map_or(NOTHING.into(), |x| decimal(x, 4));
         let _ = write!(
             out,
-            r#"<tr><th scope="row">{}</th><td>{psnr}</td><td>{ms_ssim}</td><td>{flip}</td></tr>"#,
-            of.channel.label()
+            r#"<tr><th scope="row">{}</th><td>{}</td><td>{}</td><td>{}</td></tr>"#,
+            of.channel.label(),
+            decimal(of.mean.psnr, 2),
+            optional(of.mean.ms_ssim),
+            optional(of.mean.flip)
         );
     }
     out + "</tbody></table>"

@@ -11,7 +11,7 @@ use super::textures::textures;
 use super::uv_check::uv_check;
 use super::uv_moves::uv_moves;
 use super::view_chart::view_chart;
-use crate::page::text::{bytes, change, count, decimal, duration, escape, verdict};
+use crate::page::text::{bytes, change, count, decimal, duration, escape, model_name, verdict};
 use crate::page::{document_with_script, section};
 use parbake::BakeError;
 use parbake::BakeReport;
@@ -28,10 +28,7 @@ pub fn page(
     rows: &[ChannelRow],
 ) -> Result<String, BakeError> {
     let report = &baked.report;
-    let name = match baked.model.name.trim() {
-        "" => "a model without a name".into(),
-        name => escape(name),
-    };
+    let name = model_name(&baked.model.name);
     let mut out = header(&name, high, report, compared);
     out += &notes(report, compared);
     section(

@@ -17,7 +17,7 @@ mod search;
 mod tests;
 
 use crate::page::document;
-use crate::page::text::escape;
+use crate::page::text::model_name;
 use parbake::lod::document::LodDocument;
 use parbake::{BakeError, LodOptions, Message, Stage, Watcher};
 use parbake_model::Model;
@@ -38,10 +38,7 @@ pub fn lod_report(
     watcher: &dyn Watcher,
 ) -> Result<String, BakeError> {
     let chain = document_of_chain;
-    let name = match chain.name.trim() {
-        "" => "a model without a name".into(),
-        name => escape(name),
-    };
+    let name = model_name(&chain.name);
     let gallery = Gallery::new(original, levels, options)?;
     let total = levels.len() + 1;
     let original_picture = gallery.original()?;

@@ -27,6 +27,14 @@ pub fn escape(text: &str) -> String {
     out
 }
 
+/// A model's name, escaped, or that it has none.
+pub fn model_name(name: &str) -> String {
+    match name.trim() {
+        "" => "a model without a name".into(),
+        name => escape(name),
+    }
+}
+
 /// A whole number with its thousands parted.
 pub fn count(number: usize) -> String {
     let digits = number.to_string();
